@@ -1,0 +1,11 @@
+// Each subcommand lives in a file of its own and registers itself on the application with one of these functions.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace roadfix::cli {
+
+// A command parses its options in CLI11, does its work in the callback, writes its answer to stdout and its progress
+// through cli/terminal. It reports failure by throwing; main turns exceptions into one line on stderr and exit code 1.
+
+}  // namespace roadfix::cli

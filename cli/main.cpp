@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "cli/command.hpp"
+#include "core/units/error.hpp"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Localizes UAVs by roads: builds road maps from imagery and road data, serves them, answers where a frame was "
+      "taken.",
+      "roadfix");
+  app.set_version_flag("--version", "roadfix " ROADFIX_VERSION);
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& wrong) {
+    app.exit(wrong);
+    return kWrongUsage;
+  } catch (const roadfix::Error& error) {
+    fmt::print(stderr, "roadfix: {} [{}]\n", error.what(), error.code());
+    return kFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "roadfix: {}\n", error.what());
+    return kFailed;
+  }
+}

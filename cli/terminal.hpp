@@ -1,0 +1,43 @@
+// Talking to a person or a script: progress on stderr (redrawn on a terminal, a line now and then otherwise),
+// and Ctrl-C as a stop token.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+namespace roadfix::cli {
+
+/// Requested by the first SIGINT or SIGTERM; a second one ends the process at once.
+std::stop_token stop_on_signals();
+
+/// Share done, rate and time left of one long task.
+class Progress {
+ public:
+  /// `unit` and `units_per_item` give the rate: 65536 px an item and "MP" with 0.065536 print MP/s.
+  Progress(std::string task, std::string unit, double units_per_item = 1.0);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Safe from several threads. The rate counts only what was done since the first call (resumed work is not speed).
+  void update(std::int64_t done, std::int64_t total);
+
+ private:
+  void print(std::int64_t done, std::int64_t total);
+
+  using Clock = std::chrono::steady_clock;
+  std::mutex mutex_;
+  std::string task_;
+  std::string unit_;
+  double units_per_item_;
+  bool terminal_;
+  Clock::time_point started_;
+  Clock::time_point last_print_;
+  std::int64_t first_done_ = -1;
+  bool line_open_ = false;
+};
+
+}  // namespace roadfix::cli

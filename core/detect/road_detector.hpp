@@ -1,0 +1,39 @@
+// The port for road detectors: the same detector makes the global map and the live feature map.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "core/grid/cell_array.hpp"
+
+namespace roadfix {
+
+/// A picture of the ground, as if seen straight from above, with square pixels of known size.
+struct GroundImage {
+  cv::Mat pixels;    ///< CV_8UC3 in OpenCV's BGR order, or CV_8UC1 grey
+  cv::Mat observed;  ///< CV_8UC1 of the same size: 0 = not seen (nodata, outside the frame), 255 = seen
+  double gsd_m = 1.0;
+};
+
+class RoadDetector {
+ public:
+  virtual ~RoadDetector() = default;
+
+  /// Road probability in cells of `cell_m`: ceil(cols * gsd / cell_m) x ceil(rows * gsd / cell_m) cells, the first at
+  /// the image's first corner. A cell is unobserved where less than half of its pixels were seen. Safe to call from
+  /// several threads; equal input and seed give equal cells.
+  virtual CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const = 0;
+
+  /// Ground sample distance that the detector works best at; callers that resample anyway choose it.
+  virtual double preferred_gsd_m() const = 0;
+  /// How far beyond a cell the detector looks: blocks are read with this margin.
+  virtual double halo_m() const = 0;
+  /// One line for the provenance of a source: name and all parameters that change the result.
+  virtual std::string describe() const = 0;
+};
+
+/// Cells (in the layout of RoadDetector::detect) that count as observed by the rule above.
+cv::Mat observed_cells(const GroundImage& image, double cell_m);
+
+}  // namespace roadfix

@@ -1,0 +1,24 @@
+// What a UAV sees: a metric grid of road probability in the body frame.
+#pragma once
+
+#include <utility>
+
+#include "core/grid/cell_array.hpp"
+#include "core/grid/geometry.hpp"
+
+namespace roadfix {
+
+/// Row 0 is the forward edge, columns run to the right of travel (method.md section 7).
+struct FeatureMap {
+  CellArray cells;
+  double cell_m = 1.0;
+  /// The point below the UAV in continuous cell coordinates ((0, 0) = outer corner of the first cell).
+  GridGeometry::CellPosition nadir;
+
+  static FeatureMap centred(CellArray cells, double cell_m) {
+    const GridGeometry::CellPosition centre{cells.cols() / 2.0, cells.rows() / 2.0};
+    return {std::move(cells), cell_m, centre};
+  }
+};
+
+}  // namespace roadfix

@@ -1,0 +1,47 @@
+#include "core/grid/geometry.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace roadfix {
+
+bool is_map_cell_size(double cell_m) {
+  int exponent = 0;
+  return cell_m >= kMinCellM && cell_m <= kMaxCellM && std::frexp(cell_m, &exponent) == 0.5;
+}
+
+GridGeometry GridGeometry::covering(const GridBox& box, double cell_m) {
+  assert(cell_m > 0.0);
+  const auto west = static_cast<int>(std::floor(box.min.east_m / cell_m));
+  const auto east = static_cast<int>(std::ceil(box.max.east_m / cell_m));
+  const auto north = static_cast<int>(std::floor(-box.max.north_m / cell_m));
+  const auto south = static_cast<int>(std::ceil(-box.min.north_m / cell_m));
+  return {cell_m, {west, north}, std::max(0, east - west), std::max(0, south - north)};
+}
+
+GridBox GridGeometry::box() const {
+  return {{origin.col * cell_m, -(origin.row + rows) * cell_m}, {(origin.col + cols) * cell_m, -origin.row * cell_m}};
+}
+
+GridPoint GridGeometry::cell_center(int col, int row) const { return point_at({col + 0.5, row + 0.5}); }
+
+GridGeometry::CellPosition GridGeometry::position_of(GridPoint point) const {
+  return {point.east_m / cell_m - origin.col, -point.north_m / cell_m - origin.row};
+}
+
+GridPoint GridGeometry::point_at(CellPosition position) const {
+  return {(origin.col + position.col) * cell_m, -(origin.row + position.row) * cell_m};
+}
+
+std::optional<GridGeometry> GridGeometry::intersection(const GridGeometry& other) const {
+  assert(cell_m == other.cell_m);
+  const int west = std::max(origin.col, other.origin.col);
+  const int north = std::max(origin.row, other.origin.row);
+  const int east = std::min(origin.col + cols, other.origin.col + other.cols);
+  const int south = std::min(origin.row + rows, other.origin.row + other.rows);
+  if (east <= west || south <= north) return std::nullopt;
+  return GridGeometry{cell_m, {west, north}, east - west, south - north};
+}
+
+}  // namespace roadfix

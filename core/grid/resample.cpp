@@ -1,0 +1,154 @@
+#include "core/grid/resample.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+using CellPosition = GridGeometry::CellPosition;
+
+/// Accumulates observed cells by weight; unobserved ones only count as missing.
+class WeightedMean {
+ public:
+  void add(Cell cell, double weight) {
+    total_ += weight;
+    if (!is_observed(cell)) return;
+    observed_ += weight;
+    sum_ += weight * cell;
+  }
+  Cell cell() const {
+    if (observed_ <= 0.0 || observed_ < 0.5 * total_) return kUnobserved;
+    return static_cast<Cell>(sum_ / observed_ + 0.5);
+  }
+
+ private:
+  double sum_ = 0.0;
+  double observed_ = 0.0;
+  double total_ = 0.0;
+};
+
+Cell bilinear(const CellArray& cells, CellPosition p) {
+  const double x = p.col - 0.5;
+  const double y = p.row - 0.5;
+  const int col = static_cast<int>(std::floor(x));
+  const int row = static_cast<int>(std::floor(y));
+  const double fx = x - col;
+  const double fy = y - row;
+  WeightedMean mean;
+  mean.add(cells.get(col, row), (1.0 - fx) * (1.0 - fy));
+  mean.add(cells.get(col + 1, row), fx * (1.0 - fy));
+  mean.add(cells.get(col, row + 1), (1.0 - fx) * fy);
+  mean.add(cells.get(col + 1, row + 1), fx * fy);
+  return mean.cell();
+}
+
+/// Linear map from result cells to source cells: source = origin + col * right + row * down.
+struct Placement {
+  CellPosition origin;
+  CellPosition right;
+  CellPosition down;
+  CellPosition source_of(double col, double row) const {
+    return {origin.col + col * right.col + row * down.col, origin.row + col * right.row + row * down.row};
+  }
+};
+
+CellArray sampled(const CellArray& source, const Placement& placement, int cols, int rows) {
+  // Each result cell averages n x n bilinear samples, n chosen so that no source cell is skipped.
+  const double step = std::hypot(placement.right.col, placement.right.row);
+  const int n = std::max(1, static_cast<int>(std::ceil(step - 1e-9)));
+  CellArray result(cols, rows);
+  for (int row = 0; row < rows; ++row) {
+    const auto out = result.row(row);
+    for (int col = 0; col < cols; ++col) {
+      WeightedMean mean;
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i)
+          mean.add(bilinear(source, placement.source_of(col + (i + 0.5) / n, row + (j + 0.5) / n)), 1.0);
+      }
+      out[static_cast<std::size_t>(col)] = mean.cell();
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+CellArray halved(const CellArray& cells) {
+  CellArray result((cells.cols() + 1) / 2, (cells.rows() + 1) / 2);
+  for (int row = 0; row < result.rows(); ++row) {
+    for (int col = 0; col < result.cols(); ++col) {
+      int sum = 0;
+      int count = 0;
+      for (const Cell cell : {cells.get(2 * col, 2 * row), cells.get(2 * col + 1, 2 * row),
+                              cells.get(2 * col, 2 * row + 1), cells.get(2 * col + 1, 2 * row + 1)}) {
+        if (!is_observed(cell)) continue;
+        sum += cell;
+        ++count;
+      }
+      if (count > 0) result.at(col, row) = static_cast<Cell>((sum + count / 2) / count);
+    }
+  }
+  return result;
+}
+
+RoadGrid halved(const RoadGrid& grid) {
+  const GridGeometry coarse = GridGeometry::covering(grid.geometry.box(), 2.0 * grid.geometry.cell_m);
+  const int shift_col = grid.geometry.origin.col - 2 * coarse.origin.col;
+  const int shift_row = grid.geometry.origin.row - 2 * coarse.origin.row;
+  if (shift_col == 0 && shift_row == 0) return {coarse, halved(grid.cells)};
+  CellArray aligned(2 * coarse.cols, 2 * coarse.rows);
+  paste(grid.cells, aligned, shift_col, shift_row);
+  return {coarse, halved(aligned)};
+}
+
+FeatureMap resampled(const FeatureMap& map, double cell_m) {
+  assert(cell_m > 0.0);
+  const double step = cell_m / map.cell_m;
+  const int cols = std::max(1, static_cast<int>(std::lround(map.cells.cols() / step)));
+  const int rows = std::max(1, static_cast<int>(std::lround(map.cells.rows() / step)));
+  // The nadir keeps its place on the ground; it is the fixed point of the resampling.
+  const CellPosition nadir{map.nadir.col / step, map.nadir.row / step};
+  const Placement placement{{0.0, 0.0}, {step, 0.0}, {0.0, step}};
+  return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
+}
+
+FeatureMap rotated(const FeatureMap& map, Angle heading) {
+  const double c = cos(heading);
+  const double s = sin(heading);
+  const auto cols = static_cast<double>(map.cells.cols());
+  const auto rows = static_cast<double>(map.cells.rows());
+  // Farthest corner in each direction decides the size; body right = (c, s), body down = (-s, c) in (col, row).
+  double half_cols = 0.5;
+  double half_rows = 0.5;
+  for (const CellPosition corner : std::array<CellPosition, 4>{{{0, 0}, {cols, 0}, {0, rows}, {cols, rows}}}) {
+    const double right = corner.col - map.nadir.col;
+    const double down = corner.row - map.nadir.row;
+    half_cols = std::max(half_cols, std::abs(c * right - s * down));
+    half_rows = std::max(half_rows, std::abs(s * right + c * down));
+  }
+  const int reach_cols = static_cast<int>(std::ceil(half_cols - 0.5 - 1e-9));
+  const int reach_rows = static_cast<int>(std::ceil(half_rows - 0.5 - 1e-9));
+  const CellPosition centre{reach_cols + 0.5, reach_rows + 0.5};
+  const Placement placement{
+      {map.nadir.col - c * centre.col - s * centre.row, map.nadir.row + s * centre.col - c * centre.row},
+      {c, -s},
+      {s, c}};
+  return {sampled(map.cells, placement, 2 * reach_cols + 1, 2 * reach_rows + 1), map.cell_m, centre};
+}
+
+FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m) {
+  assert(cols > 0 && rows > 0 && cell_m > 0.0);
+  const double step = cell_m / grid.geometry.cell_m;
+  const double c = step * cos(pose.heading);
+  const double s = step * sin(pose.heading);
+  const CellPosition at = grid.geometry.position_of(pose.position);
+  const CellPosition centre{cols / 2.0, rows / 2.0};
+  const Placement placement{
+      {at.col - c * centre.col + s * centre.row, at.row - s * centre.col - c * centre.row}, {c, s}, {-s, c}};
+  return {sampled(grid.cells, placement, cols, rows), cell_m, centre};
+}
+
+}  // namespace roadfix

@@ -1,0 +1,1 @@
+#include "core/locate/fix.hpp"

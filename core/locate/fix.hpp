@@ -1,0 +1,87 @@
+// One feature map against a map: where is the UAV? An honest answer is `fix`, `ambiguous` or `no_fix` with the reason.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/grid/feature_map.hpp"
+#include "core/locate/map_view.hpp"
+#include "core/match/correlation.hpp"
+
+namespace roadfix {
+
+/// Position and *true* heading (clockwise from true north) as the API speaks of them.
+struct GeoPose {
+  LatLon position;
+  Angle heading;
+};
+
+struct GeoCircle {
+  LatLon centre;
+  double radius_m = 0.0;
+};
+
+struct GeoBox {
+  LatLon south_west;
+  LatLon north_east;
+};
+
+/// True headings within +- half_width of centre.
+struct HeadingRange {
+  Angle centre;
+  Angle half_width;
+};
+
+/// What is known before the search. Nothing set = the whole map and all headings; circle and box intersect.
+struct Prior {
+  std::optional<GeoCircle> circle;
+  std::optional<GeoBox> box;
+  std::optional<HeadingRange> heading;
+};
+
+struct FixOptions {
+  double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it
+  int max_modes = 8;
+  double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
+  std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; past it Interrupted
+  int threads = 1;
+};
+
+enum class FixStatus { kFix, kAmbiguous, kNoFix };
+
+struct FixMode {
+  GeoPose pose;
+  double weight = 0.0;  ///< share of the posterior of this mode, all modes sum to at most 1
+  double rho = 0.0;
+  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
+  Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
+  Angle heading_sigma;
+  std::int64_t observed_cells = 0;
+};
+
+struct Fix {
+  FixStatus status = FixStatus::kNoFix;
+  std::string reason;  ///< stable word for no_fix and ambiguous ("too-few-roads", "not-above-chance", ...), else empty
+  std::string explanation;     ///< the same for a person, with what to do
+  double probability = 0.0;    ///< that the best mode is the true place
+  std::vector<FixMode> modes;  ///< best first; also given for no_fix, as a hint that must not be flown on
+  double searched_km2 = 0.0;
+  int headings = 0;
+  std::string map_name;
+  std::string map_version;
+  std::chrono::duration<double, std::milli> search_time{};
+};
+
+/// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all.
+Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options);
+
+/// Equations (5) to (7) for a list of poses.
+std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses);
+
+}  // namespace roadfix

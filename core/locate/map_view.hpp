@@ -1,0 +1,25 @@
+// The port through which localization asks for the global map. tiles/store reads a file, tests draw ASCII:
+// the caller composes it, so core knows no storage.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/geodesy/utm.hpp"
+#include "core/grid/road_grid.hpp"
+
+namespace roadfix {
+
+struct MapView {
+  std::string name;
+  std::string version;  ///< changes whenever the cells of the map change
+  UtmZone zone;
+  double cell_m = 2.0;
+  GridBox extent;                     ///< box of the observed cells
+  double registration_sigma_m = 0.0;  ///< 1 sigma position error of the sources, per axis
+  /// Cells of the geometry, unobserved where the map has none. `geometry.cell_m` is cell_m * 2^k.
+  /// Safe to call from several threads.
+  std::function<RoadGrid(const GridGeometry& geometry)> read;
+};
+
+}  // namespace roadfix

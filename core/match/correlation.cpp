@@ -1,0 +1,22 @@
+#include "core/match/correlation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadfix {
+
+std::optional<double> rho(const MatchSums& s) {
+  if (s.n == 0) return std::nullopt;
+  const auto n = static_cast<double>(s.n);
+  const double mean = (s.m + s.l) / (2.0 * n);  // (6)
+  const double covariance = s.ml - n * mean * mean;
+  const double map_spread = s.mm - 2.0 * mean * s.m + n * mean * mean;
+  const double feature_spread = s.ll - 2.0 * mean * s.l + n * mean * mean;
+  constexpr double kRounding = 1e-9;
+  if (map_spread <= kRounding * n || feature_spread <= kRounding * n) return std::nullopt;
+  return covariance / std::sqrt(map_spread * feature_spread);  // (5)
+}
+
+double likelihood(double rho) { return std::max(rho, 0.0); }
+
+}  // namespace roadfix

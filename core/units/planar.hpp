@@ -1,0 +1,35 @@
+// Points and poses on a metric plane: x east, y north, metres. Knows no Earth and no map;
+// core/geodesy ties the plane to a UTM zone.
+#pragma once
+
+#include "core/units/angle.hpp"
+
+namespace roadfix {
+
+struct GridPoint {
+  double east_m = 0.0;
+  double north_m = 0.0;
+  friend bool operator==(const GridPoint&, const GridPoint&) = default;
+};
+
+/// Heading is clockwise from *grid* north; the API speaks of true north (see core/geodesy/heading).
+struct GridPose {
+  GridPoint position;
+  Angle heading;
+};
+
+/// Axis-aligned rectangle, closed; empty when min > max on an axis.
+struct GridBox {
+  GridPoint min;
+  GridPoint max;
+  double width_m() const { return max.east_m - min.east_m; }
+  double height_m() const { return max.north_m - min.north_m; }
+  bool empty() const { return min.east_m > max.east_m || min.north_m > max.north_m; }
+  bool contains(GridPoint p) const {
+    return p.east_m >= min.east_m && p.east_m <= max.east_m && p.north_m >= min.north_m && p.north_m <= max.north_m;
+  }
+};
+
+double distance_m(GridPoint a, GridPoint b);
+
+}  // namespace roadfix

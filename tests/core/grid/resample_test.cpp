@@ -1,0 +1,83 @@
+#include "core/grid/resample.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/ascii_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::from_ascii;
+using testing::to_ascii;
+
+TEST(Halved, AveragesOnlyWhatWasObserved) {
+  EXPECT_EQ(to_ascii(halved(from_ascii("##.. "
+                                       "##.# "
+                                       "?#?? "
+                                       "???? "))),
+            "#2\n#?\n");
+}
+
+TEST(Halved, KeepsTheLatticeOfAnOddOrigin) {
+  RoadGrid grid{{2.0, {3, 5}, 2, 2}, from_ascii("#. ..")};
+  const RoadGrid coarse = halved(grid);
+  EXPECT_EQ(coarse.geometry, (GridGeometry{4.0, {1, 2}, 2, 2}));
+  EXPECT_EQ(to_ascii(coarse.cells), "#.\n..\n");
+}
+
+TEST(Rotated, QuarterTurnEastPutsForwardToTheRight) {
+  const FeatureMap map = FeatureMap::centred(from_ascii("### "
+                                                        "... "
+                                                        "... "),
+                                             2.0);
+  EXPECT_EQ(to_ascii(rotated(map, Angle::degrees(90)).cells), "..#\n..#\n..#\n");
+  EXPECT_EQ(to_ascii(rotated(map, Angle::degrees(180)).cells), "...\n...\n###\n");
+  EXPECT_EQ(to_ascii(rotated(map, Angle::degrees(-90)).cells), "#..\n#..\n#..\n");
+}
+
+TEST(Rotated, LeavesCornersUnobserved) {
+  const FeatureMap map = FeatureMap::centred(CellArray(21, 21, kRoad), 1.0);
+  const FeatureMap turned = rotated(map, Angle::degrees(45));
+  EXPECT_EQ(turned.cells.get(0, 0), kUnobserved);
+  EXPECT_EQ(turned.cells.get(turned.cells.cols() / 2, turned.cells.rows() / 2), kRoad);
+  EXPECT_NEAR(static_cast<double>(turned.cells.observed_count()), 441.0, 25.0);
+}
+
+TEST(CutOut, ReturnsTheGridItselfAtItsCentre) {
+  const RoadGrid grid{{2.0, {10, 20}, 4, 4}, from_ascii("#..# .#.. ..#. ?..#")};
+  const GridBox box = grid.geometry.box();
+  const GridPoint centre{(box.min.east_m + box.max.east_m) / 2, (box.min.north_m + box.max.north_m) / 2};
+  EXPECT_EQ(cut_out(grid, {centre, Angle::degrees(0)}, 4, 4, 2.0).cells, grid.cells);
+}
+
+TEST(CutOut, UndoesARotation) {
+  const FeatureMap map = FeatureMap::centred(from_ascii("##... "
+                                                        ".#... "
+                                                        ".#### "
+                                                        "..#.. "
+                                                        "?.#.. "),
+                                             1.0);
+  for (const double degrees : {0.0, 90.0, 180.0, 270.0}) {
+    const FeatureMap turned = rotated(map, Angle::degrees(degrees));
+    const RoadGrid grid{{1.0, {0, 0}, turned.cells.cols(), turned.cells.rows()}, turned.cells};
+    const GridPose pose{grid.geometry.point_at(turned.nadir), Angle::degrees(degrees)};
+    EXPECT_EQ(to_ascii(cut_out(grid, pose, 5, 5, 1.0).cells), to_ascii(map.cells)) << degrees;
+  }
+}
+
+TEST(CutOut, BeyondTheGridNothingWasObserved) {
+  const RoadGrid grid{{1.0, {0, 0}, 4, 4}, CellArray(4, 4, kNoRoad)};
+  EXPECT_EQ(cut_out(grid, {{100, 100}, Angle()}, 3, 3, 1.0).cells.observed_count(), 0u);
+}
+
+TEST(Resampled, CoarserCellsAverageTheArea) {
+  const FeatureMap map = FeatureMap::centred(from_ascii("##.. ##.. .... ...."), 1.0);
+  const FeatureMap coarse = resampled(map, 2.0);
+  EXPECT_EQ(coarse.cells.cols(), 2);
+  EXPECT_EQ(coarse.nadir.col, 1.0);
+  EXPECT_GT(coarse.cells.at(0, 0), coarse.cells.at(1, 0));
+  EXPECT_GT(coarse.cells.at(0, 0), coarse.cells.at(1, 1));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,1 @@
+#include "tiles/store/map_reader.hpp"

@@ -1,0 +1,65 @@
+// What a map file says about itself: settings, sources with provenance, tiles.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geodesy/utm.hpp"
+#include "core/grid/geometry.hpp"
+
+namespace roadfix {
+
+inline constexpr int kTileCells = 256;
+
+/// A tile of 256 x 256 cells on the lattice of a cell size: cells [256 col, 256 col + 256) x [256 row, ...), see
+/// LatticeIndex.
+struct TileIndex {
+  int col = 0;
+  int row = 0;
+  friend auto operator<=>(const TileIndex&, const TileIndex&) = default;
+};
+
+GridGeometry tile_geometry(TileIndex tile, double cell_m);
+/// Tiles that the geometry touches, row by row from the north-west.
+std::vector<TileIndex> tiles_covering(const GridGeometry& geometry);
+
+/// Fixed when a map is created.
+struct MapSettings {
+  UtmZone zone;
+  double cell_m = 2.0;
+};
+
+/// An ingested source and where it came from. `name` is its key: ingesting the same name again replaces it.
+struct SourceRecord {
+  std::string name;
+  std::string kind;         ///< "imagery" or "roads"
+  std::string location;     ///< path or connection string as given
+  std::string fingerprint;  ///< changes when the content or any setting that changes the cells does; guards resumption
+  std::string date;         ///< of the content, ISO 8601, empty if unknown
+  std::string licence;
+  std::string attribution;
+  std::string method;  ///< detector or drawing rules with all parameters
+  double registration_sigma_m = 0.0;
+};
+
+struct SourceStatus {
+  SourceRecord record;
+  bool complete = false;
+  std::int64_t blocks_total = 0;
+  std::int64_t blocks_done = 0;
+  std::string ingested_at;  ///< RFC 3339, empty while incomplete
+};
+
+struct MapInfo {
+  MapSettings settings;
+  std::string version;  ///< changes whenever a fused cell changes
+  int schema_version = 0;
+  GridBox extent;          ///< of the observed cells
+  std::int64_t tiles = 0;  ///< of the finest level
+  int levels = 0;          ///< finest level and overviews
+  std::vector<SourceStatus> sources;
+};
+
+}  // namespace roadfix

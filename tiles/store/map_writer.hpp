@@ -1,0 +1,51 @@
+// Writes a map file. Every source keeps its own evidence; the fused map is derived from it, whatever the order of
+// ingestion. One transaction per block: killing the process anywhere loses at most the blocks in flight.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+
+#include "core/grid/cell_array.hpp"
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix {
+
+class MapWriter {
+ public:
+  /// Opens the map or creates it with the settings. Throws InvalidInput when an existing map has other settings, is not
+  /// ours or is from a newer version; Interrupted ("map-in-use") when another writer holds it.
+  MapWriter(const std::filesystem::path& path, const MapSettings& settings);
+  ~MapWriter();
+  MapWriter(MapWriter&&) noexcept;
+  MapWriter& operator=(MapWriter&&) noexcept;
+
+  /// Settings of an existing map; nullopt where no file is.
+  static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
+
+  /// Starts a source over these blocks (a block is one tile of the finest level) or resumes it: an incomplete source
+  /// with the same name and fingerprint keeps its finished blocks. A complete one with the same name and fingerprint
+  /// needs nothing. Another fingerprint under that name is refused (InvalidInput "source-exists") unless `replace`. The
+  /// replaced evidence stays in force until finish_source. Returns the blocks still to do, in the order given.
+  std::vector<TileIndex> begin_source(const SourceRecord& record, std::span<const TileIndex> blocks, bool replace);
+
+  /// Records a finished block (256 x 256 cells; all unobserved is fine) in one transaction. Call from one thread at a
+  /// time.
+  void put_block(const std::string& source, TileIndex block, const CellArray& cells);
+
+  /// All blocks are there: puts the source in force, fuses the tiles it (or what it replaced) touches and their
+  /// overviews. Can be interrupted and repeated. `progress` gets (done, total) tiles.
+  void finish_source(const std::string& source, const std::function<void(std::int64_t, std::int64_t)>& progress = {},
+                     std::stop_token stop = {});
+
+  /// Removes a source and fuses what it touched.
+  void remove_source(const std::string& source);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace roadfix

@@ -22,6 +22,27 @@ void require_on_earth(LatLon p) {
   }
 }
 
+struct Reversed {
+  LatLon position;
+  Angle convergence;
+};
+
+Reversed reverse(const UtmZone& zone, GridPoint point) {
+  Reversed result;
+  double gamma_deg = 0.0;
+  double scale = 0.0;
+  try {
+    UTMUPS::Reverse(zone.number(), zone.northern(), point.east_m, point.north_m, result.position.lat_deg,
+                    result.position.lon_deg, gamma_deg, scale);
+  } catch (const GeographicLib::GeographicErr&) {
+    throw InvalidInput("position-outside-zone",
+                       fmt::format("east {} m north {} m lies outside UTM zone {}{}", point.east_m, point.north_m,
+                                   zone.number(), zone.northern() ? 'N' : 'S'));
+  }
+  result.convergence = Angle::degrees(gamma_deg);
+  return result;
+}
+
 }  // namespace
 
 UtmZone UtmZone::containing(LatLon point) {
@@ -60,31 +81,8 @@ GridPoint UtmZone::project(LatLon point) const {
   }
 }
 
-LatLon UtmZone::unproject(GridPoint point) const {
-  try {
-    LatLon result;
-    UTMUPS::Reverse(number_, northern_, point.east_m, point.north_m, result.lat_deg, result.lon_deg);
-    return result;
-  } catch (const GeographicLib::GeographicErr&) {
-    throw InvalidInput("position-outside-zone",
-                       fmt::format("east {} m north {} m lies outside UTM zone {}{}", point.east_m, point.north_m,
-                                   number_, northern_ ? 'N' : 'S'));
-  }
-}
+LatLon UtmZone::unproject(GridPoint point) const { return reverse(*this, point).position; }
 
-Angle UtmZone::convergence(GridPoint point) const {
-  double lat = 0.0;
-  double lon = 0.0;
-  double gamma = 0.0;
-  double scale = 0.0;
-  try {
-    UTMUPS::Reverse(number_, northern_, point.east_m, point.north_m, lat, lon, gamma, scale);
-  } catch (const GeographicLib::GeographicErr&) {
-    throw InvalidInput("position-outside-zone",
-                       fmt::format("east {} m north {} m lies outside UTM zone {}{}", point.east_m, point.north_m,
-                                   number_, northern_ ? 'N' : 'S'));
-  }
-  return Angle::degrees(gamma);
-}
+Angle UtmZone::convergence(GridPoint point) const { return reverse(*this, point).convergence; }
 
 }  // namespace roadfix

@@ -1,0 +1,123 @@
+// Holds the whole tree against the tables of ARCHITECTURE.md: includes and CMake links point only downwards.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "tests/contract/layer_table.hpp"
+
+namespace roadfix::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const fs::path kRoot = ROADFIX_SOURCE_DIR;
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + file.string());
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct SourceFile {
+  std::string path;  ///< relative to the project
+  std::string text;
+};
+
+std::vector<SourceFile> product_files(const std::regex& name) {
+  std::vector<SourceFile> files;
+  for (const char* top : {"core", "tiles", "server", "schema", "cli"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      if (!std::regex_match(entry.path().filename().string(), name)) continue;
+      files.push_back({entry.path().lexically_relative(kRoot).generic_string(), read(entry.path())});
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> matches(const std::string& text, const std::regex& pattern) {
+  std::vector<std::string> found;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), pattern); it != std::sregex_iterator(); ++it) {
+    found.push_back((*it)[1]);
+  }
+  return found;
+}
+
+LayerTable project_table() { return parse_layer_table(read(kRoot / "ARCHITECTURE.md")); }
+
+TEST(Layers, EveryIncludeIsAllowedByTheModuleTable) {
+  const LayerTable table = project_table();
+  const auto files = product_files(std::regex(R"(.*\.(hpp|cpp|in))"));
+  EXPECT_GT(files.size(), 20u);
+  for (const auto& file : files) EXPECT_THAT(forbidden_includes(table, file.path, file.text), IsEmpty());
+}
+
+TEST(Layers, EveryLinkedModuleIsAllowedByTheModuleTable) {
+  const LayerTable table = project_table();
+  const auto files = product_files(std::regex("CMakeLists\\.txt"));
+  std::map<std::string, std::string> folder_of_target;
+  for (const auto& file : files) {
+    for (const auto& name : matches(file.text, std::regex(R"(roadfix_module\(\s*(\w+))"))) {
+      folder_of_target[name] = fs::path(file.path).parent_path().generic_string();
+    }
+  }
+  for (const auto& file : files) {
+    for (const auto& name : matches(file.text, std::regex(R"(roadfix::(\w+))"))) {
+      const auto user = table.module_of(fs::path(file.path).parent_path().generic_string());
+      ASSERT_TRUE(user) << file.path << " links roadfix::" << name << " but no row of the module table covers it";
+      ASSERT_TRUE(folder_of_target.contains(name)) << file.path << " links the unknown module roadfix::" << name;
+      const auto used = table.module_of(folder_of_target[name]);
+      ASSERT_TRUE(used) << "no row of the module table covers " << folder_of_target[name];
+      EXPECT_TRUE(*used == *user || table.modules.at(*user).uses.contains(*used))
+          << file.path << " links roadfix::" << name << ", which the row of " << *user << " does not allow";
+    }
+  }
+}
+
+constexpr const char* kSmallTable = R"(
+| Module | Holds | Uses | Libraries |
+|---|---|---|---|
+| `low` | cells | | |
+| `mid/a` | one | `low` | SQLite |
+| `mid/b` | two | `low` | |
+| `top` | all | `mid` | |
+
+| Library | Headers | Why |
+|---|---|---|
+| SQLite | `sqlite3.h` | file |
+)";
+
+TEST(LayerTable, UsesReachThroughAndAFolderStandsForAllModulesInIt) {
+  const LayerTable table = parse_layer_table(kSmallTable);
+  EXPECT_THAT(table.modules.at("top").uses, ElementsAre("low", "mid/a", "mid/b"));
+  EXPECT_THAT(table.modules.at("mid/a").uses, ElementsAre("low"));
+}
+
+TEST(LayerTable, NamesIncludesThatPointUpwardsSidewardsOrToAForeignLibrary) {
+  const LayerTable table = parse_layer_table(kSmallTable);
+  EXPECT_THAT(
+      forbidden_includes(table, "mid/a/x.cpp", "#include <vector>\n#include \"low/y.hpp\"\n#include <sqlite3.h>\n"),
+      IsEmpty());
+  EXPECT_THAT(forbidden_includes(table, "low/x.cpp", "#include \"top/y.hpp\"\n"),
+              ElementsAre(HasSubstr("low/x.cpp includes top/y.hpp")));
+  EXPECT_THAT(forbidden_includes(table, "mid/b/x.cpp", "#include \"mid/a/y.hpp\"\n  # include <sqlite3.h>\n").size(),
+              2u);
+  EXPECT_THAT(forbidden_includes(table, "mid/b/x.cpp", "#include <curl/curl.h>\n"), ElementsAre(HasSubstr("curl")));
+  EXPECT_THAT(forbidden_includes(table, "mid/x.cpp", ""), ElementsAre(HasSubstr("no row")));
+}
+
+TEST(LayerTable, RefusesCirclesAndUnknownNames) {
+  const std::string header =
+      "| Library | Headers |\n|---|---|\n| A | `a.h` |\n\n| Module | Holds | Uses | Libraries |\n|---|---|---|---|\n";
+  EXPECT_THROW(parse_layer_table(header + "| `x` | | `y` | |\n| `y` | | `x` | |\n"), std::runtime_error);
+  EXPECT_THROW(parse_layer_table(header + "| `x` | | `z` | |\n"), std::runtime_error);
+  EXPECT_THROW(parse_layer_table(header + "| `x` | | | B |\n"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace roadfix::testing

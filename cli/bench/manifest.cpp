@@ -1,0 +1,167 @@
+#include "cli/bench/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+using nlohmann::json;
+
+/// A JSON value that knows its place in the manifest, so that every complaint can name it.
+class Field {
+ public:
+  Field(const json& value, std::string path) : value_(value), path_(std::move(path)) {}
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InvalidInput("manifest-field", fmt::format("bench manifest: {} {}", path_.empty() ? "the document" : path_, what));
+  }
+
+  void allow_only(std::initializer_list<std::string_view> keys) const {
+    require(value_.is_object(), "must be an object");
+    for (const auto& [key, unused] : value_.items()) {
+      if (std::ranges::find(keys, key) == keys.end()) refuse(fmt::format("has the unknown field '{}'; known are: {}", key, fmt::join(keys, ", ")));
+    }
+  }
+  bool has(const std::string& key) const { return value_.contains(key); }
+  Field at(const std::string& key) const {
+    if (!has(key)) refuse(fmt::format("lacks the field '{}'", key));
+    return {value_.at(key), path_.empty() ? key : path_ + "." + key};
+  }
+  std::vector<Field> elements() const {
+    require(value_.is_array(), "must be an array");
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < value_.size(); ++i) fields.emplace_back(value_[i], fmt::format("{}[{}]", path_, i));
+    return fields;
+  }
+  bool is_null() const { return value_.is_null(); }
+  bool is_object() const { return value_.is_object(); }
+  std::string text() const {
+    require(value_.is_string(), "must be a string");
+    return value_.get<std::string>();
+  }
+  double number(double low, double high) const {
+    require(value_.is_number(), "must be a number");
+    const auto number = value_.get<double>();
+    if (!(number >= low && number <= high)) refuse(fmt::format("is {}; it must lie within {} to {}", number, low, high));
+    return number;
+  }
+  std::string one_of(std::initializer_list<std::string_view> words) const {
+    const std::string word = text();
+    if (std::ranges::find(words, word) == words.end()) refuse(fmt::format("is '{}'; it must be one of: {}", word, fmt::join(words, ", ")));
+    return word;
+  }
+
+ private:
+  void require(bool condition, std::string_view what) const {
+    if (!condition) refuse(std::string(what));
+  }
+  const json& value_;
+  std::string path_;
+};
+
+constexpr double kMaxFootprintM = 10'000.0;
+constexpr double kMaxCount = 1e6;
+
+ManifestMap parse_map(const Field& field, const std::filesystem::path& directory) {
+  field.allow_only({"name", "sources"});
+  ManifestMap map;
+  map.name = field.at("name").text();
+  for (const Field& source : field.at("sources").elements()) {
+    source.allow_only({"path", "as"});
+    map.sources.push_back({directory / source.at("path").text(), source.at("as").one_of({"imagery", "roads"})});
+  }
+  if (map.sources.empty()) field.refuse("has no sources");
+  return map;
+}
+
+double optional_number(const Field& field, const std::string& key, double low, double high) {
+  return field.has(key) ? field.at(key).number(low, high) : 0.0;
+}
+
+Exclusion parse_exclusion(const Field& field) {
+  field.allow_only({"top", "bottom", "left", "right"});
+  const auto share = [&](const std::string& key) { return optional_number(field, key, 0.0, 0.9); };
+  return {share("top"), share("bottom"), share("left"), share("right")};
+}
+
+FeatureNoise parse_noise(const Field& field) {
+  field.allow_only({"erase", "invent", "shift_m"});
+  return {optional_number(field, "erase", 0.0, 1.0), optional_number(field, "invent", 0.0, 10.0),
+          optional_number(field, "shift_m", 0.0, 1000.0)};
+}
+
+void parse_footprint_and_count(const Field& field, QuerySet& set) {
+  const Field footprint = field.at("footprint_m");
+  const auto sides = footprint.elements();
+  if (sides.size() != 2) footprint.refuse("must be [width, height] in metres");
+  set.footprint = {sides[0].number(1.0, kMaxFootprintM), sides[1].number(1.0, kMaxFootprintM)};
+  set.count = static_cast<int>(field.at("count").number(1.0, kMaxCount));
+}
+
+QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
+  field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved"});
+  QuerySet set;
+  set.map = field.at("map").text();
+  if (std::ranges::none_of(manifest.maps, [&](const ManifestMap& map) { return map.name == set.map; })) {
+    field.at("map").refuse(fmt::format("names the map '{}', which is not among the maps", set.map));
+  }
+  if (field.has("image") == field.has("frames")) field.refuse("needs either 'image' or 'frames'");
+  if (field.has("frames")) {
+    set.kind = QuerySet::Kind::kFrames;
+    set.path = directory / field.at("frames").text();
+  } else {
+    set.kind = field.at("image").is_null() ? QuerySet::Kind::kSimulated : QuerySet::Kind::kImage;
+    if (set.kind == QuerySet::Kind::kImage) set.path = directory / field.at("image").text();
+    parse_footprint_and_count(field, set);
+  }
+  if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
+  if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
+  if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
+  if (field.has("prior") && field.at("prior").is_object()) {
+    field.at("prior").allow_only({"radius_m"});
+    set.prior_radius_m = field.at("prior").at("radius_m").number(1.0, 1e6);
+  } else if (field.has("prior")) {
+    field.at("prior").one_of({"map"});
+  }
+  return set;
+}
+
+json parse_text(std::string_view text) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw InvalidInput("manifest-json", fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));
+  }
+}
+
+}  // namespace
+
+Manifest parse_manifest(std::string_view text, const std::filesystem::path& directory) {
+  const json document = parse_text(text);
+  const Field root(document, "");
+  root.allow_only({"maps", "queries", "methods"});
+  Manifest manifest;
+  for (const Field& map : root.at("maps").elements()) manifest.maps.push_back(parse_map(map, directory));
+  for (const Field& set : root.at("queries").elements()) manifest.queries.push_back(parse_query_set(set, manifest, directory));
+  for (const Field& method : root.at("methods").elements()) manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
+  if (manifest.queries.empty()) root.refuse("has no queries");
+  if (manifest.methods.empty()) root.refuse("has no methods");
+  return manifest;
+}
+
+Manifest read_manifest(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw NotFound("manifest-missing", fmt::format("bench manifest {} cannot be opened", file.string()));
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return parse_manifest(text, file.parent_path());
+}
+
+}  // namespace roadfix::bench

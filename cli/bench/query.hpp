@@ -1,0 +1,35 @@
+// One question with its truth, and one method's answer to it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/detect/orthoimage.hpp"
+#include "core/locate/fix.hpp"
+
+namespace roadfix::bench {
+
+struct Query {
+  std::string id;                      ///< "adiyaman/0007" or the frame's file
+  std::optional<GroundImage> picture;  ///< in the body frame, nadir at its centre
+  std::optional<FeatureMap> features;  ///< instead of a picture where the query is simulated
+  GeoPose truth;
+  Prior prior;
+};
+
+struct Answer {
+  FixStatus status = FixStatus::kNoFix;
+  std::string reason;
+  std::optional<GeoPose> best;  ///< best guess, also where the status is not `fix`
+  double probability = 0.0;
+  double time_ms = 0.0;
+};
+
+/// What a method knows at the start; `answer` may be called from several threads.
+class Method {
+ public:
+  virtual ~Method() = default;
+  virtual Answer answer(const Query& query) const = 0;
+};
+
+}  // namespace roadfix::bench

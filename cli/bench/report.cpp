@@ -1,0 +1,129 @@
+#include "cli/bench/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+using nlohmann::json;
+
+const char* word(FixStatus status) {
+  switch (status) {
+    case FixStatus::kFix:
+      return "fix";
+    case FixStatus::kAmbiguous:
+      return "ambiguous";
+    case FixStatus::kNoFix:
+      return "no_fix";
+  }
+  return "";
+}
+
+json pose_json(const GeoPose& pose) {
+  return {{"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+}
+
+json number_or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json outcome_json(const Outcome& outcome) {
+  const Answer& answer = outcome.answer;
+  return {{"id", outcome.id},
+          {"truth", pose_json(outcome.truth)},
+          {"status", word(answer.status)},
+          {"reason", answer.reason},
+          {"answer", answer.best ? pose_json(*answer.best) : json(nullptr)},
+          {"probability", answer.probability},
+          {"error_m", number_or_null(outcome.error_m)},
+          {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
+          {"time_ms", answer.time_ms}};
+}
+
+std::string cell(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
+}
+
+}  // namespace
+
+Outcome judged(const std::string& id, const GeoPose& truth, Answer answer, const UtmZone& zone) {
+  Outcome outcome{id, truth, std::move(answer), {}, {}};
+  if (const auto& best = outcome.answer.best) {
+    outcome.error_m = distance_m(zone.project(best->position), zone.project(truth.position));
+    outcome.heading_error_deg = angular_distance(best->heading, truth.heading).degrees();
+  }
+  return outcome;
+}
+
+std::optional<double> quantile(std::vector<double> values, double p) {
+  if (values.empty()) return std::nullopt;
+  std::ranges::sort(values);
+  const double place = p * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const auto above = std::min(below + 1, values.size() - 1);
+  return std::lerp(values[below], values[above], place - static_cast<double>(below));
+}
+
+Figures figures(const std::vector<Outcome>& outcomes) {
+  Figures result;
+  result.n = static_cast<int>(outcomes.size());
+  std::vector<double> errors;
+  std::vector<double> heading_errors;
+  std::vector<double> times;
+  for (const Outcome& outcome : outcomes) {
+    times.push_back(outcome.answer.time_ms);
+    if (outcome.answer.status != FixStatus::kFix) continue;
+    ++result.answered;
+    errors.push_back(outcome.error_m.value());
+    heading_errors.push_back(outcome.heading_error_deg.value());
+    if (*outcome.error_m > kFalseFixM) ++result.false_fixes;
+  }
+  const auto recall = [&](double within_m) {
+    const auto hits = std::ranges::count_if(outcomes, [&](const Outcome& o) { return o.error_m && *o.error_m <= within_m; });
+    return outcomes.empty() ? 0.0 : static_cast<double>(hits) / static_cast<double>(outcomes.size());
+  };
+  result.recall_5 = recall(5.0);
+  result.recall_10 = recall(10.0);
+  result.recall_25 = recall(25.0);
+  result.recall_50 = recall(50.0);
+  result.median_error_m = quantile(errors, 0.5);
+  result.median_heading_error_deg = quantile(heading_errors, 0.5);
+  result.time_p50_ms = quantile(times, 0.5).value_or(0.0);
+  result.time_p95_ms = quantile(times, 0.95).value_or(0.0);
+  return result;
+}
+
+json to_json(const SetResult& result) {
+  const Figures f = figures(result.outcomes);
+  json queries = json::array();
+  for (const Outcome& outcome : result.outcomes) queries.push_back(outcome_json(outcome));
+  return {{"method", result.method},
+          {"map", result.map},
+          {"query_set", result.query_set},
+          {"n", f.n},
+          {"answered", f.answered},
+          {"recall", {{"5", f.recall_5}, {"10", f.recall_10}, {"25", f.recall_25}, {"50", f.recall_50}}},
+          {"false_fixes", f.false_fixes},
+          {"median_error_m", number_or_null(f.median_error_m)},
+          {"median_heading_error_deg", number_or_null(f.median_heading_error_deg)},
+          {"time_ms", {{"p50", f.time_p50_ms}, {"p95", f.time_p95_ms}}},
+          {"queries", queries}};
+}
+
+std::string to_table(const std::vector<SetResult>& results) {
+  std::string table = fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n", "method", "map",
+                                  "queries", "n", "answered", "r@5", "r@10", "r@25", "r@50", "false", "med. m", "med. deg",
+                                  "p50 ms", "p95 ms");
+  for (const SetResult& result : results) {
+    const Figures f = figures(result.outcomes);
+    table += fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
+                         result.method, result.map, result.query_set, f.n, f.answered, f.recall_5, f.recall_10, f.recall_25,
+                         f.recall_50, f.false_fixes, cell(f.median_error_m, 1), cell(f.median_heading_error_deg, 2), f.time_p50_ms,
+                         f.time_p95_ms);
+  }
+  return table;
+}
+
+}  // namespace roadfix::bench

@@ -1,0 +1,54 @@
+// Figures of one method over one set of queries, as text and as the JSON of docs/bench.md.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/bench/query.hpp"
+
+namespace roadfix::bench {
+
+inline constexpr double kFalseFixM = 25.0;  ///< a `fix` further off than this is a false one
+
+struct Outcome {
+  std::string id;
+  GeoPose truth;
+  Answer answer;
+  std::optional<double> error_m;  ///< of the best guess, whatever the status
+  std::optional<double> heading_error_deg;
+};
+
+/// Errors of an answer, in the plane of the zone.
+Outcome judged(const std::string& id, const GeoPose& truth, Answer answer, const UtmZone& zone);
+
+struct Figures {
+  int n = 0;
+  int answered = 0;  ///< status `fix`
+  double recall_5 = 0.0;
+  double recall_10 = 0.0;
+  double recall_25 = 0.0;
+  double recall_50 = 0.0;
+  int false_fixes = 0;
+  std::optional<double> median_error_m;            ///< of the answered
+  std::optional<double> median_heading_error_deg;  ///< of the answered
+  double time_p50_ms = 0.0;
+  double time_p95_ms = 0.0;
+};
+
+Figures figures(const std::vector<Outcome>& outcomes);
+
+/// p in [0, 1]; linear between order statistics; nullopt for no values.
+std::optional<double> quantile(std::vector<double> values, double p);
+
+struct SetResult {
+  std::string method;
+  std::string map;
+  std::string query_set;  ///< file name of the imagery or frames, or "simulated", and the footprint
+  std::vector<Outcome> outcomes;
+};
+
+nlohmann::json to_json(const SetResult& result);
+std::string to_table(const std::vector<SetResult>& results);
+
+}  // namespace roadfix::bench

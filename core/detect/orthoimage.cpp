@@ -1,0 +1,49 @@
+#include "core/detect/orthoimage.hpp"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace roadfix {
+
+GridBox Orthoimage::box() const {
+  return {{north_west.east_m, north_west.north_m - image.pixels.rows * image.gsd_m},
+          {north_west.east_m + image.pixels.cols * image.gsd_m, north_west.north_m}};
+}
+
+std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pose) {
+  const double c = cos(pose.heading);
+  const double s = sin(pose.heading);
+  const auto placed = [&](double right, double forward) {
+    return GridPoint{pose.position.east_m + c * right + s * forward, pose.position.north_m - s * right + c * forward};
+  };
+  const double w = footprint.width_m / 2.0;
+  const double h = footprint.height_m / 2.0;
+  return {placed(-w, h), placed(w, h), placed(w, -h), placed(-w, -h)};
+}
+
+GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footprint& footprint, double gsd_m) {
+  const GroundImage& from = imagery.image;
+  const cv::Size size(static_cast<int>(std::lround(footprint.width_m / gsd_m)),
+                      static_cast<int>(std::lround(footprint.height_m / gsd_m)));
+  const double step = gsd_m / from.gsd_m;
+  const double c = step * cos(pose.heading);
+  const double s = step * sin(pose.heading);
+  // Pixel centres: source = at + R (target - centre), with OpenCV's integer coordinates at pixel centres.
+  const double at_x = (pose.position.east_m - imagery.north_west.east_m) / from.gsd_m - 0.5;
+  const double at_y = (imagery.north_west.north_m - pose.position.north_m) / from.gsd_m - 0.5;
+  const double centre_x = size.width / 2.0 - 0.5;
+  const double centre_y = size.height / 2.0 - 0.5;
+  const cv::Matx23d source_from_target(c, -s, at_x - c * centre_x + s * centre_y,  //
+                                       s, c, at_y - s * centre_x - c * centre_y);
+  // A coarser picture must average, not skip, the pixels below it.
+  cv::Mat pixels = from.pixels;
+  if (step > 1.0) cv::GaussianBlur(from.pixels, pixels, {}, 0.5 * std::sqrt(step * step - 1.0));
+  GroundImage cut;
+  cut.gsd_m = gsd_m;
+  cv::warpAffine(pixels, cut.pixels, source_from_target, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  cv::warpAffine(from.observed, cut.observed, source_from_target, size, cv::INTER_NEAREST | cv::WARP_INVERSE_MAP,
+                 cv::BORDER_CONSTANT, cv::Scalar(0));
+  return cut;
+}
+
+}  // namespace roadfix

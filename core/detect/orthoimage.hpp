@@ -1,0 +1,32 @@
+// Imagery that lies on the plane of a UTM zone, and what a UAV above it would see.
+#pragma once
+
+#include <array>
+
+#include "core/detect/road_detector.hpp"
+#include "core/units/planar.hpp"
+
+namespace roadfix {
+
+/// North-up imagery: pixel (0, 0) has its outer corner at `north_west`, rows run south.
+struct Orthoimage {
+  GroundImage image;
+  GridPoint north_west;
+
+  GridBox box() const;
+};
+
+/// A rectangle on the ground in the body frame: width across, height along the direction of travel.
+struct Footprint {
+  double width_m = 0.0;
+  double height_m = 0.0;
+};
+
+/// Corners of the footprint placed at the pose: front left, front right, back right, back left.
+std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pose);
+
+/// The ground under the footprint as a picture in the body frame (row 0 = forward edge), pose at its centre.
+/// Pixels beyond the imagery are unobserved.
+GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footprint& footprint, double gsd_m);
+
+}  // namespace roadfix

@@ -1,0 +1,48 @@
+#include "cli/bench/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+const UtmZone kZone = UtmZone::containing({37.76, 38.28});
+
+Outcome outcome(FixStatus status, double error_m, double heading_error_deg) {
+  const GridPoint truth = kZone.project({37.76, 38.28});
+  Answer answer;
+  answer.status = status;
+  answer.best = GeoPose{kZone.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
+  return judged("q", {kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
+}
+
+TEST(Figures, CountRecallOverAllAndErrorsOverTheAnswered) {
+  const std::vector<Outcome> outcomes = {outcome(FixStatus::kFix, 3.0, 1.0), outcome(FixStatus::kFix, 40.0, 15.0),
+                                         outcome(FixStatus::kAmbiguous, 8.0, 2.0), judged("none", {}, Answer{}, kZone)};
+  const Figures f = figures(outcomes);
+  EXPECT_EQ(f.n, 4);
+  EXPECT_EQ(f.answered, 2);
+  EXPECT_EQ(f.false_fixes, 1);
+  EXPECT_EQ(f.recall_5, 0.25);
+  EXPECT_EQ(f.recall_10, 0.5);
+  EXPECT_EQ(f.recall_25, 0.5);
+  EXPECT_EQ(f.recall_50, 0.75);
+  EXPECT_NEAR(*f.median_error_m, 21.5, 1e-6);
+  EXPECT_NEAR(*f.median_heading_error_deg, 8.0, 1e-6);
+}
+
+TEST(Figures, OfNothingHaveNoMedian) {
+  EXPECT_FALSE(figures({}).median_error_m);
+  EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);
+}
+
+TEST(Quantile, LiesBetweenTheOrderStatistics) {
+  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
+  EXPECT_EQ(quantile({1.0, 2.0}, 0.5), 1.5);
+  EXPECT_EQ(quantile({5.0}, 0.95), 5.0);
+  EXPECT_FALSE(quantile({}, 0.5));
+}
+
+}  // namespace
+}  // namespace roadfix::bench

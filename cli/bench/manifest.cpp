@@ -21,13 +21,15 @@ class Field {
   Field(const json& value, std::string path) : value_(value), path_(std::move(path)) {}
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InvalidInput("manifest-field", fmt::format("bench manifest: {} {}", path_.empty() ? "the document" : path_, what));
+    throw InvalidInput("manifest-field",
+                       fmt::format("bench manifest: {} {}", path_.empty() ? "the document" : path_, what));
   }
 
   void allow_only(std::initializer_list<std::string_view> keys) const {
     require(value_.is_object(), "must be an object");
     for (const auto& [key, unused] : value_.items()) {
-      if (std::ranges::find(keys, key) == keys.end()) refuse(fmt::format("has the unknown field '{}'; known are: {}", key, fmt::join(keys, ", ")));
+      if (std::ranges::find(keys, key) == keys.end())
+        refuse(fmt::format("has the unknown field '{}'; known are: {}", key, fmt::join(keys, ", ")));
     }
   }
   bool has(const std::string& key) const { return value_.contains(key); }
@@ -50,12 +52,14 @@ class Field {
   double number(double low, double high) const {
     require(value_.is_number(), "must be a number");
     const auto number = value_.get<double>();
-    if (!(number >= low && number <= high)) refuse(fmt::format("is {}; it must lie within {} to {}", number, low, high));
+    if (!(number >= low && number <= high))
+      refuse(fmt::format("is {}; it must lie within {} to {}", number, low, high));
     return number;
   }
   std::string one_of(std::initializer_list<std::string_view> words) const {
     const std::string word = text();
-    if (std::ranges::find(words, word) == words.end()) refuse(fmt::format("is '{}'; it must be one of: {}", word, fmt::join(words, ", ")));
+    if (std::ranges::find(words, word) == words.end())
+      refuse(fmt::format("is '{}'; it must be one of: {}", word, fmt::join(words, ", ")));
     return word;
   }
 
@@ -138,7 +142,8 @@ json parse_text(std::string_view text) {
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    throw InvalidInput("manifest-json", fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));
+    throw InvalidInput("manifest-json",
+                       fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));
   }
 }
 
@@ -150,8 +155,10 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
   root.allow_only({"maps", "queries", "methods"});
   Manifest manifest;
   for (const Field& map : root.at("maps").elements()) manifest.maps.push_back(parse_map(map, directory));
-  for (const Field& set : root.at("queries").elements()) manifest.queries.push_back(parse_query_set(set, manifest, directory));
-  for (const Field& method : root.at("methods").elements()) manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
+  for (const Field& set : root.at("queries").elements())
+    manifest.queries.push_back(parse_query_set(set, manifest, directory));
+  for (const Field& method : root.at("methods").elements())
+    manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
   if (manifest.queries.empty()) root.refuse("has no queries");
   if (manifest.methods.empty()) root.refuse("has no methods");
   return manifest;

@@ -1,4 +1,5 @@
-// Poses of queries: uniform over place and heading, such that the whole footprint was seen by the imagery and by the map.
+// Poses of queries: uniform over place and heading, such that the whole footprint was seen by the imagery and by the
+// map.
 #pragma once
 
 #include <functional>
@@ -13,9 +14,9 @@ namespace roadfix::bench {
 using Observed = std::function<bool(GridPoint)>;
 
 struct PoseSampling {
-  GridBox region;      ///< where the footprint must lie entirely
+  GridBox region;  ///< where the footprint must lie entirely
   Footprint footprint;
-  Observed observed;   ///< must hold on a 16 x 16 lattice of points over the footprint
+  Observed observed;  ///< must hold on a 16 x 16 lattice of points over the footprint
 };
 
 /// Part of the box that remains after the excluded shares of its sides.

@@ -24,7 +24,8 @@ const char* word(FixStatus status) {
 }
 
 json pose_json(const GeoPose& pose) {
-  return {{"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+  return {
+      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
 }
 
 json number_or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
@@ -81,7 +82,8 @@ Figures figures(const std::vector<Outcome>& outcomes) {
     if (*outcome.error_m > kFalseFixM) ++result.false_fixes;
   }
   const auto recall = [&](double within_m) {
-    const auto hits = std::ranges::count_if(outcomes, [&](const Outcome& o) { return o.error_m && *o.error_m <= within_m; });
+    const auto hits =
+        std::ranges::count_if(outcomes, [&](const Outcome& o) { return o.error_m && *o.error_m <= within_m; });
     return outcomes.empty() ? 0.0 : static_cast<double>(hits) / static_cast<double>(outcomes.size());
   };
   result.recall_5 = recall(5.0);
@@ -113,15 +115,15 @@ json to_json(const SetResult& result) {
 }
 
 std::string to_table(const std::vector<SetResult>& results) {
-  std::string table = fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n", "method", "map",
-                                  "queries", "n", "answered", "r@5", "r@10", "r@25", "r@50", "false", "med. m", "med. deg",
-                                  "p50 ms", "p95 ms");
+  std::string table = fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n",
+                                  "method", "map", "queries", "n", "answered", "r@5", "r@10", "r@25", "r@50", "false",
+                                  "med. m", "med. deg", "p50 ms", "p95 ms");
   for (const SetResult& result : results) {
     const Figures f = figures(result.outcomes);
     table += fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
-                         result.method, result.map, result.query_set, f.n, f.answered, f.recall_5, f.recall_10, f.recall_25,
-                         f.recall_50, f.false_fixes, cell(f.median_error_m, 1), cell(f.median_heading_error_deg, 2), f.time_p50_ms,
-                         f.time_p95_ms);
+                         result.method, result.map, result.query_set, f.n, f.answered, f.recall_5, f.recall_10,
+                         f.recall_25, f.recall_50, f.false_fixes, cell(f.median_error_m, 1),
+                         cell(f.median_heading_error_deg, 2), f.time_p50_ms, f.time_p95_ms);
   }
   return table;
 }

@@ -40,7 +40,8 @@ GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footp
   if (step > 1.0) cv::GaussianBlur(from.pixels, pixels, {}, 0.5 * std::sqrt(step * step - 1.0));
   GroundImage cut;
   cut.gsd_m = gsd_m;
-  cv::warpAffine(pixels, cut.pixels, source_from_target, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  cv::warpAffine(pixels, cut.pixels, source_from_target, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                 cv::BORDER_REPLICATE);
   cv::warpAffine(from.observed, cut.observed, source_from_target, size, cv::INTER_NEAREST | cv::WARP_INVERSE_MAP,
                  cv::BORDER_CONSTANT, cv::Scalar(0));
   return cut;

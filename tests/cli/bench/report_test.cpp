@@ -13,7 +13,8 @@ Outcome outcome(FixStatus status, double error_m, double heading_error_deg) {
   const GridPoint truth = kZone.project({37.76, 38.28});
   Answer answer;
   answer.status = status;
-  answer.best = GeoPose{kZone.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
+  answer.best =
+      GeoPose{kZone.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
   return judged("q", {kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
 }
 

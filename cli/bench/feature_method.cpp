@@ -1,0 +1,137 @@
+#include "cli/bench/feature_method.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+constexpr int kMinInliers = 15;
+constexpr double kLowestScale = 0.8;
+constexpr double kHighestScale = 1.25;
+constexpr float kLoweRatio = 0.75F;
+constexpr double kReprojectionPx = 4.0;
+constexpr int kOrbPointsPerMegapixel = 4000;
+
+struct Keypoints {
+  std::vector<cv::Point2f>
+      points;  ///< of the map: metres east and *south* of the first imagery's corner; of a frame: pixels
+  cv::Mat descriptors;
+};
+
+cv::Ptr<cv::Feature2D> make_detector(FeatureKind kind, const cv::Size& size) {
+  if (kind == FeatureKind::kSift) return cv::SIFT::create();
+  const double megapixels = static_cast<double>(size.area()) / 1e6;
+  return cv::ORB::create(std::max(500, static_cast<int>(kOrbPointsPerMegapixel * megapixels)));
+}
+
+Keypoints detect(FeatureKind kind, const GroundImage& image) {
+  cv::Mat grey = image.pixels;
+  if (grey.channels() == 3) cv::cvtColor(image.pixels, grey, cv::COLOR_BGR2GRAY);
+  std::vector<cv::KeyPoint> found;
+  Keypoints result;
+  make_detector(kind, grey.size())->detectAndCompute(grey, image.observed, found, result.descriptors);
+  cv::KeyPoint::convert(found, result.points);
+  return result;
+}
+
+std::vector<cv::DMatch> good_matches(FeatureKind kind, const cv::Mat& query, const cv::Mat& train) {
+  if (query.rows < 2 || train.rows < 2) return {};
+  std::vector<std::vector<cv::DMatch>> pairs;
+  if (kind == FeatureKind::kSift) {
+    cv::FlannBasedMatcher().knnMatch(query, train, pairs, 2);
+  } else {
+    cv::BFMatcher(cv::NORM_HAMMING).knnMatch(query, train, pairs, 2);
+  }
+  std::vector<cv::DMatch> good;
+  for (const auto& pair : pairs) {
+    if (pair.size() == 2 && pair[0].distance < kLoweRatio * pair[1].distance) good.push_back(pair[0]);
+  }
+  return good;
+}
+
+class FeatureMethod : public Method {
+ public:
+  FeatureMethod(FeatureKind kind, const std::vector<Orthoimage>& imagery, const UtmZone& zone)
+      : kind_(kind), zone_(zone), origin_(imagery.front().north_west) {
+    for (const Orthoimage& ortho : imagery) add(ortho);
+  }
+
+  Answer answer(const Query& query) const override {
+    const auto start = std::chrono::steady_clock::now();
+    Answer result;
+    if (query.picture) {
+      place(*query.picture, result);
+    } else {
+      result.reason = "no-picture";
+    }
+    result.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  }
+
+ private:
+  void add(const Orthoimage& ortho) {
+    const Keypoints found = detect(kind_, ortho.image);
+    for (const cv::Point2f point : found.points) {
+      const double east = ortho.north_west.east_m + (static_cast<double>(point.x) + 0.5) * ortho.image.gsd_m;
+      const double north = ortho.north_west.north_m - (static_cast<double>(point.y) + 0.5) * ortho.image.gsd_m;
+      map_.points.emplace_back(static_cast<float>(east - origin_.east_m), static_cast<float>(origin_.north_m - north));
+    }
+    if (!found.descriptors.empty()) map_.descriptors.push_back(found.descriptors);
+  }
+
+  void place(const GroundImage& picture, Answer& result) const {
+    const Keypoints frame = detect(kind_, picture);
+    std::vector<cv::Point2f> from;
+    std::vector<cv::Point2f> to;
+    for (const cv::DMatch& match : good_matches(kind_, frame.descriptors, map_.descriptors)) {
+      from.push_back(frame.points[static_cast<std::size_t>(match.queryIdx)]);
+      to.push_back(map_.points[static_cast<std::size_t>(match.trainIdx)]);
+    }
+    result.reason = "too-few-matches";
+    if (from.size() < 3) return;
+    cv::Mat inliers;
+    const cv::Mat similarity =
+        cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kReprojectionPx * picture.gsd_m, 5000);
+    if (similarity.empty()) return;
+    const cv::Matx23d map_from_frame = similarity;
+    const double scale = std::hypot(map_from_frame(0, 0), map_from_frame(1, 0)) / picture.gsd_m;
+    if (scale < kLowestScale || scale > kHighestScale) {
+      result.reason = "wrong-scale";
+      return;
+    }
+    result.best = pose_of(map_from_frame, picture);
+    const int count = cv::countNonZero(inliers);
+    result.probability = static_cast<double>(count) / static_cast<double>(from.size());
+    if (count < kMinInliers) return;
+    result.status = FixStatus::kFix;
+    result.reason.clear();
+  }
+
+  /// The plane of the keypoints has rows running south, so its rotation is the compass heading.
+  GeoPose pose_of(const cv::Matx23d& map_from_frame, const GroundImage& picture) const {
+    const cv::Vec2d centre =
+        map_from_frame * cv::Vec3d(picture.pixels.cols / 2.0 - 0.5, picture.pixels.rows / 2.0 - 0.5, 1.0);
+    const GridPoint position{origin_.east_m + centre[0], origin_.north_m - centre[1]};
+    const Angle grid_heading = Angle::radians(std::atan2(map_from_frame(1, 0), map_from_frame(0, 0)));
+    return {zone_.unproject(position), zone_.true_from_grid(grid_heading, position)};
+  }
+
+  FeatureKind kind_;
+  UtmZone zone_;
+  GridPoint origin_;
+  Keypoints map_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_feature_method(FeatureKind kind, const std::vector<Orthoimage>& imagery,
+                                            const UtmZone& zone) {
+  return std::make_unique<FeatureMethod>(kind, imagery, zone);
+}
+
+}  // namespace roadfix::bench

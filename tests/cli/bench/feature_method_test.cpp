@@ -1,0 +1,47 @@
+#include "cli/bench/feature_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+const UtmZone kZone = UtmZone::containing({37.76, 38.28});
+
+/// Random discs of random brightness: full of keypoints, alike nowhere.
+Orthoimage textured(unsigned seed) {
+  cv::RNG rng(seed);
+  cv::Mat picture(800, 800, CV_8UC3, cv::Scalar::all(120));
+  for (int i = 0; i < 1500; ++i) {
+    cv::circle(picture, {rng.uniform(0, 800), rng.uniform(0, 800)}, rng.uniform(2, 14),
+               cv::Scalar::all(rng.uniform(0, 255)), cv::FILLED);
+  }
+  return {{picture, cv::Mat(800, 800, CV_8UC1, cv::Scalar(255)), 0.5}, kZone.project({37.76, 38.28})};
+}
+
+class FeatureMethods : public ::testing::TestWithParam<FeatureKind> {};
+
+TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
+  const Orthoimage ortho = textured(1);
+  const auto method = make_feature_method(GetParam(), {ortho}, kZone);
+  const GridPose truth{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(37)};
+  Query query;
+  query.picture = cut_out(ortho, truth, {150, 150}, 0.5);
+  const Answer answer = method->answer(query);
+  ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
+  EXPECT_LT(distance_m(kZone.project(answer.best->position), truth.position), 0.5);
+  EXPECT_LT(angular_distance(answer.best->heading, kZone.true_from_grid(truth.heading, truth.position)).degrees(), 0.3);
+}
+
+TEST_P(FeatureMethods, GiveNoFixOnOtherImagery) {
+  const auto method = make_feature_method(GetParam(), {textured(1)}, kZone);
+  Query query;
+  query.picture = textured(2).image;
+  EXPECT_EQ(method->answer(query).status, FixStatus::kNoFix);
+}
+
+INSTANTIATE_TEST_SUITE_P(SiftAndOrb, FeatureMethods, ::testing::Values(FeatureKind::kSift, FeatureKind::kOrb));
+
+}  // namespace
+}  // namespace roadfix::bench

@@ -1,0 +1,11 @@
+// The files of schema/, embedded when the build is configured.
+#pragma once
+
+#include <string_view>
+
+namespace roadfix::schema {
+
+/// Statements that make the tables of an empty map file (schema/map.sql).
+std::string_view map_sql();
+
+}  // namespace roadfix::schema

@@ -1,1 +1,170 @@
 #include "tiles/store/map_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+#include "tiles/store/map_file.hpp"
+#include "tiles/store/tile_cache.hpp"
+#include "tiles/store/tile_matrix.hpp"
+#include "tiles/store/tile_png.hpp"
+
+namespace roadfix {
+namespace {
+
+using sqlite::Access;
+using sqlite::Connection;
+using sqlite::Statement;
+
+/// A connection with its prepared query serves one thread at a time.
+struct Channel {
+  explicit Channel(Connection connection)
+      : map(std::make_unique<Connection>(std::move(connection))),
+        select(*map,
+               "SELECT tile_data FROM road_probability WHERE zoom_level = ?1 AND tile_column = ?2 AND tile_row = ?3") {}
+  std::unique_ptr<Connection> map;
+  Statement select;
+};
+
+TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
+  if (!on_lattice(tile, zoom)) return nullptr;
+  if (!channel.select.with(zoom, tile.col, tile_row(tile, zoom)).step()) return nullptr;
+  try {
+    auto cells = std::make_shared<const CellArray>(decode_tile(channel.select.blob(0), TileDepth::kFused));
+    channel.select.reset();
+    return cells;
+  } catch (const CorruptData& error) {
+    channel.select.reset();
+    throw CorruptData(error.code(),
+                      fmt::format("{}: tile zoom {} column {} row {} is damaged: {}. roadfix verify lists "
+                                  "all damage",
+                                  channel.map->path().string(), zoom, tile.col, tile_row(tile, zoom), error.what()));
+  }
+}
+
+}  // namespace
+
+struct MapReader::State {
+  State(const std::filesystem::path& file, std::size_t cache_bytes) : path(file), cache(cache_bytes) {
+    Channel first(open_map(path, Access::kRead));
+    info = read_info(*first.map);
+    idle.push_back(std::move(first));
+  }
+
+  /// Runs `use` on a channel of its own; as many are opened as threads read at once.
+  template <typename Use>
+  auto with_channel(const Use& use) {
+    Channel channel = take();
+    auto result = recovering(channel, use);
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(channel));
+    return result;
+  }
+
+  Channel take() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) {
+        Channel channel = std::move(idle.back());
+        idle.pop_back();
+        return channel;
+      }
+    }
+    return Channel(open_map(path, Access::kRead));
+  }
+
+  /// A writer may be killed while we read.
+  template <typename Use>
+  auto recovering(Channel& channel, const Use& use) {
+    try {
+      return use(channel);
+    } catch (const IoFailure& error) {
+      if (error.code() != sqlite::kNeedsRecovery) throw;
+      recover_map(path);
+      return use(channel);
+    }
+  }
+
+  int zoom(int level) const { return zoom_of(info->settings.cell_m) - level; }
+
+  TileCache::Tile tile(int level, TileIndex index) {
+    return cache.get({level, index}, [&] {
+      return with_channel([&](Channel& channel) { return load_tile(channel, index, zoom(level)); });
+    });
+  }
+
+  std::filesystem::path path;
+  std::optional<MapInfo> info;
+  TileCache cache;
+  std::mutex mutex;
+  std::vector<Channel> idle;
+};
+
+MapReader::MapReader(const std::filesystem::path& path, std::size_t cache_bytes)
+    : state_(std::make_unique<State>(path, cache_bytes)) {}
+MapReader::~MapReader() = default;
+MapReader::MapReader(MapReader&&) noexcept = default;
+MapReader& MapReader::operator=(MapReader&&) noexcept = default;
+
+const MapInfo& MapReader::info() const { return *state_->info; }
+
+std::string MapReader::version_now() const {
+  return state_->with_channel([](Channel& channel) { return read_version(*channel.map); });
+}
+
+RoadGrid MapReader::read(const GridGeometry& geometry) const {
+  const double ratio = geometry.cell_m / info().settings.cell_m;
+  int exponent = 0;
+  if (!(ratio >= 1.0) || std::frexp(ratio, &exponent) != 0.5 || geometry.cell_m > cell_of_zoom(0)) {
+    throw InvalidInput("cell-size-not-in-map",
+                       fmt::format("{}: it has cells of {} m times a power of two, up to 4096 m; {} m is none of them",
+                                   state_->path.string(), info().settings.cell_m, geometry.cell_m));
+  }
+  const int level = exponent - 1;
+  if (level >= info().levels) {
+    const GridGeometry finer{geometry.cell_m / 2.0,
+                             {2 * geometry.origin.col, 2 * geometry.origin.row},
+                             2 * geometry.cols,
+                             2 * geometry.rows};
+    return {geometry, halved(read(finer).cells)};
+  }
+  RoadGrid grid = RoadGrid::unobserved(geometry);
+  for (const TileIndex index : tiles_covering(geometry)) {
+    const auto tile = state_->tile(level, index);
+    if (tile == nullptr) continue;
+    paste(*tile, grid.cells, index.col * kTileCells - geometry.origin.col,
+          index.row * kTileCells - geometry.origin.row);
+  }
+  return grid;
+}
+
+std::optional<CellArray> MapReader::tile(int level, TileIndex index) const {
+  assert(level >= 0 && level < info().levels);
+  const auto tile = state_->tile(level, index);
+  return tile == nullptr ? std::nullopt : std::optional(*tile);
+}
+
+std::vector<TileIndex> MapReader::tiles(int level) const {
+  assert(level >= 0 && level < info().levels);
+  const int zoom = state_->zoom(level);
+  return state_->with_channel([&](Channel& channel) {
+    Statement select(*channel.map,
+                     "SELECT tile_column, tile_row FROM road_probability WHERE zoom_level = ?1 ORDER BY tile_row, "
+                     "tile_column");
+    select.with(zoom);
+    std::vector<TileIndex> tiles;
+    while (select.step()) {
+      tiles.push_back({static_cast<int>(select.integer(0)), index_row(static_cast<int>(select.integer(1)), zoom)});
+    }
+    return tiles;
+  });
+}
+
+std::size_t MapReader::cached_bytes() const { return state_->cache.bytes(); }
+
+}  // namespace roadfix

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/grid/road_grid.hpp"
 #include "tiles/store/map_records.hpp"
@@ -14,19 +15,29 @@ namespace roadfix {
 class MapReader {
  public:
   /// `cache_bytes` bounds the decoded tiles that are kept in memory.
-  /// Throws NotFound, CorruptData (cut off, corrupt) or InvalidInput ("map-not-ours", "map-from-newer-version").
+  /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
+  /// ("map-not-ours", "map-from-newer-version") or IoFailure.
   explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20);
   ~MapReader();
   MapReader(MapReader&&) noexcept;
   MapReader& operator=(MapReader&&) noexcept;
 
+  /// As it was when the map was opened. Tiles are read when they are asked for and kept: while a writer changes the
+  /// map, a reader may see old and new ones. Open a new reader when version_now() differs from info().version.
   const MapInfo& info() const;
-  /// Fused cells; geometry.cell_m = settings.cell_m * 2^level, 0 <= level < levels (coarser ones are made from the
-  /// last). Unobserved where the map has none. Thread-safe. Throws CorruptData naming the tile.
+  /// The version that the file has now; one small query. Thread-safe.
+  std::string version_now() const;
+
+  /// Fused cells; geometry.cell_m = settings.cell_m * 2^level with level >= 0, at most 4096 m (levels that the file
+  /// does not hold are made from its coarsest). Unobserved where the map has none. Thread-safe. Throws InvalidInput
+  /// ("cell-size-not-in-map") or CorruptData naming the tile.
   RoadGrid read(const GridGeometry& geometry) const;
-  /// nullopt where the map has no such tile.
+  /// 0 <= level < info().levels, 0 is the finest. nullopt where the map has no such tile (nothing observed).
   std::optional<CellArray> tile(int level, TileIndex index) const;
+  /// Row by row from the north-west.
   std::vector<TileIndex> tiles(int level) const;
+
+  std::size_t cached_bytes() const;
 
  private:
   struct State;

@@ -29,6 +29,7 @@ std::vector<TileIndex> tiles_covering(const GridGeometry& geometry);
 struct MapSettings {
   UtmZone zone;
   double cell_m = 2.0;
+  friend bool operator==(const MapSettings&, const MapSettings&) = default;
 };
 
 /// An ingested source and where it came from. `name` is its key: ingesting the same name again replaces it.
@@ -44,22 +45,24 @@ struct SourceRecord {
   double registration_sigma_m = 0.0;
 };
 
+/// A name occurs twice while a source is being replaced: the complete one is in force until the other is complete.
 struct SourceStatus {
   SourceRecord record;
   bool complete = false;
   std::int64_t blocks_total = 0;
   std::int64_t blocks_done = 0;
-  std::string ingested_at;  ///< RFC 3339, empty while incomplete
+  std::string ingested_at = {};  ///< RFC 3339, empty while incomplete
 };
 
 struct MapInfo {
   MapSettings settings;
-  std::string version;  ///< changes whenever a fused cell changes
+  std::string version = {};  ///< changes whenever a fused cell changes
   int schema_version = 0;
-  GridBox extent;          ///< of the observed cells
-  std::int64_t tiles = 0;  ///< of the finest level
-  int levels = 0;          ///< finest level and overviews
-  std::vector<SourceStatus> sources;
+  GridBox extent = {};       ///< of the observed cells; empty() for a map without any
+  std::int64_t tiles = 0;    ///< of the finest level
+  int levels = 0;            ///< finest level and overviews, down to cells of 256 m
+  std::int64_t pending = 0;  ///< tiles of all levels that wait to be fused: an ingest was interrupted
+  std::vector<SourceStatus> sources = {};
 };
 
 }  // namespace roadfix

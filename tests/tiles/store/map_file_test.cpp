@@ -1,0 +1,132 @@
+#include "tiles/store/map_file.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::ingest;
+using testing::settings_37n;
+using testing::some_blocks;
+using testing::TemporaryFolder;
+
+class MapFile : public ::testing::Test {
+ protected:
+  MapFile() : path(folder / "m.gpkg") {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"a", 1, some_blocks(2)});
+  }
+
+  void execute(const char* sql) { sqlite::Connection(path, sqlite::Access::kReadWrite).execute(sql); }
+
+  /// Code of the error that opening (and reading everything) ends in.
+  std::string opened() const {
+    try {
+      const MapReader reader(path);
+      for (const TileIndex tile : reader.tiles(0)) reader.tile(0, tile);
+      return "whole";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(path.string()));
+      return error.code();
+    }
+  }
+
+  TemporaryFolder folder;
+  fs::path path;
+};
+
+TEST_F(MapFile, AMissingOneIsNotFound) {
+  fs::remove(path);
+  EXPECT_EQ(opened(), "map-not-found");
+}
+
+TEST_F(MapFile, AFolderIsNotOne) {
+  fs::remove(path);
+  fs::create_directory(path);
+  EXPECT_EQ(opened(), "map-not-ours");
+}
+
+TEST_F(MapFile, AnEmptyOneIsRefused) {
+  fs::resize_file(path, 0);
+  EXPECT_EQ(opened(), "map-empty-file");
+  EXPECT_THROW(MapWriter(path, settings_37n()), CorruptData);
+}
+
+TEST_F(MapFile, AnythingElseIsNotOurs) {
+  std::ofstream(path, std::ios::trunc) << "<html>" << std::string(5000, 'x');
+  EXPECT_EQ(opened(), "map-not-ours");
+}
+
+TEST_F(MapFile, ADatabaseThatIsNoGeoPackageIsNotOurs) {
+  execute("PRAGMA application_id = 7");
+  EXPECT_EQ(opened(), "map-not-ours");
+}
+
+TEST_F(MapFile, AGeoPackageOfAnotherProgramIsNotOurs) {
+  execute("DROP TABLE roadfix_meta");
+  EXPECT_EQ(opened(), "map-not-ours");
+}
+
+TEST_F(MapFile, OneFromANewerVersionSaysSo) {
+  execute("UPDATE roadfix_meta SET value = '2' WHERE key = 'schema_version'");
+  EXPECT_EQ(opened(), "map-from-newer-version");
+}
+
+TEST_F(MapFile, DamagedSettingsAreFound) {
+  for (const char* sql :
+       {"UPDATE roadfix_meta SET value = '3.5' WHERE key = 'cell_m'",
+        "UPDATE roadfix_meta SET value = '4326' WHERE key = 'epsg'", "DELETE FROM roadfix_meta WHERE key = 'version'",
+        "UPDATE roadfix_meta SET value = 'x' WHERE key = 'schema_version'"}) {
+    const auto whole = folder / "whole.gpkg";
+    fs::copy_file(path, whole, fs::copy_options::overwrite_existing);
+    execute(sql);
+    EXPECT_EQ(opened(), "map-corrupt") << sql;
+    fs::rename(whole, path);
+  }
+}
+
+TEST_F(MapFile, ACutOffOneSaysSoWhereverItEnds) {
+  const auto size = fs::file_size(path);
+  for (const double share : {0.999, 0.7, 0.3, 0.05}) {
+    fs::resize_file(path, static_cast<std::uintmax_t>(static_cast<double>(size) * share));
+    EXPECT_EQ(opened(), "map-cut-off") << share;
+  }
+  fs::resize_file(path, 50);
+  EXPECT_EQ(opened(), "map-cut-off");
+}
+
+TEST_F(MapFile, ACorruptTileIsNamed) {
+  execute(
+      "UPDATE road_probability SET tile_data = substr(tile_data, 1, 100) WHERE zoom_level = 11 AND tile_column = "
+      "848");
+  const MapReader reader(path);
+  EXPECT_TRUE(reader.tile(0, {847, -8165}).has_value());
+  try {
+    reader.read(GridGeometry::covering(reader.info().extent, 2.0));
+    FAIL();
+  } catch (const CorruptData& error) {
+    EXPECT_EQ(error.code(), "tile-corrupt");
+    EXPECT_THAT(error.what(), HasSubstr("zoom 11 column 848 row 12315"));
+  }
+}
+
+TEST_F(MapFile, GdalFindsItValid) {
+  if (std::system("/usr/bin/python3 -c 'import osgeo_utils.samples.validate_gpkg' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "GDAL for Python is not installed (python3-gdal)";
+  }
+  const std::string command =
+      "/usr/bin/python3 -m osgeo_utils.samples.validate_gpkg --extra --warning-as-error " + path.string();
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+}  // namespace
+}  // namespace roadfix

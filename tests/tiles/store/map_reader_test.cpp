@@ -1,0 +1,124 @@
+#include "tiles/store/map_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::ingest;
+using testing::random_cells;
+using testing::settings_37n;
+using testing::some_blocks;
+using testing::TemporaryFolder;
+using testing::TestSource;
+
+class MapReaderTest : public ::testing::Test {
+ protected:
+  MapReaderTest() : path(folder / "m.gpkg"), writer(path, settings_37n()) { ingest(writer, source); }
+
+  /// Cell of the map by its lattice index, from the source.
+  Cell cell_at(int col, int row) const {
+    const auto tile = tiles_covering({2.0, {col, row}, 1, 1}).front();
+    if (!std::ranges::count(source.blocks, tile)) return kUnobserved;
+    return random_cells(source.seed, tile).at(col - 256 * tile.col, row - 256 * tile.row);
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path path;
+  TestSource source{"a", 1, some_blocks(2)};
+  MapWriter writer;
+};
+
+TEST_F(MapReaderTest, PastesAWindowOutOfSeveralTilesAndBeyondTheMap) {
+  const MapReader reader(path);
+  const GridGeometry window{2.0, {847 * 256 - 3, -8165 * 256 + 250}, 270, 12};
+  const RoadGrid grid = reader.read(window);
+  EXPECT_EQ(grid.geometry, window);
+  for (const int row : {0, 5, 6, 11}) {
+    for (const int col : {0, 2, 3, 4, 100, 258, 259, 269}) {
+      EXPECT_EQ(grid.cells.at(col, row), cell_at(window.origin.col + col, window.origin.row + row));
+    }
+  }
+}
+
+TEST_F(MapReaderTest, WindowsFarAwayAreUnobserved) {
+  const MapReader reader(path);
+  for (const LatticeIndex origin : {LatticeIndex{0, 0}, {-5000, -100}, {2'000'000'000, -2'000'000'000}}) {
+    EXPECT_EQ(reader.read({2.0, origin, 5, 5}).cells, CellArray(5, 5));
+  }
+  EXPECT_EQ(reader.read({2.0, {0, 0}, 0, 0}).cells, CellArray());
+}
+
+TEST_F(MapReaderTest, CoarserCellsAreTheHalvedFinerOnes) {
+  const MapReader reader(path);
+  for (double cell_m = 4.0; cell_m <= 4096.0; cell_m *= 2) {
+    const GridGeometry coarse = GridGeometry::covering(reader.info().extent, cell_m);
+    const GridGeometry fine{
+        cell_m / 2, {2 * coarse.origin.col, 2 * coarse.origin.row}, 2 * coarse.cols, 2 * coarse.rows};
+    const RoadGrid grid = reader.read(coarse);
+    EXPECT_EQ(grid.cells, halved(reader.read(fine).cells)) << cell_m;
+    EXPECT_GT(grid.cells.observed_count(), 0U);
+  }
+}
+
+TEST_F(MapReaderTest, OtherCellSizesAreRefused) {
+  const MapReader reader(path);
+  for (const double cell_m : {1.0, 3.0, 0.0, -2.0, 8192.0}) {
+    EXPECT_THROW(reader.read({cell_m, {0, 0}, 4, 4}), InvalidInput) << cell_m;
+  }
+}
+
+TEST_F(MapReaderTest, ListsItsTilesRowByRow) {
+  EXPECT_EQ(MapReader(path).tiles(0), source.blocks);
+  EXPECT_EQ(MapReader(path).tile(0, {0, -1}), std::nullopt);
+}
+
+TEST_F(MapReaderTest, KeepsNoMoreThanItsBoundInMemory) {
+  for (const std::size_t bound : {std::size_t{0}, std::size_t{70'000}, std::size_t{200'000}}) {
+    const MapReader reader(path, bound);
+    for (int round = 0; round < 2; ++round) {
+      for (const TileIndex tile : source.blocks) {
+        EXPECT_EQ(reader.tile(0, tile), random_cells(source.seed, tile));
+        EXPECT_LE(reader.cached_bytes(), bound);
+      }
+    }
+  }
+}
+
+TEST_F(MapReaderTest, TheVersionTellsThatTheMapHasChanged) {
+  const MapReader reader(path);
+  EXPECT_EQ(reader.version_now(), reader.info().version);
+  ingest(writer, {"b", 2, some_blocks(1)});
+  EXPECT_NE(reader.version_now(), reader.info().version);
+}
+
+TEST_F(MapReaderTest, ManyThreadsReadWhileAWriterWrites) {
+  const MapReader reader(path, 100'000);
+  std::atomic<bool> go_on = true;
+  std::atomic<int> windows = 0;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      while (go_on) {
+        const auto tile = reader.tile(0, source.blocks[0]);
+        EXPECT_EQ(tile, random_cells(source.seed, source.blocks[0]));
+        reader.read({4.0, {847 * 128, -8165 * 128}, 300, 300});
+        ++windows;
+      }
+    });
+  }
+  ingest(writer, {"b", 2, some_blocks(3, 2)});
+  while (windows < 20) std::this_thread::yield();
+  go_on = false;
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,311 @@
+#include "tiles/store/map_writer.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/store/fusion.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::ingest;
+using testing::random_cells;
+using testing::settings_37n;
+using testing::some_blocks;
+using testing::TemporaryFolder;
+using testing::TestSource;
+using testing::tile_bytes;
+
+template <typename Work>
+std::string code_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return "no error";
+}
+
+TEST(MapWriter, WhatWasPutCanBeRead) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  const TestSource source{"a", 1, some_blocks(2)};
+  {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, source);
+  }
+  const MapReader reader(path);
+  for (const TileIndex block : source.blocks) EXPECT_EQ(reader.tile(0, block), random_cells(1, block));
+  EXPECT_EQ(reader.info().tiles, 4);
+  EXPECT_EQ(reader.info().levels, 8);
+  EXPECT_EQ(reader.info().pending, 0);
+  ASSERT_EQ(reader.info().sources.size(), 1U);
+  const SourceStatus& status = reader.info().sources.front();
+  EXPECT_TRUE(status.complete);
+  EXPECT_EQ(status.blocks_done, 4);
+  EXPECT_EQ(status.record.licence, "CC BY 4.0");
+  EXPECT_EQ(status.record.registration_sigma_m, 2.5);
+  EXPECT_FALSE(status.ingested_at.empty());
+  EXPECT_FALSE(std::filesystem::exists(path.string() + "-journal"));
+  EXPECT_FALSE(std::filesystem::exists(path.string() + "-writer"));
+}
+
+TEST(MapWriter, OverviewsAreTheHalvedLevelBelow) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  ingest(writer, {"a", 1, some_blocks(3)});
+  const MapReader reader(folder / "m.gpkg");
+  for (int level = 1; level < reader.info().levels; ++level) {
+    const auto tiles = reader.tiles(level);
+    EXPECT_FALSE(tiles.empty());
+    for (const TileIndex tile : tiles) {
+      CellArray below(512, 512);
+      for (const TileIndex child : {TileIndex{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+        const auto cells = reader.tile(level - 1, {2 * tile.col + child.col, 2 * tile.row + child.row});
+        if (cells) paste(*cells, below, 256 * child.col, 256 * child.row);
+      }
+      EXPECT_EQ(reader.tile(level, tile), halved(below));
+    }
+  }
+}
+
+TEST(MapWriter, TheExtentIsThatOfTheObservedCells) {
+  const TemporaryFolder folder;
+  const TileIndex block{847, -8165};
+  CellArray cells(kTileCells, kTileCells);
+  cells.at(10, 20) = kNoRoad;
+  cells.at(30, 25) = kRoad;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  EXPECT_TRUE(MapReader(folder / "m.gpkg").info().extent.empty());
+  writer.begin_source(TestSource{"a", 1, {}}.record(), std::vector{block}, false);
+  writer.put_block("a", block, cells);
+  writer.finish_source("a");
+  const GridBox box = MapReader(folder / "m.gpkg").info().extent;
+  const GridGeometry tile = tile_geometry(block, 2.0);
+  EXPECT_EQ(box.min, (GridPoint{tile.box().min.east_m + 20, tile.box().max.north_m - 52}));
+  EXPECT_EQ(box.max, (GridPoint{tile.box().min.east_m + 62, tile.box().max.north_m - 40}));
+  writer.remove_source("a");
+  EXPECT_TRUE(MapReader(folder / "m.gpkg").info().extent.empty());
+}
+
+TEST(MapWriter, SouthernZonesHaveTheSameLattice) {
+  const TemporaryFolder folder;
+  const MapSettings settings{*UtmZone::from_epsg(32734), 1.0};  // Swellendam, South Africa
+  const GridPoint place = settings.zone.project({-34.02, 20.44});
+  const auto blocks =
+      tiles_covering(GridGeometry::covering({place, {place.east_m + 300, place.north_m + 300}}, settings.cell_m));
+  MapWriter writer(folder / "m.gpkg", settings);
+  ingest(writer, {"a", 1, blocks});
+  const MapReader reader(folder / "m.gpkg");
+  EXPECT_EQ(reader.info().settings.zone.epsg(), 32734);
+  EXPECT_EQ(reader.tile(0, blocks.front()), random_cells(1, blocks.front()));
+}
+
+TEST(MapWriter, TheFusedMapDependsOnNoOrderOfIngestion) {
+  const TemporaryFolder folder;
+  std::vector<TestSource> sources{{"a", 1, some_blocks(2)}, {"b", 2, some_blocks(2, 1)}, {"c", 3, some_blocks(1, 1)}};
+  testing::TileBytes expected;
+  std::string version;
+  std::vector<std::size_t> order{0, 1, 2};
+  int run = 0;
+  do {
+    const auto path = folder / (std::to_string(run++) + ".gpkg");
+    MapWriter writer(path, settings_37n());
+    for (const std::size_t i : order) ingest(writer, sources[i]);
+    if (expected.empty()) {
+      expected = tile_bytes(path);
+      version = MapReader(path).info().version;
+    }
+    EXPECT_EQ(tile_bytes(path), expected);
+    EXPECT_EQ(MapReader(path).info().version, version);
+  } while (std::ranges::next_permutation(order).found);
+  const TileIndex shared = some_blocks(1, 1).front();
+  EXPECT_EQ(MapReader(folder / "0.gpkg").tile(0, shared),
+            fused(std::vector{random_cells(1, shared), random_cells(2, shared), random_cells(3, shared)}));
+}
+
+TEST(MapWriter, AReplacedSourceStaysInForceUntilTheNewOneIsComplete) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  MapWriter writer(path, settings_37n());
+  const TestSource old_source{"a", 1, some_blocks(2)};
+  const TestSource new_source{"a", 2, some_blocks(2, 1)};
+  ingest(writer, old_source);
+  const auto before = tile_bytes(path);
+  EXPECT_EQ(code_of([&] { writer.begin_source(new_source.record(), new_source.blocks, false); }), "source-exists");
+  for (const TileIndex block : writer.begin_source(new_source.record(), new_source.blocks, true)) {
+    writer.put_block("a", block, random_cells(2, block));
+    EXPECT_EQ(tile_bytes(path), before);
+  }
+  const MapInfo during = MapReader(path).info();
+  ASSERT_EQ(during.sources.size(), 2U);
+  EXPECT_TRUE(during.sources[0].complete);
+  EXPECT_FALSE(during.sources[1].complete);
+  writer.finish_source("a");
+
+  const auto fresh = folder / "fresh.gpkg";
+  MapWriter fresh_writer(fresh, settings_37n());
+  ingest(fresh_writer, new_source);
+  EXPECT_EQ(tile_bytes(path), tile_bytes(fresh));
+  EXPECT_EQ(MapReader(path).info().version, MapReader(fresh).info().version);
+  EXPECT_EQ(MapReader(path).info().sources.size(), 1U);
+}
+
+TEST(MapWriter, RemovingASourceLeavesTheMapOfTheOthers) {
+  const TemporaryFolder folder;
+  MapWriter both(folder / "both.gpkg", settings_37n());
+  MapWriter one(folder / "one.gpkg", settings_37n());
+  ingest(both, {"a", 1, some_blocks(2)});
+  ingest(both, {"b", 2, some_blocks(2, 1)});
+  ingest(one, {"a", 1, some_blocks(2)});
+  both.remove_source("b");
+  EXPECT_EQ(tile_bytes(folder / "both.gpkg"), tile_bytes(folder / "one.gpkg"));
+  EXPECT_EQ(MapReader(folder / "both.gpkg").info().version, MapReader(folder / "one.gpkg").info().version);
+  EXPECT_EQ(code_of([&] { both.remove_source("b"); }), "source-not-found");
+}
+
+TEST(MapWriter, ACompleteSourceNeedsNothingMore) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  TestSource source{"a", 1, some_blocks(2)};
+  ingest(writer, source);
+  const auto before = tile_bytes(folder / "m.gpkg");
+  EXPECT_TRUE(writer.begin_source(source.record(), source.blocks, false).empty());
+  EXPECT_TRUE(writer.begin_source(source.record(), source.blocks, true).empty());
+  writer.finish_source("a");
+  EXPECT_EQ(tile_bytes(folder / "m.gpkg"), before);
+}
+
+TEST(MapWriter, ASourceGoesOnWhereAWriterWasThrownAway) {
+  const TemporaryFolder folder;
+  const TestSource source{"a", 1, some_blocks(3)};
+  {
+    MapWriter writer(folder / "whole.gpkg", settings_37n());
+    ingest(writer, source);
+  }
+  const auto path = folder / "m.gpkg";
+  for (std::size_t done = 0; done <= source.blocks.size(); ++done) {
+    MapWriter writer(path, settings_37n());
+    const auto open = writer.begin_source(source.record(), source.blocks, false);
+    ASSERT_EQ(open.size(), source.blocks.size() - done);
+    if (open.empty()) {
+      writer.finish_source("a");
+    } else {
+      writer.put_block("a", open.front(), random_cells(1, open.front()));
+      if (open.size() > 1) {
+        EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-incomplete");
+      }
+    }
+  }
+  EXPECT_EQ(tile_bytes(path), tile_bytes(folder / "whole.gpkg"));
+}
+
+TEST(MapWriter, FusingCanBeStoppedAndRepeated) {
+  const TemporaryFolder folder;
+  const TestSource source{"a", 1, some_blocks(10)};
+  const auto path = folder / "m.gpkg";
+  MapWriter writer(path, settings_37n());
+  for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
+    CellArray cells(kTileCells, kTileCells);
+    cells.at(3, 4) = kRoad;
+    writer.put_block("a", block, cells);
+  }
+  std::stop_source stop;
+  const auto stop_midway = [&](std::int64_t done, std::int64_t) {
+    if (done > 0) stop.request_stop();
+  };
+  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "interrupted");
+  EXPECT_GT(MapReader(path).info().pending, 0);
+  writer.finish_source("a");
+  EXPECT_EQ(MapReader(path).info().pending, 0);
+  EXPECT_EQ(MapReader(path).info().tiles, 100);
+}
+
+TEST(MapWriter, OnlyOneWriterHoldsAMap) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  {
+    const MapWriter first(path, settings_37n());
+    EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n()); }), "map-in-use");
+  }
+  EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n()); }), "no error");
+}
+
+TEST(MapWriter, RefusesWhatDoesNotFit) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  EXPECT_EQ(MapWriter::settings_of(path), std::nullopt);
+  EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(3.0)); }), "cell-size-not-supported");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(code_of([&] { MapWriter(folder / "no/such/folder/m.gpkg", settings_37n()); }), "map-not-writable");
+  MapWriter writer(path, settings_37n(2.0));
+  EXPECT_EQ(MapWriter::settings_of(path), settings_37n(2.0));
+  EXPECT_EQ(code_of([&] { writer.put_block("a", {847, -8165}, CellArray(256, 256)); }), "block-not-expected");
+  const std::vector<TileIndex> outside{{5000, -8165}};
+  EXPECT_EQ(code_of([&] {
+              writer.begin_source(TestSource{"a", 1, {}}.record(), outside, false);
+            }),
+            "block-outside-zone");
+  EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-not-found");
+}
+
+TEST(MapWriter, AnExistingMapKeepsItsSettings) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(2.0)); }), "no error");
+  EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(1.0)); }), "map-settings-differ");
+  EXPECT_EQ(code_of([&] { MapWriter(path, {*UtmZone::from_epsg(32636), 2.0}); }), "map-settings-differ");
+}
+
+/// Two sources, the second replaced by a third: every kind of transaction of a writer.
+void ingest_everything(const std::filesystem::path& path) {
+  MapWriter writer(path, settings_37n());
+  const TestSource a{"a", 1, some_blocks(2)};
+  const TestSource b{"b", 2, some_blocks(2, 1)};
+  const TestSource replacement{"b", 3, some_blocks(1, 1)};
+  ingest(writer, a);
+  const auto sources = MapReader(path).info().sources;
+  const bool replaced = std::ranges::any_of(
+      sources, [&](const SourceStatus& s) { return s.record.fingerprint == replacement.record().fingerprint; });
+  if (!replaced) ingest(writer, b);
+  ingest(writer, replacement, true);
+}
+
+TEST(MapWriter, AKilledProcessLosesNothing) {
+  const TemporaryFolder folder;
+  const auto started = std::chrono::steady_clock::now();
+  ingest_everything(folder / "whole.gpkg");
+  const auto duration = std::chrono::steady_clock::now() - started;
+  const auto expected = tile_bytes(folder / "whole.gpkg");
+  const auto version = MapReader(folder / "whole.gpkg").info().version;
+
+  constexpr int kRuns = 16;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto path = folder / (std::to_string(run) + ".gpkg");
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      ingest_everything(path);
+      _exit(0);
+    }
+    std::this_thread::sleep_for(duration * run / kRuns);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    ingest_everything(path);
+    EXPECT_EQ(tile_bytes(path), expected) << "killed after " << run << "/" << kRuns;
+    EXPECT_EQ(MapReader(path).info().version, version);
+    EXPECT_EQ(MapReader(path).info().pending, 0);
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

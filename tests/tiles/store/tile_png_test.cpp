@@ -1,0 +1,65 @@
+#include "tiles/store/tile_png.hpp"
+
+#include <gmock/gmock.h>
+
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::random_cells;
+
+class TilePng : public ::testing::TestWithParam<TileDepth> {};
+
+TEST_P(TilePng, ComesBackAsItWas) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const CellArray cells = random_cells(seed, {});
+    EXPECT_EQ(decode_tile(encode_tile(cells, GetParam()), GetParam()), cells);
+  }
+  CellArray noise(kTileCells, kTileCells);
+  std::mt19937_64 random(3);
+  for (Cell& cell : noise.cells()) cell = static_cast<Cell>(random() % 256);
+  EXPECT_EQ(decode_tile(encode_tile(noise, GetParam()), GetParam()), noise);
+  for (const Cell fill : {kNoRoad, kRoad, kUnobserved}) {
+    const CellArray cells(kTileCells, kTileCells, fill);
+    EXPECT_EQ(decode_tile(encode_tile(cells, GetParam()), GetParam()), cells);
+  }
+}
+
+TEST_P(TilePng, EqualCellsGiveEqualBytes) {
+  EXPECT_EQ(encode_tile(random_cells(1, {}), GetParam()), encode_tile(random_cells(1, {}), GetParam()));
+}
+
+TEST_P(TilePng, ACutOffTileIsRefusedWhereverItEnds) {
+  const auto png = encode_tile(CellArray(kTileCells, kTileCells, kRoad), GetParam());
+  for (std::size_t size = 0; size < png.size(); ++size) {
+    EXPECT_THROW(decode_tile(std::span(png).first(size), GetParam()), CorruptData) << size << " bytes";
+  }
+}
+
+TEST_P(TilePng, AFlippedBitIsFound) {
+  const auto png = encode_tile(CellArray(kTileCells, kTileCells, kRoad), GetParam());
+  for (std::size_t i = 0; i < png.size(); ++i) {
+    auto damaged = png;
+    damaged[i] ^= std::byte{0x10};
+    EXPECT_THROW(decode_tile(damaged, GetParam()), CorruptData) << "byte " << i;
+  }
+}
+
+TEST_P(TilePng, TheOtherDepthIsRefused) {
+  const TileDepth other = GetParam() == TileDepth::kFused ? TileDepth::kEvidence : TileDepth::kFused;
+  EXPECT_THROW(decode_tile(encode_tile(random_cells(1, {}), other), GetParam()), CorruptData);
+}
+
+INSTANTIATE_TEST_SUITE_P(Depths, TilePng, ::testing::Values(TileDepth::kEvidence, TileDepth::kFused));
+
+TEST(TilePngDamage, BytesAfterTheEndAreRefused) {
+  auto png = encode_tile(random_cells(1, {}), TileDepth::kFused);
+  png.push_back(std::byte{0});
+  EXPECT_THROW(decode_tile(png, TileDepth::kFused), CorruptData);
+}
+
+}  // namespace
+}  // namespace roadfix

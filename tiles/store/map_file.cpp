@@ -1,0 +1,262 @@
+#include "tiles/store/map_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+#include "core/units/error.hpp"
+#include "schema/schema.hpp"
+#include "tiles/store/tile_matrix.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::Access;
+using sqlite::Connection;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+constexpr std::int64_t kGeoPackageId = 0x47504B47;
+
+/// OGC WKT 1 of a UTM zone on WGS 84 as EPSG defines it.
+std::string wkt_of(const UtmZone& zone) {
+  return fmt::format(
+      R"(PROJCS["WGS 84 / UTM zone {}{}",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,)"
+      R"(AUTHORITY["EPSG","7030"]],AUTHORITY["EPSG","6326"]],PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],)"
+      R"(UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]],)"
+      R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",{}],)"
+      R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",{}],)"
+      R"(UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["Easting",EAST],AXIS["Northing",NORTH],)"
+      R"(AUTHORITY["EPSG","{}"]])",
+      zone.number(), zone.northern() ? 'N' : 'S', 6 * zone.number() - 183, zone.northern() ? 0 : 10'000'000,
+      zone.epsg());
+}
+
+void insert_settings(Connection& map, const MapSettings& settings) {
+  const int epsg = settings.zone.epsg();
+  Statement(map, "INSERT INTO gpkg_spatial_ref_sys VALUES (?1, ?2, 'EPSG', ?2, ?3, NULL)")
+      .with(fmt::format("WGS 84 / UTM zone {}{}", settings.zone.number(), settings.zone.northern() ? 'N' : 'S'), epsg,
+            wkt_of(settings.zone))
+      .run();
+  Statement(map,
+            "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, srs_id) VALUES "
+            "('road_probability', '2d-gridded-coverage', 'road_probability', 'Probability of road', ?1)")
+      .with(epsg)
+      .run();
+  Statement(map, "INSERT INTO gpkg_tile_matrix_set VALUES ('road_probability', ?1, 0, 0, ?2, ?3)")
+      .with(epsg, kLatticeWidthM, kLatticeHeightM)
+      .run();
+  Statement level(map, "INSERT INTO gpkg_tile_matrix VALUES ('road_probability', ?1, ?2, ?3, ?4, ?4, ?5, ?5)");
+  for (int zoom = kCoarsestZoom; zoom <= zoom_of(settings.cell_m); ++zoom) {
+    level.with(zoom, matrix_width(zoom), matrix_height(zoom), kTileCells, cell_of_zoom(zoom)).run();
+  }
+  Statement(map,
+            "INSERT INTO gpkg_2d_gridded_coverage_ancillary (tile_matrix_set_name, datatype, scale, precision, "
+            "data_null, grid_cell_encoding, field_name, quantity_definition) VALUES ('road_probability', 'integer', "
+            "1.0 / 254, 1.0 / 254, 65535, 'grid-value-is-area', 'Probability', 'Probability of road')")
+      .run();
+  Statement meta(map, "INSERT INTO roadfix_meta VALUES (?1, ?2)");
+  meta.with("schema_version", std::to_string(kSchemaVersion)).run();
+  meta.with("epsg", std::to_string(epsg)).run();
+  meta.with("cell_m", fmt::format("{}", settings.cell_m)).run();
+  meta.with("version", fmt::format("{:016x}", 0)).run();
+}
+
+/// Makes a rename durable.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;  // some file systems do not open folders; the rename itself has been done
+  fsync(descriptor);
+  close(descriptor);
+}
+
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::string meta_value(Connection& map, const char* key) {
+  Statement select(map, "SELECT value FROM roadfix_meta WHERE key = ?1");
+  if (select.with(key).step()) return select.text(0);
+  throw CorruptData("map-corrupt",
+                    fmt::format("{}: roadfix_meta has no {}. Restore the map from a copy", map.path().string(), key));
+}
+
+std::int64_t pragma(Connection& map, const char* text) {
+  Statement statement(map, text);
+  statement.step();
+  return statement.integer(0);
+}
+
+bool has_table(Connection& map, const char* name) {
+  return Statement(map, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1").with(name).step();
+}
+
+void require_ours(Connection& map) {
+  const std::string file = map.path().string();
+  if (pragma(map, "PRAGMA application_id") != kGeoPackageId) {
+    throw InvalidInput("map-not-ours",
+                       fmt::format("{}: a database, but not a GeoPackage. Name a map made by roadfix", file));
+  }
+  if (!has_table(map, "roadfix_meta")) {
+    throw InvalidInput("map-not-ours", fmt::format("{}: a GeoPackage, but not a map made by roadfix. To make a map out "
+                                                   "of it, name it as a source: roadfix ingest {} --map MAP.gpkg",
+                                                   file, file));
+  }
+  const auto version = parsed<int>(meta_value(map, "schema_version"));
+  if (!version || *version < 1) {
+    throw CorruptData("map-corrupt", fmt::format("{}: roadfix_meta names no schema version. Restore the map from a "
+                                                 "copy",
+                                                 file));
+  }
+  if (*version > kSchemaVersion) {
+    throw InvalidInput("map-from-newer-version",
+                       fmt::format("{}: written by a newer roadfix (map format {}, this program knows up to {}). "
+                                   "Update roadfix",
+                                   file, *version, kSchemaVersion));
+  }
+}
+
+void require_content(const fs::path& path) {
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (!fs::exists(status)) throw NotFound("map-not-found", fmt::format("{}: no such file", path.string()));
+  if (!fs::is_regular_file(status)) {
+    throw InvalidInput("map-not-ours", fmt::format("{}: not a file. Name a map made by roadfix", path.string()));
+  }
+  if (fs::file_size(path, error) == 0 && !error) {
+    throw CorruptData("map-empty-file", fmt::format("{}: the file is empty (0 bytes). Remove it and ingest the sources "
+                                                    "again",
+                                                    path.string()));
+  }
+}
+
+/// SQLite calls a file that is shorter than its header says corrupt; this says what happened to it.
+void explain_cut_off(const Connection& map) {
+  const std::int64_t missing = map.missing_bytes();
+  if (missing == 0) return;
+  throw CorruptData("map-cut-off",
+                    fmt::format("{}: the file is cut off, {} bytes are missing at its end. Copy it again "
+                                "or ingest its sources into a new map",
+                                map.path().string(), missing));
+}
+
+/// The first look into the file; undoes what a killed writer left.
+void look_into(Connection& map) {
+  const Transaction no_writer_between(map, Transaction::Kind::kRead);
+  constexpr const char* kLook = "SELECT count(*) FROM sqlite_master";
+  try {
+    pragma(map, kLook);
+  } catch (const IoFailure& error) {
+    if (error.code() != sqlite::kNeedsRecovery) throw;
+    recover_map(map.path());
+    pragma(map, kLook);
+  }
+  explain_cut_off(map);
+}
+
+}  // namespace
+
+void create_map(const fs::path& path, const MapSettings& settings) {
+  if (!is_map_cell_size(settings.cell_m)) {
+    throw InvalidInput("cell-size-not-supported",
+                       fmt::format("cells of {} m: a map has cells of 0.25, 0.5, 1, 2, 4, 8 or 16 m", settings.cell_m));
+  }
+  const fs::path unfinished = path.string() + "-new";
+  fs::remove(unfinished);
+  fs::remove(unfinished.string() + "-journal");
+  {
+    Connection map(unfinished, Access::kCreate);
+    Transaction transaction(map, Transaction::Kind::kWrite);
+    map.execute(std::string(schema::map_sql()).c_str());
+    insert_settings(map, settings);
+    transaction.commit();
+  }
+  std::error_code error;
+  fs::rename(unfinished, path, error);
+  if (error) throw IoFailure("map-not-writable", fmt::format("{}: {}", path.string(), error.message()));
+  sync_folder(path.parent_path());
+}
+
+void recover_map(const fs::path& path) {
+  Connection map(path, Access::kReadWrite);
+  pragma(map, "SELECT count(*) FROM sqlite_master");
+}
+
+Connection open_map(const fs::path& path, Access access) {
+  require_content(path);
+  Connection map(path, access);
+  try {
+    look_into(map);
+    require_ours(map);
+  } catch (const CorruptData&) {
+    explain_cut_off(map);
+    throw;
+  }
+  return map;
+}
+
+MapSettings read_settings(Connection& map) {
+  const auto epsg = parsed<int>(meta_value(map, "epsg"));
+  const auto cell_m = parsed<double>(meta_value(map, "cell_m"));
+  const auto zone = epsg ? UtmZone::from_epsg(*epsg) : std::nullopt;
+  if (!zone || !cell_m || !is_map_cell_size(*cell_m)) {
+    throw CorruptData("map-corrupt",
+                      fmt::format("{}: roadfix_meta names no UTM zone and cell size that a map can have. "
+                                  "Restore the map from a copy",
+                                  map.path().string()));
+  }
+  return {*zone, *cell_m};
+}
+
+std::string read_version(Connection& map) { return meta_value(map, "version"); }
+
+MapInfo read_info(Connection& map) {
+  const Transaction one_view(map, Transaction::Kind::kRead);
+  MapInfo info{.settings = read_settings(map)};
+  info.version = read_version(map);
+  info.schema_version = *parsed<int>(meta_value(map, "schema_version"));
+  info.levels = zoom_of(info.settings.cell_m) - kCoarsestZoom + 1;
+  info.extent = {{0.0, 0.0}, {-1.0, -1.0}};
+  Statement extent(map,
+                   "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'road_probability' AND "
+                   "min_x IS NOT NULL");
+  if (extent.step()) info.extent = {{extent.real(0), extent.real(1)}, {extent.real(2), extent.real(3)}};
+  Statement tiles(map, "SELECT count(*) FROM road_probability WHERE zoom_level = ?1");
+  tiles.with(zoom_of(info.settings.cell_m)).step();
+  info.tiles = tiles.integer(0);
+  info.pending = pragma(map, "SELECT count(*) FROM roadfix_pending");
+  Statement sources(map,
+                    "SELECT name, kind, location, fingerprint, date, licence, attribution, method, "
+                    "registration_sigma_m, in_force, ingested_at, "
+                    "(SELECT count(*) FROM roadfix_blocks b WHERE b.source_id = s.id), "
+                    "(SELECT total(done) FROM roadfix_blocks b WHERE b.source_id = s.id) "
+                    "FROM roadfix_sources s ORDER BY name, in_force DESC");
+  while (sources.step()) {
+    SourceStatus status{.record = {.name = sources.text(0),
+                                   .kind = sources.text(1),
+                                   .location = sources.text(2),
+                                   .fingerprint = sources.text(3),
+                                   .date = sources.text(4),
+                                   .licence = sources.text(5),
+                                   .attribution = sources.text(6),
+                                   .method = sources.text(7),
+                                   .registration_sigma_m = sources.real(8)}};
+    status.complete = sources.integer(9) != 0;
+    status.ingested_at = sources.text(10);
+    status.blocks_total = sources.integer(11);
+    status.blocks_done = sources.integer(12);
+    info.sources.push_back(std::move(status));
+  }
+  return info;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,29 @@
+// A file as a map: made, recognised, described. Shared by reader, writer and verifier; not for other modules.
+#pragma once
+
+#include <filesystem>
+
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+inline constexpr int kSchemaVersion = 1;
+
+/// Makes an empty map under the name in one step: killed at any point, there is a whole map or none.
+/// Throws InvalidInput ("cell-size-not-supported") or IoFailure.
+void create_map(const std::filesystem::path& path, const MapSettings& settings);
+
+/// Opens what create_map made. Undoes what a killed writer left half done, even for reading where that is possible.
+/// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version") or CorruptData
+/// ("map-empty-file", "map-cut-off", "map-corrupt").
+sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access access);
+
+/// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to.
+void recover_map(const std::filesystem::path& path);
+
+MapSettings read_settings(sqlite::Connection& map);
+std::string read_version(sqlite::Connection& map);
+MapInfo read_info(sqlite::Connection& map);
+
+}  // namespace roadfix

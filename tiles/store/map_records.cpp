@@ -1,0 +1,30 @@
+#include "tiles/store/map_records.hpp"
+
+#include <cassert>
+
+namespace roadfix {
+namespace {
+
+constexpr int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+}  // namespace
+
+GridGeometry tile_geometry(TileIndex tile, double cell_m) {
+  return {cell_m, {tile.col * kTileCells, tile.row * kTileCells}, kTileCells, kTileCells};
+}
+
+std::vector<TileIndex> tiles_covering(const GridGeometry& geometry) {
+  assert(geometry.cols >= 0 && geometry.rows >= 0);
+  std::vector<TileIndex> tiles;
+  if (geometry.cols == 0 || geometry.rows == 0) return tiles;
+  const auto [west, north] = geometry.origin;
+  const int first_col = floor_div(west, kTileCells);
+  const int last_col = floor_div(west + geometry.cols - 1, kTileCells);
+  const int last_row = floor_div(north + geometry.rows - 1, kTileCells);
+  for (int row = floor_div(north, kTileCells); row <= last_row; ++row) {
+    for (int col = first_col; col <= last_col; ++col) tiles.push_back({col, row});
+  }
+  return tiles;
+}
+
+}  // namespace roadfix

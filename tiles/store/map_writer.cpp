@@ -1,0 +1,346 @@
+#include "tiles/store/map_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <set>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/store/map_file.hpp"
+#include "tiles/store/tile_matrix.hpp"
+#include "tiles/store/tile_png.hpp"
+#include "tiles/store/tile_table.hpp"
+#include "tiles/store/writer_lock.hpp"
+
+namespace roadfix {
+namespace {
+
+using sqlite::Access;
+using sqlite::Connection;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+/// Tiles fused in one transaction: as many as keep a reader waiting for a moment only.
+constexpr int kTilesPerTransaction = 64;
+
+constexpr const char* kNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
+
+Connection open_or_create(const std::filesystem::path& path, const MapSettings& settings) {
+  if (!std::filesystem::exists(path)) create_map(path, settings);
+  Connection map = open_map(path, Access::kReadWrite);
+  const MapSettings existing = read_settings(map);
+  if (existing.zone != settings.zone || existing.cell_m != settings.cell_m) {
+    throw InvalidInput(
+        "map-settings-differ",
+        fmt::format("{}: the map has EPSG:{} and cells of {} m, not EPSG:{} and {} m. Use its settings or "
+                    "another map",
+                    path.string(), existing.zone.epsg(), existing.cell_m, settings.zone.epsg(), settings.cell_m));
+  }
+  return map;
+}
+
+}  // namespace
+
+struct MapWriter::State {
+  State(const std::filesystem::path& path, const MapSettings& settings)
+      : lock(path),
+        map(open_or_create(path, settings)),
+        tiles(map, settings),
+        put_evidence(map,
+                     "INSERT OR REPLACE INTO roadfix_evidence (source_id, tile_column, tile_row, tile_data) VALUES "
+                     "(?1, ?2, ?3, ?4)"),
+        remove_evidence(map,
+                        "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3"),
+        mark_done(map,
+                  "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
+                  "RETURNING 1") {}
+
+  struct Ingested {
+    std::int64_t id = 0;
+    std::string fingerprint;
+  };
+  std::optional<Ingested> find(const std::string& name, bool in_force);
+  std::int64_t insert(const SourceRecord& record);
+  void describe(std::int64_t id, const SourceRecord& record);
+  void set_ledger(std::int64_t id, std::span<const TileIndex> blocks);
+  std::set<TileIndex> done_blocks(std::int64_t id);
+  void require_complete(std::int64_t id, const std::string& name);
+  void remove(std::int64_t id);
+  void mark_pending(std::int64_t id);
+  void fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
+  std::int64_t fuse_some();
+  void fuse(int zoom, TileIndex index);
+  void set_extent();
+  std::int64_t count(const char* sql) {
+    Statement statement(map, sql);
+    statement.step();
+    return statement.integer(0);
+  }
+
+  WriterLock lock;
+  Connection map;
+  TileTable tiles;
+  Statement put_evidence;
+  Statement remove_evidence;
+  Statement mark_done;
+};
+
+std::optional<MapWriter::State::Ingested> MapWriter::State::find(const std::string& name, bool in_force) {
+  Statement select(map, "SELECT id, fingerprint FROM roadfix_sources WHERE name = ?1 AND in_force = ?2");
+  if (!select.with(name, in_force).step()) return std::nullopt;
+  return Ingested{select.integer(0), select.text(1)};
+}
+
+std::int64_t MapWriter::State::insert(const SourceRecord& record) {
+  Statement(map,
+            "INSERT INTO roadfix_sources (name, kind, location, fingerprint, date, licence, attribution, method, "
+            "registration_sigma_m, in_force, ingested_at) VALUES (?1, '', '', ?2, '', '', '', '', 0, 0, '')")
+      .with(record.name, record.fingerprint)
+      .run();
+  return map.last_insert_id();
+}
+
+void MapWriter::State::describe(std::int64_t id, const SourceRecord& r) {
+  Statement(map,
+            "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
+            "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
+      .with(id, r.kind, r.location, r.date, r.licence, r.attribution, r.method, r.registration_sigma_m)
+      .run();
+}
+
+std::set<TileIndex> MapWriter::State::done_blocks(std::int64_t id) {
+  Statement select(map, "SELECT tile_column, tile_row FROM roadfix_blocks WHERE source_id = ?1 AND done = 1");
+  select.with(id);
+  std::set<TileIndex> done;
+  while (select.step()) {
+    done.insert(
+        {static_cast<int>(select.integer(0)), index_row(static_cast<int>(select.integer(1)), tiles.finest_zoom())});
+  }
+  return done;
+}
+
+/// The ledger holds exactly these blocks; what was done stays done.
+void MapWriter::State::set_ledger(std::int64_t id, std::span<const TileIndex> blocks) {
+  const std::set<TileIndex> done = done_blocks(id);
+  Statement(map, "DELETE FROM roadfix_blocks WHERE source_id = ?1").with(id).run();
+  Statement insert(map,
+                   "INSERT OR IGNORE INTO roadfix_blocks (source_id, tile_row, tile_column, done) VALUES (?1, ?2, "
+                   "?3, ?4)");
+  for (const TileIndex block : blocks) {
+    insert.with(id, tile_row(block, tiles.finest_zoom()), block.col, done.contains(block)).run();
+  }
+  Statement(map,
+            "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND NOT EXISTS (SELECT 1 FROM roadfix_blocks b WHERE "
+            "b.source_id = ?1 AND b.tile_row = roadfix_evidence.tile_row AND b.tile_column = "
+            "roadfix_evidence.tile_column)")
+      .with(id)
+      .run();
+}
+
+void MapWriter::State::remove(std::int64_t id) {
+  for (const char* sql :
+       {"DELETE FROM roadfix_evidence WHERE source_id = ?1", "DELETE FROM roadfix_blocks WHERE source_id = ?1",
+        "DELETE FROM roadfix_sources WHERE id = ?1"}) {
+    Statement(map, sql).with(id).run();
+  }
+}
+
+/// Every tile that the evidence of the source touches, with its overviews, waits to be fused anew.
+void MapWriter::State::mark_pending(std::int64_t id) {
+  Statement(map,
+            "INSERT OR IGNORE INTO roadfix_pending SELECT ?2, tile_row, tile_column FROM roadfix_evidence WHERE "
+            "source_id = ?1")
+      .with(id, tiles.finest_zoom())
+      .run();
+  Statement parents(map,
+                    "INSERT OR IGNORE INTO roadfix_pending SELECT ?1, tile_row >> 1, tile_column >> 1 FROM "
+                    "roadfix_pending WHERE zoom_level = ?1 + 1");
+  for (int zoom = tiles.finest_zoom() - 1; zoom >= kCoarsestZoom; --zoom) parents.with(zoom).run();
+}
+
+void MapWriter::State::fuse(int zoom, TileIndex index) {
+  const auto cells = zoom == tiles.finest_zoom() ? tiles.fused_evidence(index) : tiles.overview(zoom, index);
+  tiles.put(zoom, index, cells ? *cells : CellArray(kTileCells, kTileCells));
+}
+
+/// Fuses the next tiles, finest level first, in one transaction. Returns how many it did.
+std::int64_t MapWriter::State::fuse_some() {
+  Transaction transaction(map, Transaction::Kind::kWrite);
+  Statement next(map,
+                 "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending ORDER BY zoom_level DESC, tile_row, "
+                 "tile_column LIMIT ?1");
+  std::vector<std::pair<int, TileIndex>> batch;
+  next.with(kTilesPerTransaction);
+  while (next.step()) {
+    const int zoom = static_cast<int>(next.integer(0));
+    batch.push_back({zoom, {static_cast<int>(next.integer(2)), index_row(static_cast<int>(next.integer(1)), zoom)}});
+  }
+  Statement fused(map, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
+  for (const auto& [zoom, index] : batch) {
+    fuse(zoom, index);
+    fused.with(zoom, tile_row(index, zoom), index.col).run();
+  }
+  if (!batch.empty() && count("SELECT count(*) FROM roadfix_pending") == 0) set_extent();
+  transaction.commit();
+  return static_cast<std::int64_t>(batch.size());
+}
+
+void MapWriter::State::set_extent() {
+  const GridBox box = tiles.observed_extent();
+  const std::string update = fmt::format(
+      "UPDATE gpkg_contents SET last_change = {}, min_x = ?1, min_y = ?2, max_x = ?3, max_y = ?4 WHERE table_name = "
+      "'road_probability'",
+      kNow);
+  if (box.empty()) {
+    Statement(map, update).run();
+  } else {
+    Statement(map, update).with(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m).run();
+  }
+}
+
+void MapWriter::State::fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress,
+                                    const std::stop_token& stop) {
+  const std::int64_t total = count("SELECT count(*) FROM roadfix_pending");
+  std::int64_t done = 0;
+  if (progress) progress(done, total);
+  while (done < total) {
+    if (stop.stop_requested()) {
+      throw Interrupted("interrupted", fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
+                                                   map.path().string(), done, total));
+    }
+    done += fuse_some();
+    if (progress) progress(done, total);
+  }
+}
+
+void MapWriter::State::require_complete(std::int64_t id, const std::string& name) {
+  Statement open(map, "SELECT count(*) FROM roadfix_blocks WHERE source_id = ?1 AND done = 0");
+  open.with(id).step();
+  if (open.integer(0) == 0) return;
+  throw InvalidInput("source-incomplete", fmt::format("{}: source '{}' lacks {} blocks. Ingest it again to go on",
+                                                      map.path().string(), name, open.integer(0)));
+}
+
+MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& settings)
+    : state_(std::make_unique<State>(path, settings)) {}
+MapWriter::~MapWriter() = default;
+MapWriter::MapWriter(MapWriter&&) noexcept = default;
+MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;
+
+std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  Connection map = open_map(path, Access::kRead);
+  return read_settings(map);
+}
+
+std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::span<const TileIndex> blocks,
+                                               bool replace) {
+  State& s = *state_;
+  for (const TileIndex block : blocks) {
+    if (on_lattice(block, s.tiles.finest_zoom())) continue;
+    throw InvalidInput("block-outside-zone",
+                       fmt::format("source '{}': block column {} row {} lies outside the UTM zone of the map. Choose "
+                                   "the zone of the source, or cut the source",
+                                   record.name, block.col, block.row));
+  }
+  Transaction transaction(s.map, Transaction::Kind::kWrite);
+  const auto in_force = s.find(record.name, true);
+  auto unfinished = s.find(record.name, false);
+  const bool same = in_force && in_force->fingerprint == record.fingerprint;
+  const bool resumes = unfinished && unfinished->fingerprint == record.fingerprint;
+  if (!replace && !same && !resumes && (in_force || unfinished)) {
+    throw InvalidInput("source-exists",
+                       fmt::format("{}: a source named '{}' with other content or settings is in the map already. "
+                                   "Replace it with --replace, or give this one another name",
+                                   s.map.path().string(), record.name));
+  }
+  if (unfinished && !resumes) {
+    s.remove(unfinished->id);
+    unfinished.reset();
+  }
+  std::vector<TileIndex> open;
+  if (same) {
+    if (unfinished) s.remove(unfinished->id);
+    s.describe(in_force->id, record);
+  } else {
+    const std::int64_t id = unfinished ? unfinished->id : s.insert(record);
+    s.describe(id, record);
+    s.set_ledger(id, blocks);
+    const auto done = s.done_blocks(id);
+    std::ranges::copy_if(blocks, std::back_inserter(open), [&](TileIndex block) { return !done.contains(block); });
+  }
+  transaction.commit();
+  return open;
+}
+
+void MapWriter::put_block(const std::string& source, TileIndex block, const CellArray& cells) {
+  assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
+  State& s = *state_;
+  const bool observed = cells.observed_count() > 0;
+  const auto png = observed ? encode_tile(cells, TileDepth::kEvidence) : std::vector<std::byte>();
+  const int row = tile_row(block, s.tiles.finest_zoom());
+  Transaction transaction(s.map, Transaction::Kind::kWrite);
+  const auto target = s.find(source, false);
+  const bool expected = target && s.mark_done.with(target->id, block.col, row).step();
+  s.mark_done.reset();
+  if (!expected) {
+    throw InvalidInput("block-not-expected", fmt::format("{}: source '{}' has not begun with block column {} row {}",
+                                                         s.map.path().string(), source, block.col, block.row));
+  }
+  if (observed) {
+    s.put_evidence.with(target->id, block.col, row, std::span(png)).run();
+  } else {
+    s.remove_evidence.with(target->id, block.col, row).run();
+  }
+  transaction.commit();
+}
+
+void MapWriter::finish_source(const std::string& source,
+                              const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+  State& s = *state_;
+  {
+    Transaction transaction(s.map, Transaction::Kind::kWrite);
+    const auto replaced = s.find(source, true);
+    if (const auto complete = s.find(source, false)) {
+      s.require_complete(complete->id, source);
+      s.mark_pending(complete->id);
+      if (replaced) {
+        s.mark_pending(replaced->id);
+        s.remove(replaced->id);
+      }
+      Statement(s.map, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kNow))
+          .with(complete->id)
+          .run();
+    } else if (!replaced) {
+      throw NotFound("source-not-found",
+                     fmt::format("{}: there is no source named '{}'", s.map.path().string(), source));
+    }
+    transaction.commit();
+  }
+  s.fuse_pending(progress, stop);
+}
+
+void MapWriter::remove_source(const std::string& source) {
+  State& s = *state_;
+  {
+    Transaction transaction(s.map, Transaction::Kind::kWrite);
+    bool any = false;
+    for (const bool in_force : {false, true}) {
+      const auto found = s.find(source, in_force);
+      if (!found) continue;
+      if (in_force) s.mark_pending(found->id);
+      s.remove(found->id);
+      any = true;
+    }
+    if (!any) {
+      throw NotFound("source-not-found",
+                     fmt::format("{}: there is no source named '{}'", s.map.path().string(), source));
+    }
+    transaction.commit();
+  }
+  s.fuse_pending({}, {});
+}
+
+}  // namespace roadfix

@@ -1,0 +1,164 @@
+#include "tiles/store/sqlite.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::sqlite {
+namespace {
+
+constexpr int kBusyTimeoutMs = 30'000;
+
+[[noreturn]] void fail(const std::filesystem::path& path, int code, const char* detail) {
+  const std::string file = path.string();
+  if (code == SQLITE_READONLY_ROLLBACK) {
+    throw IoFailure(kNeedsRecovery,
+                    fmt::format("{}: a write to it was cut short and cannot be undone here. Open it once "
+                                "where it may be written to, for example with roadfix verify",
+                                file));
+  }
+  switch (code & 0xff) {
+    case SQLITE_NOTADB:
+      throw InvalidInput("map-not-ours", fmt::format("{}: not a GeoPackage. Name a map made by roadfix", file));
+    case SQLITE_CORRUPT:
+      throw CorruptData("map-corrupt", fmt::format("{}: the file is damaged ({}). Restore it from a copy or ingest its "
+                                                   "sources into a new map",
+                                                   file, detail));
+    case SQLITE_ERROR:  // a statement that does not fit the tables
+      throw CorruptData("map-corrupt", fmt::format("{}: its tables are not those of a map ({})", file, detail));
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw Interrupted("map-busy", fmt::format("{}: another process keeps the file locked. Try again", file));
+    case SQLITE_READONLY:
+      throw IoFailure("map-not-writable", fmt::format("{}: cannot be written to ({})", file, detail));
+    case SQLITE_FULL:
+      throw IoFailure("disk-full",
+                      fmt::format("{}: no space left on the disk. Free some and repeat the command", file));
+    case SQLITE_NOMEM:
+      throw std::bad_alloc();
+    default:
+      throw IoFailure("map-io", fmt::format("{}: {}", file, detail));
+  }
+}
+
+}  // namespace
+
+void Connection::Close::operator()(sqlite3* handle) const { sqlite3_close(handle); }
+
+Connection::Connection(const std::filesystem::path& path, Access access) : path_(path) {
+  const int mode = access == Access::kRead        ? SQLITE_OPEN_READONLY
+                   : access == Access::kReadWrite ? SQLITE_OPEN_READWRITE
+                                                  : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  sqlite3* handle = nullptr;
+  const int code = sqlite3_open_v2(path.c_str(), &handle, mode | SQLITE_OPEN_NOMUTEX, nullptr);
+  handle_.reset(handle);
+  if (code != SQLITE_OK) fail(path_, code, sqlite3_errstr(code));
+  sqlite3_extended_result_codes(handle, 1);
+  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+}
+
+void Connection::execute(const char* sql) {
+  const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(path_, code, sqlite3_errmsg(handle_.get()));
+}
+
+std::int64_t Connection::missing_bytes() const {
+  sqlite3_file* file = nullptr;
+  std::array<unsigned char, 100> header{};
+  sqlite3_int64 size = 0;
+  if (sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, static_cast<void*>(&file)) != SQLITE_OK ||
+      file->pMethods == nullptr || file->pMethods->xFileSize(file, &size) != SQLITE_OK) {
+    return 0;
+  }
+  const auto header_size = static_cast<sqlite3_int64>(header.size());
+  if (size < header_size) return header_size - size;
+  if (file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0) != SQLITE_OK) {
+    return 0;
+  }
+  const auto big_endian = [&](std::size_t at, std::size_t bytes) {
+    std::int64_t value = 0;
+    for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | header[at + i];
+    return value;
+  };
+  // Offsets of "Database File Format", https://www.sqlite.org/fileformat2.html#the_database_header
+  const std::int64_t page = big_endian(16, 2) == 1 ? 65536 : big_endian(16, 2);
+  return std::max<std::int64_t>(0, page * big_endian(28, 4) - size);
+}
+
+std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_.get()); }
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Statement::Statement(Connection& connection, std::string_view sql) : connection_(&connection) {
+  sqlite3_stmt* handle = nullptr;
+  check(sqlite3_prepare_v3(connection.handle(), sql.data(), static_cast<int>(sql.size()), SQLITE_PREPARE_PERSISTENT,
+                           &handle, nullptr));
+  handle_.reset(handle);
+}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK) fail(connection_->path(), code, sqlite3_errmsg(connection_->handle()));
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(handle_.get());
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) {
+    const std::string detail = sqlite3_errmsg(connection_->handle());
+    sqlite3_reset(handle_.get());
+    fail(connection_->path(), code, detail.c_str());
+  }
+  reset();
+  return false;
+}
+
+void Statement::reset() { sqlite3_reset(handle_.get()); }
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
+double Statement::real(int column) const { return sqlite3_column_double(handle_.get(), column); }
+bool Statement::is_null(int column) const { return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL; }
+
+std::string Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
+  return text == nullptr ? std::string()
+                         : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)));
+}
+
+std::span<const std::byte> Statement::blob(int column) const {
+  const void* data = sqlite3_column_blob(handle_.get(), column);
+  return {static_cast<const std::byte*>(data),
+          data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
+}
+
+void Statement::bind(int index, std::int64_t value) { check(sqlite3_bind_int64(handle_.get(), index, value)); }
+void Statement::bind(int index, double value) { check(sqlite3_bind_double(handle_.get(), index, value)); }
+
+void Statement::bind(int index, std::string_view value) {
+  const char* data = value.data() == nullptr ? "" : value.data();
+  check(sqlite3_bind_text64(handle_.get(), index, data, value.size(), SQLITE_STATIC, SQLITE_UTF8));
+}
+
+void Statement::bind(int index, std::span<const std::byte> value) {
+  check(sqlite3_bind_blob64(handle_.get(), index, value.data(), value.size(), SQLITE_STATIC));
+}
+
+Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
+  connection_.execute(kind == Kind::kWrite ? "BEGIN IMMEDIATE" : "BEGIN");
+}
+
+Transaction::~Transaction() {
+  // A failed rollback leaves nothing to undo: SQLite rolls the journal back at the next open.
+  if (open_) sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void Transaction::commit() {
+  connection_.execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace roadfix::sqlite

@@ -1,0 +1,110 @@
+// SQLite as values: a connection, a prepared statement, a transaction that rolls back unless committed.
+// Failures throw; the message names the file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace roadfix::sqlite {
+
+inline constexpr const char* kNeedsRecovery = "map-needs-recovery";
+
+enum class Access { kRead, kReadWrite, kCreate };
+
+class Connection {
+ public:
+  /// Not to be used from two threads at once. Waits up to 30 s for locks of other processes, then throws Interrupted
+  /// ("map-busy"). Other errors: CorruptData ("map-corrupt"), InvalidInput ("map-not-ours"), IoFailure; of these
+  /// "map-needs-recovery" says that a killed writer left a journal that kRead may not roll back.
+  Connection(const std::filesystem::path& path, Access access);
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Runs statements that return nothing of interest.
+  void execute(const char* sql);
+  std::int64_t last_insert_id() const;
+  /// Bytes that the file lacks according to its own header; 0 for a whole file. Reads through SQLite's descriptor:
+  /// closing another one would drop the locks of every connection of this process.
+  std::int64_t missing_bytes() const;
+  sqlite3* handle() const { return handle_.get(); }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const;
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+class Statement {
+ public:
+  /// The text must be one statement; the connection must outlive it.
+  Statement(Connection& connection, std::string_view sql);
+
+  /// Starts anew with these values for ?1, ?2, ...; texts and blobs must live until the last step.
+  template <typename... Values>
+  Statement& with(const Values&... values) {
+    reset();
+    int index = 0;
+    (bind(++index, values), ...);
+    return *this;
+  }
+  /// True while there is a row.
+  bool step();
+  /// Runs to the end.
+  void run() {
+    while (step()) {
+    }
+    reset();
+  }
+  /// Lets go of its locks; called by with() and by step() at the end.
+  void reset();
+
+  std::int64_t integer(int column) const;
+  double real(int column) const;
+  std::string text(int column) const;
+  /// Valid until the next step.
+  std::span<const std::byte> blob(int column) const;
+  bool is_null(int column) const;
+
+ private:
+  void bind(int index, std::int64_t value);
+  void bind(int index, int value) { bind(index, std::int64_t{value}); }
+  void bind(int index, bool value) { bind(index, std::int64_t{value}); }
+  void bind(int index, double value);
+  void bind(int index, std::string_view value);
+  void bind(int index, const std::string& value) { bind(index, std::string_view(value)); }
+  void bind(int index, const char* value) { bind(index, std::string_view(value)); }
+  void bind(int index, std::span<const std::byte> value);
+  void check(int code) const;
+
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  Connection* connection_;
+  std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+};
+
+class Transaction {
+ public:
+  /// kWrite takes the write lock at once; kRead keeps one consistent view of the file.
+  enum class Kind { kRead, kWrite };
+  Transaction(Connection& connection, Kind kind);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+}  // namespace roadfix::sqlite

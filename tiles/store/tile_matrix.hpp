@@ -1,0 +1,40 @@
+// The pyramid of a map file: one fixed lattice for every map of a zone (OGC tile matrix set), so that tile indices are
+// shared and maps grow without renumbering.
+//
+// x in [0, 2^20] m, y in [0, 10 * 2^20] m of the UTM zone; zoom level z has cells of 2^(12 - z) m and 2^z x 10 * 2^z
+// tiles of 256 x 256 cells. The file counts tile rows from the northern edge of the lattice, TileIndex from north = 0:
+// tile_row = TileIndex::row + 10 * 2^z.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix {
+
+inline constexpr double kLatticeWidthM = 1 << 20;
+inline constexpr double kLatticeHeightM = 10.0 * (1 << 20);
+/// Overviews go up to cells of 256 m, tiles of 65 km: a handful of tiles for any map.
+inline constexpr int kCoarsestZoom = 4;
+
+/// Cell size must be a power of two, at most 4096 m.
+int zoom_of(double cell_m);
+constexpr double cell_of_zoom(int zoom) { return 4096.0 / static_cast<double>(1 << zoom); }
+constexpr int matrix_width(int zoom) { return 1 << zoom; }
+constexpr int matrix_height(int zoom) { return 10 << zoom; }
+constexpr int tile_row(TileIndex tile, int zoom) { return tile.row + matrix_height(zoom); }
+constexpr int index_row(int tile_row, int zoom) { return tile_row - matrix_height(zoom); }
+
+constexpr bool on_lattice(TileIndex tile, int zoom) {
+  return tile.col >= 0 && tile.col < matrix_width(zoom) && tile.row < 0 && tile.row >= -matrix_height(zoom);
+}
+
+/// The tile one level coarser that holds this one.
+constexpr TileIndex parent(TileIndex tile) { return {tile.col >> 1, tile.row >> 1}; }
+
+/// Contribution of one tile to the version of a map: the sum over the finest tiles does not depend on their order.
+std::uint64_t content_hash(TileIndex tile, std::span<const std::byte> png);
+
+}  // namespace roadfix

@@ -1,0 +1,51 @@
+// The fused tiles of a map file and what has to change with them: ancillary rows, version, extent.
+// Shared by writer and verifier; not for other modules.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/grid/cell_array.hpp"
+#include "core/units/planar.hpp"
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+class TileTable {
+ public:
+  TileTable(sqlite::Connection& map, const MapSettings& settings);
+
+  int finest_zoom() const { return finest_; }
+
+  /// nullopt where there is none. Throws CorruptData naming the tile.
+  std::optional<CellArray> tile(int zoom, TileIndex index);
+  /// Stores the cells; all unobserved ones are not stored. Keeps ancillary row and version right; an equal tile is left
+  /// as it is.
+  void put(int zoom, TileIndex index, const CellArray& cells);
+
+  /// What the evidence in force says about a tile of the finest level; nullopt where nothing was observed.
+  std::optional<CellArray> fused_evidence(TileIndex index);
+  /// What the four tiles below say; nullopt where there is none.
+  std::optional<CellArray> overview(int zoom, TileIndex index);
+
+  /// Box of the observed cells of the finest level; empty() when there is none.
+  GridBox observed_extent();
+
+ private:
+  void add_to_version(std::uint64_t difference);
+
+  sqlite::Connection& map_;
+  double cell_m_;
+  int finest_;
+  sqlite::Statement select_;
+  sqlite::Statement update_;
+  sqlite::Statement insert_;
+  sqlite::Statement insert_ancillary_;
+  sqlite::Statement remove_ancillary_;
+  sqlite::Statement remove_;
+  sqlite::Statement evidence_;
+  sqlite::Statement set_version_;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,50 @@
+#include "tiles/store/writer_lock.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+/// The last holder may have removed the file between our open and our lock.
+bool still_there(int descriptor, const std::filesystem::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(descriptor, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+         held.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+WriterLock::WriterLock(const std::filesystem::path& map) : path_(map.string() + "-writer") {
+  while (true) {
+    descriptor_ = open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      throw IoFailure("map-not-writable", fmt::format("{}: cannot write beside the map: {}. Check that the folder "
+                                                      "exists and may be written to",
+                                                      map.string(), std::strerror(errno)));
+    }
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      close(descriptor_);
+      throw Interrupted("map-in-use",
+                        fmt::format("{}: another process is writing this map. Wait until it has ended", map.string()));
+    }
+    if (still_there(descriptor_, path_)) return;
+    close(descriptor_);
+  }
+}
+
+WriterLock::~WriterLock() {
+  unlink(path_.c_str());
+  close(descriptor_);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,40 @@
+// What the detector must know about a network beyond its ONNX file: the JSON document beside it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace roadfix {
+
+/// Lengths named _px are pixels of the network's input, whose size on the ground is `gsd_m`.
+struct NetworkDescription {
+  std::string name;
+  double gsd_m = 1.0;
+  int stride = 2;     ///< one output cell covers stride x stride input pixels
+  int multiple = 16;  ///< the sides of the input are multiples of this
+  int tile_px = 384;
+  int overlap_px = 96;           ///< of neighbouring tiles
+  bool rgb = true;               ///< order of the input's channels; false = BGR
+  std::array<double, 3> mean{};  ///< in the order red, green, blue, grey levels 0 to 255
+  std::array<double, 3> std{1.0, 1.0, 1.0};
+  bool logits = true;  ///< false = the output is a probability
+  /// Calibration: probability = 1 / (1 + exp(-(scale * logit + bias))).
+  double calibration_scale = 1.0;
+  double calibration_bias = 0.0;
+  std::string fnv1a64;  ///< of the ONNX file, 16 hexadecimal digits; empty = not stated
+};
+
+/// Throws InvalidInput "model-description" with the field and its range.
+NetworkDescription parse_network_description(std::string_view json);
+
+/// Description of `model`.onnx from `model`.json. Throws InvalidInput "model-description" where there is none.
+NetworkDescription read_network_description(const std::filesystem::path& model);
+
+/// FNV-1a of 64 bits as 16 hexadecimal digits: tells files apart, proves nothing.
+std::string fnv1a64(std::span<const unsigned char> bytes);
+
+}  // namespace roadfix

@@ -1,0 +1,110 @@
+#include "core/detect/network_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+int whole(double length) { return static_cast<int>(std::ceil(length - 1e-9)); }
+
+cv::Size scaled(cv::Size size, double factor) { return {whole(size.width * factor), whole(size.height * factor)}; }
+
+cv::Mat padded(const cv::Mat& image, cv::Size size, const cv::Scalar& value) {
+  cv::Mat result;
+  cv::copyMakeBorder(image, result, 0, std::max(0, size.height - image.rows), 0, std::max(0, size.width - image.cols),
+                     cv::BORDER_CONSTANT, value);
+  return result;
+}
+
+/// Resized by exactly `factor` (cv::resize with a size would stretch to whole pixels), with `value` beyond the border.
+cv::Mat resized(const cv::Mat& image, double factor, const cv::Scalar& value) {
+  if (std::abs(factor - 1.0) < 1e-9) return image;
+  const cv::Size target = scaled(image.size(), factor);
+  const cv::Size source = scaled(target, 1.0 / factor);
+  cv::Mat result;
+  cv::resize(padded(image, source, value), result, {}, factor, factor,
+             factor < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return padded(result, target, value)(cv::Rect({}, target));
+}
+
+void check(const GroundImage& image) {
+  const int type = image.pixels.type();
+  if (image.pixels.empty() || (type != CV_8UC3 && type != CV_8UC1) || image.observed.type() != CV_8UC1 ||
+      image.observed.size() != image.pixels.size() || !(image.gsd_m > 0.0)) {
+    throw InvalidInput(
+        "image-shape",
+        fmt::format("A picture of {} x {} pixels with {} m per pixel and a mask of {} x {}: "
+                    "give 8-bit grey or BGR pixels and a mask of the same size.",
+                    image.pixels.cols, image.pixels.rows, image.gsd_m, image.observed.cols, image.observed.rows));
+  }
+}
+
+}  // namespace
+
+NetworkPicture network_picture(const GroundImage& image, const NetworkDescription& network) {
+  check(image);
+  const auto& [red, green, blue] = network.mean;
+  const cv::Scalar mean(blue, green, red);
+  cv::Mat bgr;
+  if (image.pixels.channels() == 1) {
+    cv::cvtColor(image.pixels, bgr, cv::COLOR_GRAY2BGR);
+  } else {
+    bgr = image.pixels.clone();
+  }
+  bgr.setTo(mean, image.observed == 0);
+  const double factor = image.gsd_m / network.gsd_m;
+  NetworkPicture picture;
+  picture.observed = resized(image.observed, factor, cv::Scalar::all(0));
+  const cv::Mat small = resized(bgr, factor, mean);
+  small.convertTo(picture.pixels, CV_32FC3);
+  picture.pixels -= mean;
+  picture.pixels /= cv::Scalar(network.std[2], network.std[1], network.std[0]);
+  picture.pixels.setTo(cv::Scalar::all(0), picture.observed == 0);
+  if (network.rgb) cv::cvtColor(picture.pixels, picture.pixels, cv::COLOR_BGR2RGB);
+  const auto up = [&](int side) { return (side + network.multiple - 1) / network.multiple * network.multiple; };
+  const cv::Size size(up(small.cols), up(small.rows));
+  picture.pixels = padded(picture.pixels, size, cv::Scalar::all(0));
+  picture.observed = padded(picture.observed, size, cv::Scalar::all(0));
+  return picture;
+}
+
+cv::Mat calibrated(const cv::Mat& output, const NetworkDescription& network) {
+  cv::Mat logits;
+  if (network.logits) {
+    logits = output;
+  } else {
+    const cv::Mat p = cv::min(cv::max(output, 1e-6), 1.0 - 1e-6);
+    cv::log(p / (1.0 - p), logits);
+  }
+  cv::Mat falling;
+  cv::exp(-(logits * network.calibration_scale + network.calibration_bias), falling);
+  return 1.0 / (1.0 + falling);
+}
+
+CellArray road_cells(const cv::Mat& probability, double step_m, const GroundImage& image, double cell_m) {
+  const cv::Mat observed = observed_cells(image, cell_m);
+  cv::Mat fine_seen = observed_cells(image, step_m);
+  // Cells of the result that are seen by less than half of a fine cell still need a value from it.
+  fine_seen.convertTo(fine_seen, CV_32F, 1.0 / 255.0, 1e-3);
+  const cv::Mat seen = padded(fine_seen, probability.size(), cv::Scalar::all(1e-3))(cv::Rect({}, probability.size()));
+  const double factor = step_m / cell_m;
+  const cv::Mat weight = resized(seen, factor, cv::Scalar::all(0));
+  const cv::Mat sum = resized(probability.mul(seen), factor, cv::Scalar::all(0));
+  CellArray cells(observed.cols, observed.rows);
+  for (int row = 0; row < observed.rows; ++row) {
+    for (int col = 0; col < observed.cols; ++col) {
+      if (observed.at<unsigned char>(row, col) == 0) continue;
+      const double mass = static_cast<double>(weight.at<float>(row, col));
+      const double p = mass > 0.0 ? static_cast<double>(sum.at<float>(row, col)) / mass : 0.0;
+      cells.at(col, row) = cell_from_probability(p);
+    }
+  }
+  return cells;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,165 @@
+#include "core/detect/neural_detector.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <opencv2/dnn.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/detect/network_picture.hpp"
+#include "core/detect/tiling.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+std::vector<unsigned char> read_model(const std::filesystem::path& model) {
+  std::ifstream in(model, std::ios::binary);
+  if (!in || std::filesystem::is_directory(model)) {
+    throw InvalidInput("model-missing", fmt::format("{} cannot be read. Name an ONNX file with --model, or use "
+                                                    "--detector tree, which needs none.",
+                                                    model.string()));
+  }
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+cv::Mat mirrored(const cv::Mat& picture) {
+  cv::Mat result;
+  cv::flip(picture, result, 1);
+  return result;
+}
+
+cv::Mat turned(const cv::Mat& picture, int quarters) {
+  if (quarters == 0) return picture;
+  cv::Mat result;
+  cv::rotate(picture, result, quarters - 1);
+  return result;
+}
+
+/// The picture mirrored (k >= 4) and then turned by k % 4 quarters; `upright` takes it back.
+cv::Mat oriented(const cv::Mat& picture, int k) { return turned(k >= 4 ? mirrored(picture) : picture, k % 4); }
+
+cv::Mat upright(const cv::Mat& picture, int k) {
+  const cv::Mat back = turned(picture, (4 - k % 4) % 4);
+  return k >= 4 ? mirrored(back) : back;
+}
+
+}  // namespace
+
+/// cv::dnn::Net keeps its intermediate results in itself: each caller borrows one, and a new one is made when all are
+/// lent. There are never more of them than callers at the same time.
+class NeuralRoadDetector::NetPool {
+ public:
+  explicit NetPool(std::vector<unsigned char> onnx) : onnx_(std::move(onnx)) { idle_.push_back(make()); }
+
+  /// Output of the network for one normalised picture (CV_32FC3) as CV_32FC1. cv::Exception when the shapes do not fit.
+  cv::Mat forward(const cv::Mat& picture) {
+    cv::dnn::Net net = borrow();
+    net.setInput(cv::dnn::blobFromImage(picture));
+    const cv::Mat blob = net.forward();
+    if (blob.dims != 4 || blob.size[0] != 1 || blob.size[1] != 1 || blob.type() != CV_32FC1) {
+      CV_Error(cv::Error::StsUnmatchedSizes, "the output is not 1 x 1 x rows x columns");
+    }
+    const cv::Mat result = cv::Mat(blob.size[2], blob.size[3], CV_32FC1, const_cast<float*>(blob.ptr<float>())).clone();
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(net);
+    return result;
+  }
+
+ private:
+  cv::dnn::Net make() const {
+    cv::dnn::Net net = cv::dnn::readNetFromONNX(onnx_);
+    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    return net;
+  }
+
+  cv::dnn::Net borrow() {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!idle_.empty()) {
+        cv::dnn::Net net = idle_.back();
+        idle_.pop_back();
+        return net;
+      }
+    }
+    return make();
+  }
+
+  std::vector<unsigned char> onnx_;
+  std::mutex mutex_;
+  std::vector<cv::dnn::Net> idle_;
+};
+
+NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options)
+    : options_(options) {
+  if (options.orientations != 1 && options.orientations != 4 && options.orientations != 8) {
+    throw InvalidInput("orientations", fmt::format("{} orientations: choose 1, 4 or 8.", options.orientations));
+  }
+  const auto onnx = read_model(model);
+  network_ = read_network_description(model);
+  checksum_ = roadfix::fnv1a64(onnx);
+  if (!network_.fnv1a64.empty() && network_.fnv1a64 != checksum_) {
+    throw InvalidInput("model-checksum", fmt::format("{} has the checksum {}, its description says {}: they are not of "
+                                                     "one export.",
+                                                     model.string(), checksum_, network_.fnv1a64));
+  }
+  try {
+    nets_ = std::make_unique<NetPool>(onnx);
+  } catch (const cv::Exception& error) {
+    throw InvalidInput("model-unreadable", fmt::format("{} is not an ONNX network that OpenCV {} runs (export with "
+                                                       "opset 11): {}",
+                                                       model.string(), CV_VERSION, error.err));
+  }
+  check_shape(model);
+}
+
+void NeuralRoadDetector::check_shape(const std::filesystem::path& model) const {
+  const cv::Size sample(4 * network_.multiple, 3 * network_.multiple);
+  const cv::Size expected(sample.width / network_.stride, sample.height / network_.stride);
+  std::string found;
+  try {
+    const cv::Size size = nets_->forward(cv::Mat::zeros(sample, CV_32FC3)).size();
+    if (size == expected) return;
+    found = fmt::format("{} x {} cells", size.width, size.height);
+  } catch (const cv::Exception& error) {
+    found = error.err;
+  }
+  throw InvalidInput("model-shape",
+                     fmt::format("{}: for an input of 1 x 3 x {} x {} the output must be 1 x 1 x {} x {} "
+                                 "(stride {}), but: {}.",
+                                 model.string(), sample.height, sample.width, expected.height, expected.width,
+                                 network_.stride, found));
+}
+
+NeuralRoadDetector::~NeuralRoadDetector() = default;
+
+CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t /*seed*/) const {
+  const NetworkPicture picture = network_picture(image, network_);
+  const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride};
+  cv::Mat mean;
+  for (int k = 0; k < options_.orientations; ++k) {
+    const cv::Mat pixels = oriented(picture.pixels, k);
+    const cv::Mat answer = blend_tiles(oriented(picture.observed, k), plan,
+                                       [&](const cv::Rect& tile) { return nets_->forward(pixels(tile)); });
+    const cv::Mat back = upright(answer, k);
+    mean = mean.empty() ? back.clone() : cv::Mat(mean + back);
+  }
+  mean /= options_.orientations;
+  return road_cells(calibrated(mean, network_), network_.gsd_m * network_.stride, image, cell_m);
+}
+
+double NeuralRoadDetector::preferred_gsd_m() const { return network_.gsd_m; }
+
+double NeuralRoadDetector::halo_m() const { return network_.overlap_px / 2.0 * network_.gsd_m; }
+
+std::string NeuralRoadDetector::describe() const {
+  return fmt::format("neural {} fnv1a64={} gsd_m={} orientations={}", network_.name, checksum_, network_.gsd_m,
+                     options_.orientations);
+}
+
+}  // namespace roadfix

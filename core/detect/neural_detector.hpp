@@ -1,0 +1,46 @@
+// Road probability by a convolutional network that OpenCV's DNN module runs on the processor.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/detect/network_description.hpp"
+#include "core/detect/road_detector.hpp"
+
+namespace roadfix {
+
+struct NeuralOptions {
+  /// Mean over the picture turned and mirrored in so many ways: 1, 4 (quarter turns) or 8 (mirrored as well).
+  /// More costs that many times as much and is for maps, which have no real-time limit.
+  int orientations = 1;
+};
+
+/// Any picture size, by overlapping tiles with blended borders. The picture is brought to the network's ground sample
+/// distance; unobserved pixels reach the network as its mean and never the result. Ignores the seed.
+class NeuralRoadDetector : public RoadDetector {
+ public:
+  /// Loads `model` (ONNX, input 1 x 3 x H x W, output 1 x 1 x H/stride x W/stride) and the JSON beside it.
+  /// InvalidInput: "model-missing", "model-unreadable" (not an ONNX that OpenCV knows), "model-description",
+  /// "model-shape" (another input or output), "model-checksum", "orientations".
+  explicit NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options = {});
+  ~NeuralRoadDetector() override;
+
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const override;
+  double preferred_gsd_m() const override;
+  double halo_m() const override;
+  std::string describe() const override;
+
+  const NetworkDescription& network() const { return network_; }
+
+ private:
+  class NetPool;
+
+  void check_shape(const std::filesystem::path& model) const;
+
+  NetworkDescription network_;
+  NeuralOptions options_;
+  std::string checksum_;
+  std::unique_ptr<NetPool> nets_;
+};
+
+}  // namespace roadfix

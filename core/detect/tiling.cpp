@@ -1,0 +1,54 @@
+#include "core/detect/tiling.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace roadfix {
+
+std::vector<int> tile_starts(int length, const TilePlan& plan) {
+  assert(plan.tile > 0 && 2 * plan.overlap <= plan.tile);
+  std::vector<int> starts{0};
+  while (starts.back() + plan.tile < length) {
+    starts.push_back(std::min(starts.back() + plan.tile - plan.overlap, length - plan.tile));
+  }
+  return starts;
+}
+
+std::vector<float> blend_weights(int cells, int overlap_cells) {
+  // A picture's own border has one tile only, and any positive weight stands for all of it.
+  constexpr float kLeast = 1e-4F;
+  const float quiet = static_cast<float>(overlap_cells) / 4.0F;
+  const float ramp = std::max(1.0F, static_cast<float>(overlap_cells) / 2.0F);
+  std::vector<float> weights(static_cast<std::size_t>(cells), 1.0F);
+  for (int i = 0; i < cells && overlap_cells > 0; ++i) {
+    const float end_distance = static_cast<float>(std::min(i, cells - 1 - i)) + 0.5F;
+    weights[static_cast<std::size_t>(i)] = std::clamp((end_distance - quiet) / ramp, kLeast, 1.0F);
+  }
+  return weights;
+}
+
+cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::function<cv::Mat(const cv::Rect&)>& run) {
+  const cv::Size cells(wanted.cols / plan.stride, wanted.rows / plan.stride);
+  cv::Mat sum = cv::Mat::zeros(cells, CV_32FC1);
+  cv::Mat weight_sum = cv::Mat::zeros(cells, CV_32FC1);
+  for (const int top : tile_starts(wanted.rows, plan)) {
+    for (const int left : tile_starts(wanted.cols, plan)) {
+      const cv::Rect tile = cv::Rect(left, top, plan.tile, plan.tile) & cv::Rect(0, 0, wanted.cols, wanted.rows);
+      if (cv::countNonZero(wanted(tile)) == 0) continue;
+      const cv::Mat result = run(tile);
+      const cv::Rect place(left / plan.stride, top / plan.stride, tile.width / plan.stride, tile.height / plan.stride);
+      assert(result.size() == place.size() && result.type() == CV_32FC1);
+      const auto down = blend_weights(place.height, plan.overlap / plan.stride);
+      const auto right = blend_weights(place.width, plan.overlap / plan.stride);
+      const cv::Mat weight = cv::Mat(down, true) * cv::Mat(right, true).t();
+      sum(place) += result.mul(weight);
+      weight_sum(place) += weight;
+    }
+  }
+  cv::Mat blended;
+  cv::divide(sum, weight_sum, blended);  // where nothing was added OpenCV answers 0
+  blended.setTo(0, weight_sum == 0);
+  return blended;
+}
+
+}  // namespace roadfix

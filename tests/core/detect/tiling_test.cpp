@@ -1,0 +1,59 @@
+#include "core/detect/tiling.hpp"
+
+#include <gtest/gtest.h>
+
+namespace roadfix {
+namespace {
+
+TEST(Tiling, TilesCoverASideAndOverlapByAtLeastTheOverlap) {
+  const TilePlan plan{64, 16, 2};
+  for (int length = 16; length <= 400; length += 16) {
+    const auto starts = tile_starts(length, plan);
+    EXPECT_EQ(starts.front(), 0);
+    if (length <= plan.tile) {
+      EXPECT_EQ(starts.size(), 1U);
+      continue;
+    }
+    EXPECT_EQ(starts.back() + plan.tile, length);
+    for (std::size_t i = 1; i < starts.size(); ++i) EXPECT_GE(starts[i - 1] + plan.tile - starts[i], plan.overlap);
+  }
+}
+
+TEST(Tiling, WeightsOfNeighboursSumToOneAcrossTheirOverlap) {
+  const int cells = 32;
+  const int overlap = 8;
+  const auto weights = blend_weights(cells, overlap);
+  for (int i = 0; i < overlap; ++i) {
+    const float left = weights[static_cast<std::size_t>(cells - overlap + i)];
+    const float right = weights[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(left + right, 1.0F, 2e-4F) << i;
+  }
+}
+
+TEST(Tiling, TilesThatShowAConstantBlendToThatConstant) {
+  const cv::Mat wanted(160, 224, CV_8UC1, cv::Scalar(255));
+  const cv::Mat blended = blend_tiles(wanted, {64, 16, 2}, [](const cv::Rect& tile) {
+    return cv::Mat(tile.height / 2, tile.width / 2, CV_32FC1, cv::Scalar(3.0));
+  });
+  ASSERT_EQ(blended.size(), cv::Size(112, 80));
+  double least = 0.0;
+  double most = 0.0;
+  cv::minMaxLoc(blended, &least, &most);
+  EXPECT_NEAR(least, 3.0, 1e-5);
+  EXPECT_NEAR(most, 3.0, 1e-5);
+}
+
+TEST(Tiling, TilesWithoutAWantedPixelAreNotRun) {
+  cv::Mat wanted = cv::Mat::zeros(64, 256, CV_8UC1);
+  wanted.at<unsigned char>(5, 250) = 255;
+  int runs = 0;
+  blend_tiles(wanted, {64, 16, 2}, [&](const cv::Rect& tile) {
+    ++runs;
+    EXPECT_TRUE(tile.contains({250, 5}));
+    return cv::Mat::ones(tile.height / 2, tile.width / 2, CV_32FC1);
+  });
+  EXPECT_EQ(runs, 1);
+}
+
+}  // namespace
+}  // namespace roadfix

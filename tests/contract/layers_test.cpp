@@ -79,6 +79,22 @@ TEST(Layers, EveryLinkedModuleIsAllowedByTheModuleTable) {
   }
 }
 
+/// The file of the build that a source file belongs to: in its own folder or the nearest above.
+std::string build_file_of(const fs::path& path) {
+  fs::path folder = path.parent_path();
+  while (!fs::exists(kRoot / folder / "CMakeLists.txt")) folder = folder.parent_path();
+  return (folder / "CMakeLists.txt").generic_string();
+}
+
+TEST(Layers, EveryHeaderBelongsToATargetSoThatItIsCompiledAlone) {
+  for (const auto& file : product_files(std::regex(R"(.*\.hpp)"))) {
+    const fs::path build_file = build_file_of(file.path);
+    const std::string listed = fs::path(file.path).lexically_relative(build_file.parent_path()).generic_string();
+    EXPECT_TRUE(std::regex_search(read(kRoot / build_file), std::regex(R"([\s(])" + listed + R"([\s)])")))
+        << "add " << listed << " to HEADERS in " << build_file;
+  }
+}
+
 constexpr const char* kSmallTable = R"(
 | Module | Holds | Uses | Libraries |
 |---|---|---|---|

@@ -1,0 +1,24 @@
+#include "core/detect/make_detector.hpp"
+
+#include <fmt/format.h>
+
+#include "core/detect/model_files.hpp"
+#include "core/detect/neural_detector.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
+  if (choice.name != "auto" && choice.name != "neural") {
+    throw InvalidInput("unknown-detector",
+                       fmt::format("\"{}\" is no detector: choose one of {}.", choice.name, kDetectorNames));
+  }
+  const auto model = choice.model.empty() ? default_model() : choice.model;
+  if (!model) {
+    throw InvalidInput("model-missing",
+                       "No weights of the road network were found. Name them with --model FILE.onnx or ROADFIX_MODEL.");
+  }
+  return std::make_unique<NeuralRoadDetector>(*model, NeuralOptions{choice.orientations});
+}
+
+}  // namespace roadfix

@@ -1,0 +1,26 @@
+// The one place where a user's choice of detector becomes a detector: ingest, detect, fix, bench and the service call
+// it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/detect/road_detector.hpp"
+
+namespace roadfix {
+
+struct DetectorChoice {
+  std::string name = "auto";    ///< one of kDetectorNames
+  std::filesystem::path model;  ///< ONNX file of the neural detector; empty = default_model()
+  int orientations = 1;         ///< NeuralOptions::orientations
+};
+
+/// "auto": neural where `model` is named or default_model() finds one.
+inline constexpr const char* kDetectorNames = "auto, neural";
+
+/// InvalidInput "unknown-detector", "model-missing" (no weights found or a model named for another detector) and those
+/// of the detectors' constructors.
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice);
+
+}  // namespace roadfix

@@ -1,0 +1,73 @@
+#include "core/detect/make_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/detect/model_files.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder with tiny.onnx and its description, and no ROADFIX_MODEL in the environment.
+class MakeDetector : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    unsetenv("ROADFIX_MODEL");
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("roadfix_make_" + std::string(info->name()));
+    fs::create_directories(folder_);
+    fs::copy_file(fs::path(ROADFIX_TEST_NETWORKS) / "tiny.onnx", model(), fs::copy_options::overwrite_existing);
+    std::ofstream(folder_ / "tiny.json")
+        << R"({ "name": "tiny", "gsd_m": 1.0, "stride": 2, "multiple": 16, "tile_px": 512, "overlap_px": 32,
+                "channels": "rgb", "mean": [100, 110, 120], "std": [50, 60, 70], "output": "logits",
+                "calibration": { "scale": 1.0, "bias": 0.0 } })";
+  }
+  void TearDown() override {
+    unsetenv("ROADFIX_MODEL");
+    fs::remove_all(folder_);
+  }
+
+  fs::path model() const { return folder_ / "tiny.onnx"; }
+
+  static std::string refusal(const DetectorChoice& choice) {
+    try {
+      make_detector(choice);
+    } catch (const InvalidInput& error) {
+      return error.code();
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(MakeDetector, TakesTheNamedModelAndItsOrientations) {
+  const std::string description = make_detector({"neural", model(), 4})->describe();
+  EXPECT_NE(description.find("neural tiny"), std::string::npos);
+  EXPECT_NE(description.find("orientations=4"), std::string::npos);
+}
+
+TEST_F(MakeDetector, AutoIsNeuralWhereAModelIsNamed) {
+  EXPECT_NE(make_detector({"auto", model(), 1})->describe().find("neural tiny"), std::string::npos);
+}
+
+TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModel) {
+  setenv("ROADFIX_MODEL", model().c_str(), 1);
+  EXPECT_EQ(default_model(), model());
+  EXPECT_NE(make_detector({})->describe().find("neural tiny"), std::string::npos);
+}
+
+TEST_F(MakeDetector, AWrongEnvironmentIsSaidAndNotPassedOver) {
+  setenv("ROADFIX_MODEL", "/nowhere/roadnet.onnx", 1);
+  EXPECT_EQ(refusal({}), "model-missing");
+}
+
+TEST_F(MakeDetector, RefusesANameThatIsNoDetector) { EXPECT_EQ(refusal({"sift", {}, 1}), "unknown-detector"); }
+
+}  // namespace
+}  // namespace roadfix

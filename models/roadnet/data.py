@@ -1,0 +1,198 @@
+"""Labelled pairs (picture, road mask) and random training crops of them at the network's scale.
+
+Pictures are RGB uint8; labels are float32 in [0, 1]; weights are float32, 0 where a label says nothing
+(nodata, outside the tile, the uncertain band round a road's edge).
+"""
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from . import augment
+
+EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+FILL = 118  # grey that stands for "not seen", close to the mean that the network subtracts
+
+
+@dataclass
+class SetOptions:
+    """How one folder of pairs is to be read; `models/datasets.json` holds those of the shipped weights."""
+
+    name: str
+    images: str
+    masks: str
+    gsd_m: float
+    share: float = 1.0
+    label: str = "surface"
+    ignore_band_m: float = 1.5
+    close_holes_m: float = 0.0
+    nodata: str = ""
+    hold_out_every: int = 6
+    terms: str = ""
+    attribution: str = ""
+
+
+@dataclass
+class Level:
+    """One pair at one resolution."""
+
+    gsd_m: float
+    image: np.ndarray
+    label: np.ndarray
+    weight: np.ndarray
+
+
+class Pair:
+    """A labelled picture as a pyramid, so that shrinking it never aliases."""
+
+    def __init__(self, options, name, image, mask):
+        self.set_name, self.name = options.name, name
+        seen = observed(image, options.nodata)
+        image[seen == 0] = FILL
+        label, weight = label_and_weight(mask, seen, options)
+        self.truth, self.seen = (label > 0.5) & (seen > 0), seen > 0
+        self.levels = [Level(options.gsd_m, image, label, weight)]
+        while self.levels[-1].gsd_m < 0.8 and min(self.levels[-1].image.shape[:2]) > 64:
+            self.levels.append(half(self.levels[-1]))
+
+    def level_for(self, gsd_m):
+        fitting = [level for level in self.levels if level.gsd_m <= gsd_m * 1.25]
+        return fitting[-1] if fitting else self.levels[0]
+
+
+def half(level):
+    height, width = (side // 2 for side in level.image.shape[:2])
+    shrink = [cv2.resize(a, (width, height), interpolation=cv2.INTER_AREA) for a in (level.image, level.label, level.weight)]
+    return Level(level.gsd_m * 2, *shrink)
+
+
+def observed(image, nodata):
+    """uint8 mask, 1 = seen. Nodata areas are large: single black or white pixels are picture."""
+    if not nodata:
+        return np.ones(image.shape[:2], np.uint8)
+    empty = image.max(2) <= 3 if nodata == "black" else image.min(2) >= 250
+    kernel = np.ones((9, 9), np.uint8)
+    core = cv2.morphologyEx(empty.astype(np.uint8), cv2.MORPH_OPEN, kernel)
+    return 1 - cv2.dilate(core, kernel)
+
+
+def label_and_weight(mask, seen, options):
+    road = (mask > 127).astype(np.uint8)
+    if options.close_holes_m > 0:
+        size = 2 * int(round(options.close_holes_m / options.gsd_m / 2)) + 1
+        road = cv2.morphologyEx(road, cv2.MORPH_CLOSE, np.ones((size, size), np.uint8))
+    outside = cv2.distanceTransform(1 - road, cv2.DIST_L2, 3) * options.gsd_m
+    inside = cv2.distanceTransform(road, cv2.DIST_L2, 3) * options.gsd_m
+    unsure = (road == 0) & (outside < options.ignore_band_m)
+    if options.label == "surface":
+        # A drawn edge is off by a pixel or two on both sides; the middle of a road stays certain.
+        unsure |= (road > 0) & (inside < min(options.ignore_band_m, 1.0) * 0.5)
+    weight = seen.astype(np.float32)
+    weight[unsure] *= 0.0
+    return road.astype(np.float32), weight
+
+
+def read_sets(manifest, root):
+    """SetOptions of a manifest whose folders exist below `root`; missing ones are named and skipped."""
+    found = []
+    for entry in json.loads(Path(manifest).read_text())["sets"]:
+        options = SetOptions(**entry)
+        if (Path(root) / options.images).is_dir():
+            found.append(options)
+        else:
+            print(f"skip {options.name}: {Path(root) / options.images} is not there", flush=True)
+    return found
+
+
+def load_pairs(options, root):
+    """All pairs of a set, in the order of their names, as (training, held-out)."""
+    images, masks = Path(root) / options.images, Path(root) / options.masks
+    by_stem = {p.stem: p for p in masks.iterdir() if p.suffix.lower() in EXTENSIONS}
+    training, held_out = [], []
+    paths = sorted(p for p in images.iterdir() if p.suffix.lower() in EXTENSIONS and p.stem in by_stem)
+    for index, path in enumerate(paths):
+        image = cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        mask = cv2.imread(str(by_stem[path.stem]), cv2.IMREAD_GRAYSCALE)
+        if mask is None or mask.shape != image.shape[:2]:
+            raise ValueError(f"{path}: picture and mask differ in size")
+        wanted = options.hold_out_every > 0 and index % options.hold_out_every == options.hold_out_every // 2
+        (held_out if wanted else training).append(Pair(options, path.stem, image, mask))
+    return training, held_out
+
+
+def warp(level, gsd_m, size, angle, flip, centre):
+    """A square of `size` pixels of `gsd_m` round `centre` (in the level's pixels), turned by `angle`."""
+    step = gsd_m / level.gsd_m
+    cos, sin = math.cos(angle) * step, math.sin(angle) * step
+    matrix = np.array([[cos * flip, -sin, 0.0], [sin * flip, cos, 0.0]])
+    middle = (size - 1) / 2
+    matrix[:, 2] = np.array(centre) - matrix[:, :2] @ np.array([middle, middle])
+    how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    image = cv2.warpAffine(level.image, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
+    label = cv2.warpAffine(level.label, matrix, (size, size), flags=how, borderValue=0)
+    weight = cv2.warpAffine(level.weight, matrix, (size, size), flags=how, borderValue=0)
+    return image, label, (weight > 0.75).astype(np.float32)
+
+
+class Crops:
+    """Endless augmented crops; crop number i of a seed is always the same one. Augmentation reaches its full strength
+    at crop number `ramp`."""
+
+    def __init__(self, sets, root, gsd_m, size, seed, ramp=1):
+        self.gsd_m, self.size, self.seed, self.ramp = gsd_m, size, seed, ramp
+        self.pairs, self.held_out, shares = [], [], []
+        for options in sets:
+            training, held_out = load_pairs(options, root)
+            if training and options.share > 0:
+                self.pairs.append(training)
+                shares.append(options.share)
+            self.held_out += held_out
+            print(f"{options.name}: {len(training)} pairs to train on, {len(held_out)} held out", flush=True)
+        self.shares = np.array(shares) / sum(shares)
+        self.areas = [np.array([p.levels[0].weight.sum() * p.levels[0].gsd_m ** 2 for p in pairs]) for pairs in self.pairs]
+
+    def __len__(self):
+        return 1 << 40
+
+    def __getitem__(self, index):
+        rng = np.random.default_rng([self.seed, index])
+        chosen = int(rng.choice(len(self.pairs), p=self.shares))
+        image, label, weight = self.crop(chosen, self.size, rng)
+        image, weight = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
+        return image.transpose(2, 0, 1).copy(), label[None], weight[None]
+
+    def crop(self, chosen, size, rng):
+        """A tile that is much smaller than the crop is joined with three others into one."""
+        area = self.areas[chosen]
+        pair = self.pairs[chosen][int(rng.choice(len(area), p=area / area.sum()))]
+        gsd_m = self.gsd_m * math.exp(rng.uniform(math.log(0.7), math.log(1.4)))
+        base = pair.levels[0]
+        side = min(base.image.shape[:2]) * base.gsd_m / gsd_m
+        if side < 0.8 * size and size >= 64 and size % 2 == 0:
+            quarters = [self.crop(chosen, size // 2, rng) for _ in range(4)]
+            return tuple(join(part) for part in zip(*quarters))
+        return self.one_crop(pair, gsd_m, size, rng)
+
+    @staticmethod
+    def one_crop(pair, gsd_m, size, rng):
+        level = pair.level_for(gsd_m)
+        height, width = level.image.shape[:2]
+        reach = 0.5 * size * gsd_m / level.gsd_m
+        best = None
+        for _ in range(4):
+            centre = [rng.uniform(min(reach, s / 2), max(s - reach, s / 2)) for s in (width, height)]
+            crop = warp(level, gsd_m, size, rng.uniform(0, 2 * math.pi), rng.choice([-1, 1]), centre)
+            seen = crop[2].mean()
+            if best is None or seen > best[0]:
+                best = (seen, crop)
+            if seen > 0.6:
+                break
+        return best[1]
+
+
+def join(quarters):
+    top, bottom = np.concatenate(quarters[:2], 1), np.concatenate(quarters[2:], 1)
+    return np.concatenate([top, bottom], 0)

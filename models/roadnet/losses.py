@@ -1,0 +1,23 @@
+"""Losses that bear incomplete and slightly shifted labels."""
+import torch
+from torch.nn import functional as F
+
+
+def to_cells(label, weight):
+    """Labels and weights of pixels averaged into the output's cells of 2 x 2 pixels; half-ignored cells are ignored."""
+    seen = F.avg_pool2d(weight, 2)
+    road = F.avg_pool2d(label * weight, 2) / seen.clamp(min=1e-6)
+    return road, (seen >= 0.5).float()
+
+
+def road_loss(logits, label, weight, missing=0.05):
+    """Cross-entropy plus soft Dice over the cells with a label. `missing` is the share of background that may be an
+    unlabelled road: the target there is that much above 0, so that a confident right road costs little."""
+    road, seen = to_cells(label, weight)
+    target = road * (1 - missing) + missing * 0.5
+    entropy = F.binary_cross_entropy_with_logits(logits, target, reduction="none")
+    entropy = (entropy * (1 + road) * seen).sum() / seen.sum().clamp(min=1)
+    found = torch.sigmoid(logits) * seen
+    overlap, total = (found * road).sum(), found.sum() + (road * seen).sum()
+    dice = 1 - (2 * overlap + 1) / (total + 1)
+    return entropy + 0.5 * dice

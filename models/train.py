@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""Trains Roadfix's road network from labelled pairs.
+
+Example: nice python3 models/train.py --data ../shared/data --out build/roadnet --steps 3000
+A run that was interrupted goes on from its last checkpoint when the same command is given again.
+"""
+import argparse
+from pathlib import Path
+
+import cv2
+import torch
+
+from roadnet.data import Crops, SetOptions, read_sets
+from roadnet.training import train
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    here = Path(__file__).resolve().parent
+    parser.add_argument("--data", default=here.parent / "../shared/data", type=Path, help="folder that the manifest's paths start from")
+    parser.add_argument("--sets", default=here / "datasets.json", type=Path, help="manifest of sets (%(default)s)")
+    parser.add_argument("--pairs", action="append", default=[], metavar="DIR=GSD_M",
+                        help="own pairs: DIR/images and DIR/masks with equal file stems; may be given again")
+    parser.add_argument("--only-pairs", action="store_true", help="train on --pairs alone")
+    parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
+    parser.add_argument("--steps", default=3000, type=int)
+    parser.add_argument("--batch", default=8, type=int)
+    parser.add_argument("--size", default=192, type=int, help="side of a crop in pixels, a multiple of 32 (%(default)s)")
+    parser.add_argument("--gsd", default=1.0, type=float, help="metres per pixel that the network sees (%(default)s)")
+    parser.add_argument("--rate", default=1.5e-3, type=float, help="peak learning rate (%(default)s)")
+    parser.add_argument("--cool", default=0.3, type=float, help="share of the steps over which the rate falls to zero")
+    parser.add_argument("--ramp", default=1500, type=int, help="steps until augmentation has its full strength (%(default)s)")
+    parser.add_argument("--seed", default=1, type=int)
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    parser.add_argument("--threads", default=2, type=int, help="CPU threads for the network")
+    parser.add_argument("--workers", default=0, type=int, help="processes that prepare crops; 0 = in this one")
+    parser.add_argument("--restart", action="store_true", help="ignore an earlier checkpoint in --out")
+    parser.add_argument("--report", default=20, type=int, help="steps between lines of progress")
+    parser.add_argument("--save-every", default=100, type=int)
+    parser.add_argument("--validate-every", default=300, type=int)
+    return parser.parse_args()
+
+
+def own_sets(texts):
+    for text in texts:
+        folder, _, gsd = text.rpartition("=")
+        if not folder:
+            raise SystemExit(f"--pairs {text}: write DIR=GSD_M, for example my-pairs=0.5")
+        folder = Path(folder).resolve()
+        yield SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd))
+
+
+def main():
+    options = arguments()
+    if options.size % 32:
+        raise SystemExit("--size must be a multiple of 32")
+    torch.set_num_threads(options.threads)
+    cv2.setNumThreads(1)
+    options.out.mkdir(parents=True, exist_ok=True)
+    sets = [] if options.only_pairs else read_sets(options.sets, options.data)
+    sets += own_sets(options.pairs)
+    if not sets:
+        raise SystemExit(f"no pairs found below {options.data}; name your own with --pairs DIR=GSD_M")
+    train(Crops(sets, options.data, options.gsd, options.size, options.seed, options.ramp * options.batch), options)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+"""Training from a user's own folder, resuming, exporting and running by OpenCV, on pairs drawn here; about 20 seconds.
+
+Skips (exit 77) where torch or OpenCV for Python is not installed.
+"""
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+try:
+    import cv2
+    import numpy as np
+    import torch
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+MODELS = Path(__file__).resolve().parents[2] / "models"
+sys.path.insert(0, str(MODELS))
+
+from roadnet import augment, data, losses, metrics  # noqa: E402
+
+
+def draw_pairs(folder, count=8, size=160):
+    """Bright straight roads on dark noise."""
+    rng = np.random.default_rng(5)
+    for part in ("images", "masks"):
+        (folder / part).mkdir(parents=True)
+    for number in range(count):
+        mask = np.zeros((size, size), np.uint8)
+        for _ in range(3):
+            ends = rng.integers(0, size, 4).tolist()
+            cv2.line(mask, ends[:2], ends[2:], 255, 8)
+        image = rng.normal(70, 12, (size, size, 3)) + 110.0 * (mask[:, :, None] > 0)
+        cv2.imwrite(str(folder / "images" / f"{number}.png"), image.clip(0, 255).astype(np.uint8))
+        cv2.imwrite(str(folder / "masks" / f"{number}.png"), mask)
+
+
+def run(script, *arguments):
+    command = [sys.executable, str(MODELS / script), *map(str, arguments)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+class Training(unittest.TestCase):
+    def test_a_users_own_pairs_become_a_network_that_opencv_runs(self):
+        with tempfile.TemporaryDirectory() as place:
+            folder = Path(place)
+            draw_pairs(folder / "pairs")
+            common = ["--pairs", f"{folder / 'pairs'}=1.0", "--only-pairs", "--out", folder / "run", "--size", 96,
+                      "--batch", 4, "--save-every", 10, "--validate-every", 1000, "--threads", 1, "--device", "cpu"]
+            run("train.py", *common, "--steps", 30)
+            self.assertIn("resume from", run("train.py", *common, "--steps", 60, "--ramp", 1000000))
+            (folder / "sets.json").write_text(json.dumps({"sets": [
+                {"name": "own", "images": "pairs/images", "masks": "pairs/masks", "gsd_m": 1.0}]}))
+            model = folder / "own.onnx"
+            run("export.py", "--checkpoint", folder / "run/checkpoint.pt", "--out", model, "--data", folder,
+                "--sets", folder / "sets.json")
+            report = run("evaluate.py", "--model", model, "--data", folder, "--sets", folder / "sets.json",
+                         "--evaluation-sets", folder / "sets.json")
+            f1 = float(report.split("| own |")[1].split("|")[2])
+            self.assertGreater(f1, 0.5, report)
+
+
+class Parts(unittest.TestCase):
+    def test_the_same_seed_and_number_give_the_same_crop(self):
+        with tempfile.TemporaryDirectory() as place:
+            draw_pairs(Path(place) / "pairs")
+            options = data.SetOptions("own", "pairs/images", "pairs/masks", 0.5)
+            crops = [data.Crops([options], place, 1.0, 64, 3) for _ in range(2)]
+            for one, other in zip(crops[0][17], crops[1][17]):
+                np.testing.assert_array_equal(one, other)
+
+    def test_the_band_round_a_centreline_is_ignored_and_its_middle_is_road(self):
+        mask = np.zeros((60, 60), np.uint8)
+        mask[28:32] = 255
+        options = data.SetOptions("own", "", "", 1.0, label="centreline", ignore_band_m=3.5)
+        label, weight = data.label_and_weight(mask, np.ones_like(mask), options)
+        self.assertTrue((label[29] == 1).all() and (weight[29] == 1).all())
+        self.assertTrue((weight[26] == 0).all())
+        self.assertTrue((weight[20] == 1).all() and (label[20] == 0).all())
+
+    def test_augmentation_leaves_what_was_not_seen_at_the_fill(self):
+        image = np.full((64, 64, 3), 60, np.uint8)
+        image[:, :20] = data.FILL
+        weight = np.ones((64, 64), np.float32)
+        weight[:, :20] = 0
+        for seed in range(20):
+            changed, after = augment.apply(image, (image[:, :, 0] > 200).astype(np.float32), weight, 1.0,
+                                           np.random.default_rng(seed))
+            self.assertTrue((changed[:, :20] == data.FILL).all())
+            self.assertTrue((after[:, :20] == 0).all())
+
+    def test_the_loss_ignores_cells_without_a_label(self):
+        logits = torch.randn(1, 1, 8, 8)
+        label, weight = torch.zeros(1, 1, 16, 16), torch.ones(1, 1, 16, 16)
+        label[:, :, 4:8] = 1
+        weight[:, :, 12:] = 0
+        other = logits.clone()
+        other[:, :, 6:] = 30
+        self.assertAlmostEqual(losses.road_loss(logits, label, weight).item(), losses.road_loss(other, label, weight).item(), 5)
+
+    def test_precision_and_recall_bear_a_shift_within_the_tolerance_only(self):
+        truth = np.zeros((50, 50), bool)
+        truth[20:24] = True
+        seen = np.ones_like(truth)
+        near = metrics.relaxed_counts(np.roll(truth, 3, 0), truth, seen, 3.0, 1.0)
+        far = metrics.relaxed_counts(np.roll(truth, 12, 0), truth, seen, 3.0, 1.0)
+        self.assertEqual((near.precision, near.recall, far.precision, far.recall), (1.0, 1.0, 0.0, 0.0))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,127 @@
+#include "tiles/store/map_verifier.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::ingest;
+using ::testing::IsEmpty;
+using testing::settings_37n;
+using testing::some_blocks;
+using testing::TemporaryFolder;
+
+class MapVerifier : public ::testing::Test {
+ protected:
+  MapVerifier() : path(folder / "m.gpkg") {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"a", 1, some_blocks(2)});
+    ingest(writer, {"b", 2, some_blocks(1)});
+  }
+
+  std::vector<std::string> codes_after(const char* sql) {
+    sqlite::Connection(path, sqlite::Access::kReadWrite).execute(sql);
+    std::vector<std::string> codes;
+    for (const MapProblem& problem : verify_map(path).problems) codes.push_back(problem.code);
+    return codes;
+  }
+
+  TemporaryFolder folder;
+  fs::path path;
+};
+
+TEST_F(MapVerifier, AWholeMapHasNoProblems) {
+  std::int64_t last_done = 0;
+  std::int64_t last_total = 0;
+  const MapVerdict verdict = verify_map(path, [&](std::int64_t done, std::int64_t total) {
+    last_done = done;
+    last_total = total;
+  });
+  EXPECT_THAT(verdict.problems, IsEmpty());
+  EXPECT_EQ(verdict.evidence, 5);
+  EXPECT_EQ(last_done, verdict.tiles + verdict.evidence);
+  EXPECT_EQ(last_done, last_total);
+}
+
+TEST_F(MapVerifier, AnEmptyMapIsWhole) {
+  { MapWriter writer(folder / "empty.gpkg", settings_37n()); }
+  EXPECT_THAT(verify_map(folder / "empty.gpkg").problems, IsEmpty());
+}
+
+TEST_F(MapVerifier, NamesACorruptTile) {
+  EXPECT_THAT(
+      codes_after("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 11 AND tile_column = 848 AND "
+                  "tile_row = 12315"),
+      ElementsAre("tile-corrupt"));
+  EXPECT_THAT(verify_map(path).problems.front().what, HasSubstr("zoom 11 column 848 row 12315"));
+}
+
+TEST_F(MapVerifier, NamesCorruptEvidence) {
+  EXPECT_THAT(codes_after("UPDATE roadfix_evidence SET tile_data = x'00' WHERE tile_column = 848"),
+              ElementsAre("evidence-corrupt", "evidence-corrupt"));
+  EXPECT_THAT(verify_map(path).problems.front().what, HasSubstr("source 'a' column 848"));
+}
+
+TEST_F(MapVerifier, FindsTilesThatDoNotFollowFromTheEvidence) {
+  EXPECT_THAT(codes_after("UPDATE road_probability SET tile_data = (SELECT tile_data FROM road_probability WHERE "
+                          "zoom_level = 10 LIMIT 1) WHERE zoom_level = 11 AND tile_column = 848 AND tile_row = 12315"),
+              ElementsAre("tile-not-fused", "overview-differs"));
+}
+
+TEST_F(MapVerifier, FindsMissingTilesAndRowsLeftOver) {
+  // Two tiles of that level, and the one above that no longer follows.
+  EXPECT_THAT(codes_after("DELETE FROM road_probability WHERE zoom_level = 7"),
+              ElementsAre("ancillary-wrong", "overview-differs", "overview-differs", "overview-differs"));
+}
+
+TEST_F(MapVerifier, FindsWrongScales) {
+  EXPECT_THAT(codes_after("UPDATE gpkg_2d_gridded_tile_ancillary SET scale = 2 WHERE id = 1"),
+              ElementsAre("ancillary-wrong"));
+}
+
+TEST_F(MapVerifier, FindsABrokenLedger) {
+  EXPECT_THAT(codes_after("UPDATE roadfix_blocks SET done = 0 WHERE tile_column = 848"),
+              ElementsAre("ledger-broken", "ledger-broken"));
+}
+
+TEST_F(MapVerifier, FindsAWrongLatticeExtentAndVersion) {
+  EXPECT_THAT(codes_after("UPDATE gpkg_contents SET min_x = 0"), ElementsAre("extent-wrong"));
+  EXPECT_THAT(codes_after("UPDATE roadfix_meta SET value = '0' WHERE key = 'version'"),
+              ElementsAre("extent-wrong", "version-wrong"));
+  EXPECT_THAT(codes_after("UPDATE gpkg_tile_matrix SET pixel_x_size = 3"), ElementsAre("lattice-wrong"));
+}
+
+TEST_F(MapVerifier, FindsAnInterruptedFusion) {
+  EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (11, 12315, 848)"), ElementsAre("fusion-pending"));
+}
+
+TEST_F(MapVerifier, FindsDamageToTheDatabaseItself) {
+  // Overwrites pages in the middle of the file with noise; whatever SQLite calls it, it must be said.
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(fs::file_size(path) / 2 / 4096 * 4096));
+  file << std::string(20 * 4096, '\x5a');
+  file.close();
+  try {
+    EXPECT_FALSE(verify_map(path).problems.empty());
+  } catch (const CorruptData& error) {
+    EXPECT_EQ(error.code(), "map-corrupt");
+  }
+}
+
+TEST_F(MapVerifier, CanBeStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(verify_map(path, {}, stop.get_token()), Interrupted);
+}
+
+}  // namespace
+}  // namespace roadfix

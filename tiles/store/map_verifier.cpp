@@ -1,0 +1,245 @@
+#include "tiles/store/map_verifier.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/store/map_file.hpp"
+#include "tiles/store/tile_matrix.hpp"
+#include "tiles/store/tile_png.hpp"
+#include "tiles/store/tile_table.hpp"
+
+namespace roadfix {
+namespace {
+
+using sqlite::Access;
+using sqlite::Connection;
+using sqlite::Statement;
+
+constexpr const char* kIngestAgain = "Ingest the source again under --replace, or restore the map from a copy";
+
+class Verifier {
+ public:
+  Verifier(const std::filesystem::path& path, const std::function<void(std::int64_t, std::int64_t)>& progress,
+           std::stop_token stop)
+      : map_(open_map(path, Access::kRead)),
+        settings_(read_settings(map_)),
+        table_(map_, settings_),
+        progress_(progress),
+        stop_(std::move(stop)) {}
+
+  MapVerdict verdict() {
+    const std::int64_t at_start = number("PRAGMA data_version");
+    total_ = number("SELECT (SELECT count(*) FROM road_probability) + (SELECT count(*) FROM roadfix_evidence)");
+    check_database();
+    if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
+    check_lattice();
+    check_pending();
+    check_ledger();
+    check_ancillary();
+    check_evidence();
+    for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
+    check_summary();
+    if (number("PRAGMA data_version") != at_start) {
+      throw Interrupted("map-changed", fmt::format("{}: it was written to while it was being verified. Repeat when the "
+                                                   "ingest has ended",
+                                                   map_.path().string()));
+    }
+    return std::move(verdict_);
+  }
+
+ private:
+  std::int64_t number(const char* sql) {
+    Statement statement(map_, sql);
+    statement.step();
+    return statement.integer(0);
+  }
+
+  void report(std::string code, std::string what) { verdict_.problems.push_back({std::move(code), std::move(what)}); }
+
+  void step() {
+    if (stop_.stop_requested()) throw Interrupted("interrupted", "verify was stopped before it had seen every tile");
+    ++done_;
+    if (progress_) progress_(done_, std::max(done_, total_));
+  }
+
+  void check_database() {
+    for (const char* pragma : {"PRAGMA integrity_check", "PRAGMA foreign_key_check"}) {
+      Statement check(map_, pragma);
+      while (check.step()) {
+        if (check.text(0) != "ok") {
+          report("database-damaged", fmt::format("{}: {}. Restore the map from a copy", pragma + 7, check.text(0)));
+        }
+      }
+    }
+  }
+
+  void check_lattice() {
+    Statement set(map_,
+                  "SELECT count(*) FROM gpkg_tile_matrix_set WHERE table_name = 'road_probability' AND srs_id = ?1 AND "
+                  "min_x = 0 AND min_y = 0 AND max_x = ?2 AND max_y = ?3");
+    set.with(settings_.zone.epsg(), kLatticeWidthM, kLatticeHeightM).step();
+    bool right = set.integer(0) == 1;
+    Statement level(
+        map_,
+        "SELECT count(*) FROM gpkg_tile_matrix WHERE table_name = 'road_probability' AND zoom_level = ?1 AND "
+        "matrix_width = ?2 AND matrix_height = ?3 AND tile_width = ?4 AND tile_height = ?4 AND "
+        "pixel_x_size = ?5 AND pixel_y_size = ?5");
+    for (int zoom = kCoarsestZoom; zoom <= table_.finest_zoom(); ++zoom) {
+      level.with(zoom, matrix_width(zoom), matrix_height(zoom), kTileCells, cell_of_zoom(zoom)).step();
+      right = right && level.integer(0) == 1;
+    }
+    if (!right) {
+      report(
+          "lattice-wrong",
+          "gpkg_tile_matrix_set and gpkg_tile_matrix are not those of the zone and cell size of the map. Restore the "
+          "map from a copy");
+    }
+  }
+
+  void check_pending() {
+    const std::int64_t pending = number("SELECT count(*) FROM roadfix_pending");
+    if (pending == 0) return;
+    report("fusion-pending", fmt::format("{} tiles wait to be fused: an ingest was interrupted. Repeat it", pending));
+  }
+
+  void check_ledger() {
+    const std::int64_t unexplained = number(
+        "SELECT count(*) FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON b.source_id = e.source_id AND "
+        "b.tile_row = e.tile_row AND b.tile_column = e.tile_column WHERE b.done IS NOT 1");
+    if (unexplained > 0) {
+      report("ledger-broken", fmt::format("{} tiles of evidence belong to no finished block of a source. {}",
+                                          unexplained, kIngestAgain));
+    }
+    Statement open(map_,
+                   "SELECT s.name, count(*) FROM roadfix_sources s JOIN roadfix_blocks b ON b.source_id = s.id WHERE "
+                   "s.in_force = 1 AND b.done = 0 GROUP BY s.id");
+    while (open.step()) {
+      report("ledger-broken", fmt::format("source '{}' is in force but lacks {} blocks. {}", open.text(0),
+                                          open.integer(1), kIngestAgain));
+    }
+  }
+
+  void check_ancillary() {
+    const std::int64_t wrong = number(
+        "SELECT (SELECT count(*) FROM road_probability t LEFT JOIN gpkg_2d_gridded_tile_ancillary a ON a.tpudt_name = "
+        "'road_probability' AND a.tpudt_id = t.id WHERE a.scale IS NOT 1.0 OR a.offset IS NOT 0.0) + "
+        "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_id NOT IN (SELECT id FROM "
+        "road_probability))");
+    if (wrong == 0) return;
+    report("ancillary-wrong", fmt::format("{} rows of gpkg_2d_gridded_tile_ancillary are missing, wrong or left over: "
+                                          "other programs misread the map. Restore it from a copy",
+                                          wrong));
+  }
+
+  void check_evidence() {
+    Statement evidence(map_,
+                       "SELECT e.tile_data, s.name, e.tile_column, e.tile_row FROM roadfix_evidence e LEFT JOIN "
+                       "roadfix_sources s ON s.id = e.source_id");
+    while (evidence.step()) {
+      step();
+      ++verdict_.evidence;
+      try {
+        decode_tile(evidence.blob(0), TileDepth::kEvidence);
+      } catch (const CorruptData& error) {
+        report("evidence-corrupt", fmt::format("evidence of source '{}' column {} row {}: {}. {}", evidence.text(1),
+                                               evidence.integer(2), evidence.integer(3), error.what(), kIngestAgain));
+      }
+    }
+  }
+
+  /// Every tile that is there or should be.
+  std::vector<TileIndex> tiles_of_level(int zoom) {
+    Statement select(map_,
+                     zoom == table_.finest_zoom()
+                         ? "SELECT tile_row, tile_column FROM road_probability WHERE zoom_level = ?1 UNION "
+                           "SELECT tile_row, tile_column FROM roadfix_evidence ORDER BY 1, 2"
+                         : "SELECT tile_row, tile_column FROM road_probability WHERE zoom_level = ?1 UNION "
+                           "SELECT tile_row >> 1, tile_column >> 1 FROM road_probability WHERE zoom_level = ?1 + 1 "
+                           "ORDER BY 1, 2");
+    std::vector<TileIndex> tiles;
+    select.with(zoom);
+    while (select.step()) {
+      tiles.push_back({static_cast<int>(select.integer(1)), index_row(static_cast<int>(select.integer(0)), zoom)});
+    }
+    return tiles;
+  }
+
+  void check_level(int zoom) {
+    Statement pending(map_,
+                      "SELECT 1 FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
+    for (const TileIndex index : tiles_of_level(zoom)) {
+      const int row = tile_row(index, zoom);
+      std::optional<CellArray> stored;
+      try {
+        stored = table_.tile(zoom, index);
+      } catch (const CorruptData& error) {
+        step();
+        ++verdict_.tiles;
+        report(error.code(), error.what());
+        continue;
+      }
+      if (stored) {
+        step();
+        ++verdict_.tiles;
+      }
+      if (pending.with(zoom, row, index.col).step()) continue;
+      const auto expected = expected_tile(zoom, index);
+      if (!expected || *expected == stored.value_or(CellArray(kTileCells, kTileCells))) continue;
+      report(zoom == table_.finest_zoom() ? "tile-not-fused" : "overview-differs",
+             fmt::format("tile zoom {} column {} row {} does not follow from {}. {}", zoom, index.col, row,
+                         zoom == table_.finest_zoom() ? "the evidence" : "the level below", kIngestAgain));
+    }
+  }
+
+  /// nullopt where what it follows from is damaged, which has been reported already.
+  std::optional<CellArray> expected_tile(int zoom, TileIndex index) {
+    try {
+      const auto cells = zoom == table_.finest_zoom() ? table_.fused_evidence(index) : table_.overview(zoom, index);
+      return cells ? *cells : CellArray(kTileCells, kTileCells);
+    } catch (const CorruptData&) {
+      return std::nullopt;
+    }
+  }
+
+  void check_summary() {
+    if (!verdict_.problems.empty()) return;  // they follow from the tiles, and some of these are wrong
+    const MapInfo info = read_info(map_);
+    const GridBox extent = table_.observed_extent();
+    const bool same =
+        (extent.empty() && info.extent.empty()) || (extent.min == info.extent.min && extent.max == info.extent.max);
+    if (!same)
+      report("extent-wrong", "gpkg_contents does not give the box of the observed cells. Restore the map from a copy");
+    std::uint64_t sum = 0;
+    Statement tiles(map_, "SELECT tile_column, tile_row, tile_data FROM road_probability WHERE zoom_level = ?1");
+    tiles.with(table_.finest_zoom());
+    while (tiles.step()) {
+      sum += content_hash(
+          {static_cast<int>(tiles.integer(0)), index_row(static_cast<int>(tiles.integer(1)), table_.finest_zoom())},
+          tiles.blob(2));
+    }
+    if (fmt::format("{:016x}", sum) != info.version) {
+      report("version-wrong", "the version in roadfix_meta is not that of the tiles. Restore the map from a copy");
+    }
+  }
+
+  Connection map_;
+  MapSettings settings_;
+  TileTable table_;
+  std::function<void(std::int64_t, std::int64_t)> progress_;
+  std::stop_token stop_;
+  std::int64_t done_ = 0;
+  std::int64_t total_ = 0;
+  MapVerdict verdict_;
+};
+
+}  // namespace
+
+MapVerdict verify_map(const std::filesystem::path& path,
+                      const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+  return Verifier(path, progress, std::move(stop)).verdict();
+}
+
+}  // namespace roadfix

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/terminal.hpp"
+#include "core/units/error.hpp"
+#include "tiles/export/map_export.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct Options {
+  std::string map;
+  std::string target;
+  ExportFormat format = ExportFormat::kCog;
+  std::vector<double> bbox;
+  std::optional<double> cell_m;
+};
+
+/// The box in the zone of the map that holds a box of latitude and longitude.
+GridBox box_of(const UtmZone& zone, const std::vector<double>& bbox) {
+  const auto [west, south, east, north] = std::array{bbox[0], bbox[1], bbox[2], bbox[3]};
+  if (!(west < east) || !(south < north)) {
+    throw InvalidInput("bbox-empty",
+                       "--bbox: give WEST SOUTH EAST NORTH in degrees, west below east, south below north");
+  }
+  // Meridians and parallels are curves on the grid: look along the whole rim.
+  constexpr int kSteps = 16;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GridBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double lon = west + (east - west) * i / kSteps;
+    const double lat = south + (north - south) * i / kSteps;
+    for (const LatLon rim : {LatLon{south, lon}, LatLon{north, lon}, LatLon{lat, west}, LatLon{lat, east}}) {
+      const GridPoint p = zone.project(rim);
+      box.min = {std::min(box.min.east_m, p.east_m), std::min(box.min.north_m, p.north_m)};
+      box.max = {std::max(box.max.east_m, p.east_m), std::max(box.max.north_m, p.north_m)};
+    }
+  }
+  return box;
+}
+
+void run_export(const Options& options) {
+  const std::stop_token stop = stop_on_signals();
+  const MapReader map(options.map);
+  ExportOptions what{.format = options.format, .cell_m = options.cell_m};
+  if (!options.bbox.empty()) what.box = box_of(map.info().settings.zone, options.bbox);
+  Progress progress("export", "%", 0.1);
+  export_map(
+      map, options.target, what, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  auto* command = app.add_subcommand("export", "Writes a map, or a region of it, for other programs");
+  command->footer(
+      "Examples: roadfix export adiyaman.gpkg adiyaman.tif\n"
+      "          roadfix export adiyaman.gpkg centre.png --format png --bbox 38.26 37.75 38.29 37.77");
+  const auto options = std::make_shared<Options>();
+  command->add_option("map", options->map, "Map file (GeoPackage)")->required();
+  command->add_option("target", options->target, "File to write")->required();
+  const std::map<std::string, ExportFormat> formats{{"cog", ExportFormat::kCog},
+                                                    {"gtiff", ExportFormat::kGeoTiff},
+                                                    {"png", ExportFormat::kPng},
+                                                    {"mbtiles", ExportFormat::kMbTiles}};
+  command->add_option("--format", options->format, "cog (default), gtiff, png or mbtiles")
+      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""));
+  command->add_option("--bbox", options->bbox, "Region: WEST SOUTH EAST NORTH in degrees")->expected(4);
+  command->add_option("--cell", options->cell_m, "Cell size in metres: that of the map times a power of two");
+  command->callback([options] { run_export(*options); });
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "tiles/store/map_reader.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::string map;
+  bool as_json = false;
+};
+
+json source_json(const SourceStatus& source) {
+  const SourceRecord& r = source.record;
+  return {{"name", r.name},
+          {"kind", r.kind},
+          {"location", r.location},
+          {"fingerprint", r.fingerprint},
+          {"date", r.date},
+          {"licence", r.licence},
+          {"attribution", r.attribution},
+          {"method", r.method},
+          {"registration_sigma_m", r.registration_sigma_m},
+          {"complete", source.complete},
+          {"blocks_total", source.blocks_total},
+          {"blocks_done", source.blocks_done},
+          {"ingested_at", source.ingested_at}};
+}
+
+json bbox_of(const MapInfo& info) {
+  if (info.extent.empty()) return nullptr;
+  const LatLon south_west = info.settings.zone.unproject(info.extent.min);
+  const LatLon north_east = info.settings.zone.unproject(info.extent.max);
+  return {south_west.lon_deg, south_west.lat_deg, north_east.lon_deg, north_east.lat_deg};
+}
+
+void print_json(const std::string& path, const MapInfo& info) {
+  json sources = json::array();
+  for (const SourceStatus& source : info.sources) sources.push_back(source_json(source));
+  json extent = nullptr;
+  if (!info.extent.empty()) {
+    extent = {info.extent.min.east_m, info.extent.min.north_m, info.extent.max.east_m, info.extent.max.north_m};
+  }
+  const json answer = {{"map", path},
+                       {"epsg", info.settings.zone.epsg()},
+                       {"cell_m", info.settings.cell_m},
+                       {"levels", info.levels},
+                       {"tiles", info.tiles},
+                       {"pending_tiles", info.pending},
+                       {"version", info.version},
+                       {"schema_version", info.schema_version},
+                       {"extent_m", extent},
+                       {"bbox", bbox_of(info)},
+                       {"sources", sources}};
+  fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+void print_extent(const MapInfo& info) {
+  if (info.extent.empty()) {
+    fmt::print("extent    nothing observed yet\n");
+    return;
+  }
+  const LatLon sw = info.settings.zone.unproject(info.extent.min);
+  const LatLon ne = info.settings.zone.unproject(info.extent.max);
+  fmt::print("extent    {:.1f} x {:.1f} km, latitude {:.6f} to {:.6f}, longitude {:.6f} to {:.6f}\n",
+             info.extent.width_m() / 1000.0, info.extent.height_m() / 1000.0, sw.lat_deg, ne.lat_deg, sw.lon_deg,
+             ne.lon_deg);
+}
+
+void print_source(const SourceStatus& source) {
+  const SourceRecord& r = source.record;
+  const std::string state = source.complete ? fmt::format("ingested {}", source.ingested_at)
+                                            : fmt::format("incomplete: {} of {} blocks. Repeat the ingest to go on",
+                                                          source.blocks_done, source.blocks_total);
+  fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name, r.kind, state,
+             r.location, r.method);
+  for (const auto& [label, value] :
+       {std::pair{"date", r.date}, std::pair{"licence", r.licence}, std::pair{"attribution", r.attribution}}) {
+    if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);
+  }
+  fmt::print("  position      {:.2g} m (1 sigma)\n", r.registration_sigma_m);
+}
+
+void print_text(const std::string& path, const MapInfo& info) {
+  fmt::print("map       {}\n", path);
+  fmt::print("grid      EPSG:{}, cells of {} m, {} levels\n", info.settings.zone.epsg(), info.settings.cell_m,
+             info.levels);
+  print_extent(info);
+  fmt::print("tiles     {} of {} x {} cells, version {}\n", info.tiles, kTileCells, kTileCells, info.version);
+  if (info.pending > 0) {
+    fmt::print("          {} tiles wait to be fused: an ingest was interrupted. Repeat it\n", info.pending);
+  }
+  for (const SourceStatus& source : info.sources) print_source(source);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  auto* command = app.add_subcommand("info", "What a map holds and where it came from");
+  command->footer("Example: roadfix info adiyaman.gpkg --json");
+  const auto options = std::make_shared<Options>();
+  command->add_option("map", options->map, "Map file (GeoPackage)")->required();
+  command->add_flag("--json", options->as_json, "Answer in JSON");
+  command->callback([options] {
+    const MapReader reader(options->map);
+    options->as_json ? print_json(options->map, reader.info()) : print_text(options->map, reader.info());
+  });
+}
+
+}  // namespace roadfix::cli

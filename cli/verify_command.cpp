@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/terminal.hpp"
+#include "core/units/error.hpp"
+#include "tiles/store/map_verifier.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::string map;
+  bool as_json = false;
+};
+
+void print_json(const std::string& path, const MapVerdict& verdict) {
+  json problems = json::array();
+  for (const MapProblem& problem : verdict.problems)
+    problems.push_back({{"code", problem.code}, {"what", problem.what}});
+  const json answer = {{"map", path},
+                       {"whole", verdict.problems.empty()},
+                       {"tiles", verdict.tiles},
+                       {"evidence_tiles", verdict.evidence},
+                       {"problems", problems}};
+  fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
+void print_text(const std::string& path, const MapVerdict& verdict) {
+  for (const MapProblem& problem : verdict.problems) fmt::print("{} [{}]\n", problem.what, problem.code);
+  if (verdict.problems.empty()) {
+    fmt::print("{}: whole ({} tiles, {} tiles of evidence)\n", path, verdict.tiles, verdict.evidence);
+  }
+}
+
+void verify(const Options& options) {
+  const std::stop_token stop = stop_on_signals();
+  MapVerdict verdict;
+  {
+    Progress progress("verify", "tiles");
+    verdict = verify_map(
+        options.map, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+  }
+  options.as_json ? print_json(options.map, verdict) : print_text(options.map, verdict);
+  if (!verdict.problems.empty()) {
+    throw CorruptData("map-damaged", fmt::format("{}: {} problems found", options.map, verdict.problems.size()));
+  }
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app) {
+  auto* command = app.add_subcommand("verify", "Checks that every tile of a map is whole and follows from its sources");
+  command->footer("Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line).");
+  const auto options = std::make_shared<Options>();
+  command->add_option("map", options->map, "Map file (GeoPackage)")->required();
+  command->add_flag("--json", options->as_json, "Answer in JSON");
+  command->callback([options] { verify(*options); });
+}
+
+}  // namespace roadfix::cli

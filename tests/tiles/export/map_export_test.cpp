@@ -1,0 +1,149 @@
+#include "tiles/export/map_export.hpp"
+
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+
+#include <array>
+#include <memory>
+
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ingest;
+using testing::settings_37n;
+using testing::some_blocks;
+using testing::TemporaryFolder;
+
+class MapExport : public ::testing::Test {
+ protected:
+  MapExport() : path(folder / "m.gpkg") {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"a", 1, some_blocks(2)});
+    GDALAllRegister();
+  }
+
+  std::string code_of(const fs::path& target, const ExportOptions& options, std::stop_token stop = {}) const {
+    try {
+      export_map(MapReader(path), target, options, {}, stop);
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return "no error";
+  }
+
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
+  }
+
+  TemporaryFolder folder;
+  fs::path path;
+};
+
+struct Picture {
+  explicit Picture(const fs::path& path) : data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER)) {
+    EXPECT_NE(data, nullptr);
+  }
+  int cols() const { return data->GetRasterXSize(); }
+  int rows() const { return data->GetRasterYSize(); }
+  std::vector<float> band(int number) const {
+    std::vector<float> values(static_cast<std::size_t>(cols()) * static_cast<std::size_t>(rows()));
+    EXPECT_EQ(data->GetRasterBand(number)->RasterIO(GF_Read, 0, 0, cols(), rows(), values.data(), cols(), rows(),
+                                                    GDT_Float32, 0, 0),
+              CE_None);
+    return values;
+  }
+  std::unique_ptr<GDALDataset> data;
+};
+
+/// The file holds these cells at this place.
+void expect_probabilities(const Picture& picture, const RoadGrid& grid) {
+  ASSERT_EQ(picture.cols(), grid.geometry.cols);
+  ASSERT_EQ(picture.rows(), grid.geometry.rows);
+  std::array<double, 6> transform{};
+  picture.data->GetGeoTransform(transform.data());
+  EXPECT_EQ(transform[0], grid.geometry.box().min.east_m);
+  EXPECT_EQ(transform[3], grid.geometry.box().max.north_m);
+  EXPECT_EQ(transform[1], grid.geometry.cell_m);
+  EXPECT_STREQ(picture.data->GetSpatialRef()->GetAuthorityCode(nullptr), "32637");
+  const double no_data = picture.data->GetRasterBand(1)->GetNoDataValue();
+  const auto values = picture.band(1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Cell cell = grid.cells.cells()[i];
+    const double expected = is_observed(cell) ? probability(cell) : no_data;
+    ASSERT_NEAR(static_cast<double>(values[i]), expected, 1e-6) << i;
+  }
+}
+
+TEST_F(MapExport, GeoTiffsHoldTheProbabilitiesInPlace) {
+  const MapReader map(path);
+  const RoadGrid whole = map.read(GridGeometry::covering(map.info().extent, 2.0));
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kGeoTiff}) {
+    const auto target = folder / "out.tif";
+    export_map(map, target, {.format = format});
+    expect_probabilities(Picture(target), whole);
+  }
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(MapExport, ARegionInCoarserCellsIsThatOfTheOverview) {
+  const MapReader map(path);
+  const GridBox extent = map.info().extent;
+  const GridBox box{{extent.min.east_m + 101, extent.min.north_m + 55},
+                    {extent.max.east_m - 3, extent.max.north_m - 9}};
+  const auto target = folder / "out.tif";
+  export_map(map, target, {.format = ExportFormat::kGeoTiff, .box = box, .cell_m = 8.0});
+  expect_probabilities(Picture(target), map.read(GridGeometry::covering(box, 8.0)));
+}
+
+TEST_F(MapExport, PngsAreGreyAndTransparentWhereUnobserved) {
+  const MapReader map(path);
+  const auto target = folder / "out.png";
+  export_map(map, target, {.format = ExportFormat::kPng});
+  EXPECT_TRUE(fs::exists(folder / "out.wld"));
+  EXPECT_EQ(files(), 3U);
+  const Picture picture(target);
+  const auto grey = picture.band(1);
+  const auto alpha = picture.band(2);
+  const RoadGrid whole = map.read(GridGeometry::covering(map.info().extent, 2.0));
+  for (std::size_t i = 0; i < grey.size(); ++i) {
+    const Cell cell = whole.cells.cells()[i];
+    ASSERT_EQ(alpha[i], is_observed(cell) ? 255.0F : 0.0F);
+    ASSERT_EQ(grey[i], is_observed(cell) ? static_cast<float>(cell) : 0.0F);
+  }
+}
+
+TEST_F(MapExport, MbTilesCoverTheMap) {
+  const auto target = folder / "out.mbtiles";
+  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
+  const Picture picture(target);
+  EXPECT_STREQ(picture.data->GetSpatialRef()->GetAuthorityCode(nullptr), "3857");
+  EXPECT_EQ(picture.data->GetRasterCount(), 4);
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
+  EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");
+  EXPECT_EQ(code_of(folder / "out.tif", {.box = GridBox{{0, 0}, {100, 100}}}), "region-outside-map");
+  EXPECT_EQ(code_of(folder / "no/such/folder/out.tif", {}), "export-failed");
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(code_of(folder / "out.tif", {}, stop.get_token()), "interrupted");
+  EXPECT_EQ(files(), 1U);
+  { MapWriter(folder / "empty.gpkg", settings_37n()); }
+  EXPECT_THROW(export_map(MapReader(folder / "empty.gpkg"), folder / "out.tif", {}), InvalidInput);
+}
+
+TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
+  sqlite::Connection(path, sqlite::Access::kReadWrite).execute("UPDATE road_probability SET tile_data = x'00'");
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng}) {
+    EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
+  }
+  EXPECT_EQ(files(), 1U);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,100 @@
+#include "tiles/export/map_dataset.hpp"
+
+#include <algorithm>
+#include <exception>
+
+namespace roadfix {
+namespace {
+
+constexpr double kNoData = -1.0;
+
+float probability_pixel(Cell cell) {
+  return is_observed(cell) ? static_cast<float>(probability(cell)) : static_cast<float>(kNoData);
+}
+
+/// One band: `pixel` makes its value from a cell.
+template <typename Value, Value (*pixel)(Cell)>
+class MapBand final : public GDALRasterBand {
+ public:
+  MapBand(MapDataset& map, int number, GDALDataType type, GDALColorInterp colour, const char* name)
+      : map_(map), colour_(colour) {
+    poDS = &map;
+    nBand = number;
+    eDataType = type;
+    nBlockXSize = kTileCells;
+    nBlockYSize = kTileCells;
+    GDALRasterBand::SetDescription(name);
+  }
+
+  double GetNoDataValue(int* success) override {
+    const bool has = colour_ == GCI_Undefined;
+    if (success != nullptr) *success = has ? TRUE : FALSE;
+    return has ? kNoData : 0.0;
+  }
+  GDALColorInterp GetColorInterpretation() override { return colour_; }
+
+  /// GDAL is C below: no exception may leave.
+  CPLErr IReadBlock(int col, int row, void* image) override {
+    try {
+      const CellArray& cells = map_.block(col, row);
+      auto* out = static_cast<Value*>(image);
+      std::fill_n(out, kTileCells * kTileCells, pixel(kUnobserved));
+      for (int r = 0; r < cells.rows(); ++r) std::ranges::transform(cells.row(r), out + r * kTileCells, pixel);
+      return CE_None;
+    } catch (const std::exception& error) {
+      map_.keep_failure();
+      CPLError(CE_Failure, CPLE_AppDefined, "%s", error.what());
+      return CE_Failure;
+    }
+  }
+
+ private:
+  MapDataset& map_;
+  GDALColorInterp colour_;
+};
+
+GByte grey_pixel(Cell cell) { return is_observed(cell) ? cell : 0; }
+GByte alpha_pixel(Cell cell) { return is_observed(cell) ? 255 : 0; }
+
+}  // namespace
+
+MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)
+    : map_(map), geometry_(geometry) {
+  nRasterXSize = geometry.cols;
+  nRasterYSize = geometry.rows;
+  reference_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  reference_.importFromEPSG(map.info().settings.zone.epsg());
+  if (kind == PixelKind::kProbability) {
+    SetBand(1, new MapBand<float, probability_pixel>(*this, 1, GDT_Float32, GCI_Undefined, "probability of road"));
+  } else {
+    SetBand(1, new MapBand<GByte, grey_pixel>(*this, 1, GDT_Byte, GCI_GrayIndex, "probability of road x 254"));
+    SetBand(2, new MapBand<GByte, alpha_pixel>(*this, 2, GDT_Byte, GCI_AlphaBand, "observed"));
+  }
+}
+
+CPLErr MapDataset::GetGeoTransform(double* transform) {
+  const GridBox box = geometry_.box();
+  const double values[] = {box.min.east_m, geometry_.cell_m, 0.0, box.max.north_m, 0.0, -geometry_.cell_m};
+  std::ranges::copy(values, transform);
+  return CE_None;
+}
+
+const OGRSpatialReference* MapDataset::GetSpatialRef() const { return &reference_; }
+
+const CellArray& MapDataset::block(int col, int row) {
+  if (last_index_ != TileIndex{col, row}) {
+    const GridGeometry under{geometry_.cell_m,
+                             {geometry_.origin.col + col * kTileCells, geometry_.origin.row + row * kTileCells},
+                             std::min(kTileCells, geometry_.cols - col * kTileCells),
+                             std::min(kTileCells, geometry_.rows - row * kTileCells)};
+    last_ = map_.read(under).cells;
+    last_index_ = {col, row};
+  }
+  return last_;
+}
+
+void MapDataset::rethrow_failure() const {
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+}  // namespace roadfix

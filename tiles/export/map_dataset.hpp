@@ -1,0 +1,39 @@
+// A map as a GDAL dataset, so that any GDAL driver can copy it block by block. Not for other modules.
+#pragma once
+
+#include <gdal_priv.h>
+
+#include <stop_token>
+
+#include "tiles/store/map_reader.hpp"
+
+namespace roadfix {
+
+enum class PixelKind {
+  kProbability,  ///< one Float32 band, 0..1, nodata -1
+  kPicture,      ///< two Byte bands: grey 0..254, alpha 0 or 255
+};
+
+class MapDataset final : public GDALDataset {
+ public:
+  /// `map` must outlive it. An exception of the map ends the copy with a GDAL error; rethrow_failure() then throws it.
+  MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind);
+
+  CPLErr GetGeoTransform(double* transform) override;
+  const OGRSpatialReference* GetSpatialRef() const override;
+
+  /// Cells under a block of 256 x 256 pixels; smaller at the eastern and southern edge.
+  const CellArray& block(int col, int row);
+  void keep_failure() { failure_ = std::current_exception(); }
+  void rethrow_failure() const;
+
+ private:
+  const MapReader& map_;
+  GridGeometry geometry_;
+  OGRSpatialReference reference_;
+  std::exception_ptr failure_;
+  TileIndex last_index_{-1, -1};
+  CellArray last_;
+};
+
+}  // namespace roadfix

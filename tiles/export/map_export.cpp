@@ -1,0 +1,126 @@
+#include "tiles/export/map_export.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <system_error>
+
+#include "core/units/error.hpp"
+#include "tiles/export/map_dataset.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Driver {
+  const char* name;
+  PixelKind pixels;
+  std::array<const char*, 6> options;  ///< of the driver, ends with null
+};
+
+Driver driver_of(ExportFormat format) {
+  switch (format) {
+    case ExportFormat::kCog:
+      return {"COG", PixelKind::kProbability, {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"}};
+    case ExportFormat::kGeoTiff:
+      return {"GTiff",
+              PixelKind::kProbability,
+              {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256", "BIGTIFF=IF_SAFER"}};
+    case ExportFormat::kPng:
+      return {"PNG", PixelKind::kPicture, {"WORLDFILE=YES"}};
+    case ExportFormat::kMbTiles:
+      return {"MBTiles", PixelKind::kPicture, {"TILE_FORMAT=PNG", "NAME=road probability"}};
+  }
+  throw InvalidInput("format-unknown", "no such export format");
+}
+
+GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
+  const MapInfo& info = map.info();
+  if (info.extent.empty()) {
+    throw InvalidInput("map-has-no-cells", "the map has no observed cells to export. Ingest a source first");
+  }
+  const double cell_m = options.cell_m.value_or(info.settings.cell_m);
+  map.read({cell_m, {0, 0}, 0, 0});  // says so where the map has no such cells
+  const GridGeometry whole = GridGeometry::covering(info.extent, cell_m);
+  if (!options.box) return whole;
+  const auto region = whole.intersection(GridGeometry::covering(*options.box, cell_m));
+  if (region) return *region;
+  throw InvalidInput("region-outside-map",
+                     "the region to export does not touch the observed part of the map. roadfix "
+                     "info shows where that is");
+}
+
+struct Monitor {
+  const std::function<void(std::int64_t, std::int64_t)>& progress;
+  const std::stop_token& stop;
+};
+
+int on_progress(double share, const char*, void* monitor) {
+  const auto& [progress, stop] = *static_cast<const Monitor*>(monitor);
+  if (progress) progress(static_cast<std::int64_t>(share * 1000.0), 1000);
+  return stop.stop_requested() ? FALSE : TRUE;
+}
+
+/// What a copy leaves beside its target when it fails, and side files of a driver.
+void remove_unfinished(const fs::path& unfinished) {
+  std::error_code ignored;
+  for (const char* suffix : {"", ".aux.xml", "-journal", ".ovr.tmp", ".msk.ovr.tmp"})
+    fs::remove(unfinished.string() + suffix, ignored);
+  fs::remove(fs::path(unfinished).replace_extension(".wld"), ignored);
+}
+
+void copy(MapDataset& source, const Driver& target, const fs::path& path, const Monitor& monitor) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
+  if (driver == nullptr) {
+    throw IoFailure("export-failed", fmt::format("this GDAL has no {} driver. Choose another format", target.name));
+  }
+  CPLErrorReset();
+  // The error is reported by exception, not printed by GDAL.
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const std::unique_ptr<GDALDataset> written(driver->CreateCopy(path.c_str(), &source, FALSE,
+                                                                const_cast<char**>(target.options.data()), on_progress,
+                                                                const_cast<Monitor*>(&monitor)));
+  if (written != nullptr) written->FlushCache();
+  CPLPopErrorHandler();
+  source.rethrow_failure();
+  if (monitor.stop.stop_requested()) throw Interrupted("interrupted", "the export was stopped; nothing was written");
+  if (written == nullptr || CPLGetLastErrorType() >= CE_Failure) {
+    throw IoFailure("export-failed", fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
+  }
+}
+
+}  // namespace
+
+void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options,
+                const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+  constexpr std::int64_t kLargestPicture = std::int64_t{1} << 29;
+  GDALAllRegister();
+  const Driver driver = driver_of(options.format);
+  const GridGeometry geometry = geometry_of(map, options);
+  if (options.format == ExportFormat::kPng && std::int64_t{geometry.cols} * geometry.rows > kLargestPicture) {
+    throw LimitExceeded("picture-too-large",
+                        fmt::format("{} x {} pixels are too many for a PNG. Export a region or coarser cells",
+                                    geometry.cols, geometry.rows));
+  }
+  // The name ends like the target: drivers look at the extension.
+  const fs::path unfinished = target.parent_path() / ("unfinished-" + target.filename().string());
+  remove_unfinished(unfinished);
+  try {
+    MapDataset source(map, geometry, driver.pixels);
+    copy(source, driver, unfinished, {progress, stop});
+    const fs::path world = fs::path(unfinished).replace_extension(".wld");
+    if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
+    fs::rename(unfinished, target);
+    remove_unfinished(unfinished);
+  } catch (const fs::filesystem_error& error) {
+    remove_unfinished(unfinished);
+    throw IoFailure("export-failed", fmt::format("{}: {}", target.string(), error.code().message()));
+  } catch (...) {
+    remove_unfinished(unfinished);
+    throw;
+  }
+}
+
+}  // namespace roadfix

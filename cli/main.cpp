@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   roadfix::cli::add_info_command(app);
   roadfix::cli::add_verify_command(app);
+  roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,100 @@
+#include "tiles/sources/collar.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr int kSamples = 1024;
+constexpr int kTolerance = 8;
+constexpr std::uint8_t kReached = 128;
+
+cv::Mat like(const cv::Mat& values, Rgb colour) {
+  cv::Mat result;
+  if (values.channels() == 1) {
+    const int grey = (299 * colour.red + 587 * colour.green + 114 * colour.blue + 500) / 1000;
+    cv::inRange(values, cv::Scalar(grey - kTolerance), cv::Scalar(grey + kTolerance), result);
+  } else {
+    const cv::Scalar bgr(colour.blue, colour.green, colour.red);
+    cv::inRange(values, bgr - cv::Scalar::all(kTolerance), bgr + cv::Scalar::all(kTolerance), result);
+  }
+  return result;
+}
+
+/// Leaves 255 where a path of 255 leads to the border, 0 elsewhere.
+cv::Mat connected_to_border(cv::Mat candidates) {
+  const auto fill = [&candidates](int col, int row) {
+    if (candidates.at<std::uint8_t>(row, col) == 255) cv::floodFill(candidates, {col, row}, cv::Scalar(kReached));
+  };
+  for (int col = 0; col < candidates.cols; ++col) {
+    fill(col, 0);
+    fill(col, candidates.rows - 1);
+  }
+  for (int row = 0; row < candidates.rows; ++row) {
+    fill(0, row);
+    fill(candidates.cols - 1, row);
+  }
+  return candidates == kReached;
+}
+
+}  // namespace
+
+Collar::Collar(RasterFile& file, Rgb colour, const ValueRange& range) : image_(file.size()), colour_(colour) {
+  const cv::Size samples(std::min(kSamples, image_.width), std::min(kSamples, image_.height));
+  cv::Mat candidates(samples, CV_8UC1);
+  for (int row = 0; row < samples.height; ++row) {
+    const auto y = static_cast<int>(std::int64_t{image_.height} * row / samples.height);
+    const RasterPixels line = file.read({0, y, image_.width, 1}, range);
+    const cv::Mat match = like(line.values, colour) | (line.valid == 0);
+    for (int col = 0; col < samples.width; ++col) {
+      const auto x = static_cast<int>(std::int64_t{image_.width} * col / samples.width);
+      candidates.at<std::uint8_t>(row, col) = match.at<std::uint8_t>(0, x);
+    }
+  }
+  // The rim of the collar falls between samples.
+  cv::dilate(connected_to_border(candidates), connected_, cv::Mat());
+}
+
+void Collar::clear(cv::Rect window, RasterPixels& pixels) const {
+  const cv::Mat match = like(pixels.values, colour_);
+  for (int row = 0; row < window.height; ++row) {
+    const auto y = static_cast<int>(std::int64_t{window.y + row} * connected_.rows / image_.height);
+    for (int col = 0; col < window.width; ++col) {
+      if (match.at<std::uint8_t>(row, col) == 0) continue;
+      const auto x = static_cast<int>(std::int64_t{window.x + col} * connected_.cols / image_.width);
+      if (connected_.at<std::uint8_t>(y, x) != 0) pixels.valid.at<std::uint8_t>(row, col) = 0;
+    }
+  }
+}
+
+Rgb parse_colour(const std::string& text) {
+  if (text == "white") return {255, 255, 255};
+  if (text == "black") return {0, 0, 0};
+  std::vector<std::uint8_t> parts;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  while (at <= end) {
+    std::uint8_t value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc{}) break;
+    parts.push_back(value);
+    at = next;
+    if (at == end) break;
+    if (*at != ',') break;
+    ++at;
+  }
+  if (parts.size() != 3 || at != end) {
+    throw InvalidInput("colour-unknown",
+                       fmt::format("'{}' is no colour: write white, black or red,green,blue with 0 to 255 each", text));
+  }
+  return {parts[0], parts[1], parts[2]};
+}
+
+}  // namespace roadfix

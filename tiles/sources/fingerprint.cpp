@@ -1,0 +1,87 @@
+#include "tiles/sources/fingerprint.hpp"
+
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/gdal_session.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr vsi_l_offset kWholeBytes = vsi_l_offset{8} << 20;
+constexpr std::size_t kEndBytes = std::size_t{1} << 20;
+
+/// 64-bit FNV-1a: names content, guards against no one.
+class Hash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+  }
+  void add(std::uint64_t number) { add(fmt::format("{};", number)); }
+  std::string text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+struct CloseFile {
+  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+};
+
+void add_content(Hash& hash, const std::string& path, vsi_l_offset size) {
+  const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
+  if (!file) throw IoFailure("source-unreadable", fmt::format("{}: cannot be read", path));
+  const bool whole = size <= kWholeBytes;
+  std::string bytes(whole ? static_cast<std::size_t>(size) : kEndBytes, '\0');
+  bytes.resize(VSIFReadL(bytes.data(), 1, bytes.size(), file.get()));
+  hash.add(bytes);
+  if (whole) return;
+  VSIFSeekL(file.get(), size - kEndBytes, SEEK_SET);
+  bytes.resize(kEndBytes);
+  bytes.resize(VSIFReadL(bytes.data(), 1, bytes.size(), file.get()));
+  hash.add(bytes);
+}
+
+/// The file and what GDAL reads with it: world files, .aux.xml, the parts of a Shapefile, the images of a VRT.
+std::vector<std::string> with_side_files(const std::string& path) {
+  const GdalMessages messages;
+  const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  std::vector<std::string> files{path};
+  if (!dataset) return files;
+  char** list = dataset->GetFileList();
+  for (char** entry = list; entry != nullptr && *entry != nullptr; ++entry) files.emplace_back(*entry);
+  CSLDestroy(list);
+  std::ranges::sort(files);
+  const auto same = std::ranges::unique(files);
+  files.erase(same.begin(), same.end());
+  return files;
+}
+
+}  // namespace
+
+std::string fingerprint(const std::vector<std::string>& paths, const std::string& settings) {
+  require_gdal();
+  Hash hash;
+  hash.add(settings);
+  for (const std::string& path : paths) {
+    for (const std::string& file : with_side_files(path)) {
+      VSIStatBufL stat;
+      if (VSIStatL(file.c_str(), &stat) != 0) continue;
+      hash.add(std::filesystem::path(file).filename().string());
+      hash.add(static_cast<std::uint64_t>(stat.st_size));
+      hash.add(static_cast<std::uint64_t>(stat.st_mtime));
+      if (VSI_ISREG(stat.st_mode)) add_content(hash, file, static_cast<vsi_l_offset>(stat.st_size));
+    }
+  }
+  return hash.text();
+}
+
+}  // namespace roadfix

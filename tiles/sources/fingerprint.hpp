@@ -1,0 +1,13 @@
+// A short text that changes when a source's files or settings do; it tells a resumed ingest from another one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace roadfix {
+
+/// Size, time of change and content (all of it up to 8 MiB, otherwise the first and last MiB) of every file, side files
+/// included where they lie beside it under the same stem, and the settings. Throws IoFailure for an unreadable file.
+std::string fingerprint(const std::vector<std::string>& paths, const std::string& settings);
+
+}  // namespace roadfix

@@ -1,0 +1,108 @@
+#include "tiles/sources/gdal_session.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr GIntBig kCacheBytes = GIntBig{384} << 20;
+
+}  // namespace
+
+void require_gdal() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALAllRegister();
+    GDALSetCacheMax64(kCacheBytes);
+    // A picture that ends early is damaged input, not a grey area.
+    CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");
+    CPLSetConfigOption("RAW_CHECK_FILE_SIZE", "YES");
+    CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
+    CPLSetConfigOption("OGR_INTERLEAVED_READING", "YES");
+    // Reading must leave nothing beside the user's files.
+    CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "NO");
+  });
+}
+
+GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::collect, this); }
+GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+
+void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
+  if (severity < CE_Failure) return;
+  static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->last_ = message;
+}
+
+std::string GdalMessages::text() const { return last_.empty() ? std::string(kNone) : last_; }
+
+DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options) {
+  require_gdal();
+  const GdalMessages messages;
+  DatasetPtr dataset(GDALDataset::Open(path.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                                       open_options, nullptr));
+  if (dataset) return dataset;
+  VSIStatBufL stat;
+  if (VSIStatL(path.c_str(), &stat) != 0) {
+    throw NotFound("source-not-found", fmt::format("{}: no such file", path));
+  }
+  throw InvalidInput("source-unreadable", fmt::format("{}: cannot be opened ({}); gdalinfo or ogrinfo on it tells more",
+                                                      path, messages.text()));
+}
+
+OGRSpatialReference utm_reference(UtmZone zone) {
+  require_gdal();
+  OGRSpatialReference reference;
+  reference.importFromEPSG(zone.epsg());
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+OGRSpatialReference wgs84_reference() {
+  require_gdal();
+  OGRSpatialReference reference;
+  reference.importFromEPSG(4326);
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+OGRSpatialReference parse_crs(const std::string& text) {
+  require_gdal();
+  const GdalMessages messages;
+  OGRSpatialReference reference;
+  if (reference.SetFromUserInput(text.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) !=
+      OGRERR_NONE) {
+    throw InvalidInput("crs-unknown", fmt::format("'{}' is no coordinate reference system ({}): write for example "
+                                                  "EPSG:32637",
+                                                  text, messages.text()));
+  }
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+std::string crs_name(const OGRSpatialReference& reference) {
+  const char* authority = reference.GetAuthorityName(nullptr);
+  const char* code = reference.GetAuthorityCode(nullptr);
+  if (authority != nullptr && code != nullptr) return fmt::format("{}:{}", authority, code);
+  const char* name = reference.GetName();
+  return name != nullptr ? name : "unnamed";
+}
+
+TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
+                                 const std::string& path) {
+  const GdalMessages messages;
+  TransformationPtr result(OGRCreateCoordinateTransformation(&from, &to));
+  if (!result) {
+    throw InvalidInput("crs-not-transformable",
+                       fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, give the right "
+                                   "one with --crs",
+                                   path, crs_name(from), crs_name(to), messages.text()));
+  }
+  return result;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,60 @@
+// GDAL as the rest of this module wants it: registered once, quiet, its errors turned into ours.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/geodesy/utm.hpp"
+#include "core/units/planar.hpp"
+
+namespace roadfix {
+
+/// Registers the drivers and sets the options that make damaged files an error. Cheap when repeated.
+void require_gdal();
+
+/// Collects what GDAL complains about on this thread instead of printing it.
+class GdalMessages {
+ public:
+  GdalMessages();
+  ~GdalMessages();
+  GdalMessages(const GdalMessages&) = delete;
+  GdalMessages& operator=(const GdalMessages&) = delete;
+
+  /// The last failure, or "no reason given".
+  std::string text() const;
+  static constexpr std::string_view kNone = "no reason given";
+
+ private:
+  static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum number, const char* message);
+  std::string last_;
+};
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// Throws NotFound ("source-not-found") or InvalidInput ("source-unreadable") with GDAL's reason. `flags` and
+/// `open_options` are those of GDALOpenEx.
+DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options = nullptr);
+
+/// Reference systems with x east or longitude first, whatever their authority says.
+OGRSpatialReference utm_reference(UtmZone zone);
+OGRSpatialReference wgs84_reference();
+/// "EPSG:26986", WKT, PROJ text. Throws InvalidInput "crs-unknown".
+OGRSpatialReference parse_crs(const std::string& text);
+std::string crs_name(const OGRSpatialReference& reference);
+
+struct DestroyTransformation {
+  void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
+};
+using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation>;
+/// Throws InvalidInput "crs-not-transformable"; `path` is named in it.
+TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
+                                 const std::string& path);
+
+}  // namespace roadfix

@@ -1,0 +1,144 @@
+#include "tiles/sources/mosaic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "tiles/sources/collar.hpp"
+#include "tiles/sources/placement.hpp"
+#include "tiles/sources/warp.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::size_t kIdleHandles = 48;
+
+bool overlap(const GridBox& a, const GridBox& b) {
+  return a.min.east_m < b.max.east_m && b.min.east_m < a.max.east_m && a.min.north_m < b.max.north_m &&
+         b.min.north_m < a.max.north_m;
+}
+
+GridBox united(const GridBox& a, const GridBox& b) {
+  return {{std::min(a.min.east_m, b.min.east_m), std::min(a.min.north_m, b.min.north_m)},
+          {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
+}
+
+ValueRange percentile_range(std::vector<float> values) {
+  if (values.empty()) return {0.0, 1.0};
+  const auto at = [&values](double share) {
+    const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + index, values.end());
+    return static_cast<double>(values[static_cast<std::size_t>(index)]);
+  };
+  const double low = at(0.005);
+  const double high = at(0.995);
+  return {low, high > low ? high : low + 1.0};
+}
+
+ValueRange share_range(const std::vector<float>& values, bool integers) {
+  if (!integers) return {0.0, 1.0};
+  const float largest = values.empty() ? 0.0F : *std::ranges::max_element(values);
+  if (largest <= 1.0F) return {0.0, 1.0};
+  return {0.0, largest <= 255.0F ? 255.0 : 65535.0};
+}
+
+}  // namespace
+
+struct Mosaic::Image {
+  std::string path;
+  GridBox footprint;
+  double gsd_m = 0.0;
+  std::shared_ptr<const Collar> collar;
+};
+
+struct Mosaic::Handle {
+  Handle(std::size_t image_index, std::unique_ptr<RasterFile> raster, UtmZone zone)
+      : image(image_index), file(std::move(raster)), placement(*file, zone) {}
+  std::size_t image;
+  std::unique_ptr<RasterFile> file;
+  Placement placement;
+};
+
+Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
+    : options_(options), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
+  bool declared = rule == ValueRule::kPicture;
+  std::vector<float> values;
+  for (std::string& path : paths) {
+    RasterFile file(path, options);
+    const Placement placement(file, zone);
+    Image image{std::move(path), placement.footprint(), placement.gsd_m(), nullptr};
+    extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
+    gsd_m_ = std::min(gsd_m_, image.gsd_m);
+    channels_ = std::max(channels_, file.channels());
+    integers_ = integers_ || file.holds_integers();
+    if (images_.empty()) crs_ = crs_name(file.crs());
+    declared = declared && file.declared_range().has_value();
+    if (declared) {
+      range_ = *file.declared_range();
+    } else {
+      const std::vector<float> sample = file.sample_values();
+      values.insert(values.end(), sample.begin(), sample.end());
+    }
+    images_.push_back(std::move(image));
+  }
+  if (!declared)
+    range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
+  if (rule == ValueRule::kShare) channels_ = 1;
+  for (Image& image : images_) {
+    if (!options.collar) break;
+    RasterFile file(image.path, options);
+    image.collar = std::make_shared<Collar>(file, *options.collar, range_);
+  }
+}
+
+Mosaic::~Mosaic() = default;
+
+bool Mosaic::touches(const GridBox& box) const {
+  return std::ranges::any_of(images_, [&](const Image& image) { return overlap(image.footprint, box); });
+}
+
+GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
+  const cv::Size size(static_cast<int>(std::lround(box.width_m() / gsd_m)),
+                      static_cast<int>(std::lround(box.height_m() / gsd_m)));
+  GroundImage result{cv::Mat(size, CV_8UC(channels_), cv::Scalar::all(0)), cv::Mat(size, CV_8UC1, cv::Scalar(0)),
+                     gsd_m};
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    if (!overlap(images_[i].footprint, box)) continue;
+    std::unique_ptr<Handle> handle = borrow(i, gsd_m);
+    warp_into({*handle->file, handle->placement, range_, images_[i].collar.get()}, box, result);
+    give_back(std::move(handle));
+  }
+  return result;
+}
+
+std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, double gsd_m) const {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find_if(idle_, [&](const auto& handle) { return handle->image == image; });
+    if (found != idle_.end()) {
+      std::unique_ptr<Handle> handle = std::move(*found);
+      idle_.erase(found);
+      return handle;
+    }
+  }
+  auto file = std::make_unique<RasterFile>(images_[image].path, options_);
+  const int overview = file->overview_for(gsd_m / images_[image].gsd_m);
+  // The collar was judged on the pixels of the full image, and its windows are in them.
+  if (overview >= 0 && !images_[image].collar) {
+    file = std::make_unique<RasterFile>(images_[image].path, options_, overview);
+  }
+  return std::make_unique<Handle>(image, std::move(file), zone_);
+}
+
+void Mosaic::give_back(std::unique_ptr<Handle> handle) const {
+  std::unique_ptr<Handle> oldest;  // closed outside the lock
+  const std::lock_guard lock(mutex_);
+  idle_.push_front(std::move(handle));
+  if (idle_.size() <= kIdleHandles) return;
+  oldest = std::move(idle_.back());
+  idle_.pop_back();
+}
+
+}  // namespace roadfix

@@ -1,0 +1,67 @@
+// Rasters of one source seen as one picture of the ground on the map's plane. Where images overlap, the first one (in
+// the order given) that holds something wins.
+//
+// Memory does not grow with the images: a window is warped in pieces of about a megapixel of source each.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/detect/road_detector.hpp"
+#include "core/geodesy/utm.hpp"
+#include "core/units/planar.hpp"
+#include "tiles/sources/raster_file.hpp"
+
+namespace roadfix {
+
+/// How values become 0..255 where the type does not say it.
+enum class ValueRule {
+  /// Bytes as they are (NBITS respected), anything else from the 0.5th to the 99.5th percentile of values sampled
+  /// evenly over all images of the source: one range for all bands, images and blocks.
+  kPicture,
+  /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
+  kShare,
+};
+
+class Mosaic {
+ public:
+  /// Throws what RasterFile and Placement throw.
+  Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone);
+  ~Mosaic();
+
+  GridBox extent() const { return extent_; }
+  bool touches(const GridBox& box) const;
+  /// Of the finest image.
+  double gsd_m() const { return gsd_m_; }
+  bool holds_integers() const { return integers_; }
+  ValueRange range() const { return range_; }
+  std::string crs() const { return crs_; }
+
+  /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed. Thread-safe.
+  GroundImage view(const GridBox& box, double gsd_m) const;
+
+ private:
+  struct Image;
+  struct Handle;
+  std::unique_ptr<Handle> borrow(std::size_t image, double gsd_m) const;
+  void give_back(std::unique_ptr<Handle> handle) const;
+
+  RasterOptions options_;
+  UtmZone zone_;
+  std::vector<Image> images_;
+  GridBox extent_;
+  double gsd_m_ = 0.0;
+  int channels_ = 1;
+  bool integers_ = false;
+  ValueRange range_;
+  std::string crs_;
+  mutable std::mutex mutex_;
+  mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first
+};
+
+}  // namespace roadfix

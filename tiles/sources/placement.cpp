@@ -1,0 +1,124 @@
+#include "tiles/sources/placement.hpp"
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal_alg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+std::string wkt(const OGRSpatialReference& reference) {
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2", nullptr};
+  reference.exportToWkt(&text, options);
+  std::string result = text != nullptr ? text : "";
+  CPLFree(text);
+  return result;
+}
+
+void* create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
+  const GdalMessages messages;
+  CPLStringList options;
+  options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());
+  options.SetNameValue("DST_SRS", wkt(target).c_str());
+  void* transformer = GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List());
+  if (transformer == nullptr) {
+    throw InvalidInput("crs-not-transformable",
+                       fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, give the right "
+                                   "one with --crs",
+                                   file.path(), crs_name(file.crs()), crs_name(target), messages.text()));
+  }
+  return transformer;
+}
+
+void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_source) {
+  const GdalMessages messages;
+  const std::size_t count = points.size();
+  std::vector<double> x(count);
+  std::vector<double> y(count);
+  std::vector<double> z(count, 0.0);
+  std::vector<int> good(count, FALSE);
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] = points[i].x;
+    y[i] = points[i].y;
+  }
+  GDALGenImgProjTransform(transformer, to_source ? TRUE : FALSE, static_cast<int>(count), x.data(), y.data(), z.data(),
+                          good.data());
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool finite = good[i] != FALSE && std::isfinite(x[i]) && std::isfinite(y[i]);
+    points[i] = finite ? cv::Point2d(x[i], y[i]) : cv::Point2d(kNowhere, kNowhere);
+  }
+}
+
+[[noreturn]] void nowhere(const RasterFile& file, const std::string& target) {
+  throw InvalidInput(
+      "crs-not-transformable",
+      fmt::format("{}: its coordinates in {} have no place in {}; if the reference system is wrong, give the "
+                  "right one with --crs",
+                  file.path(), crs_name(file.crs()), target));
+}
+
+}  // namespace
+
+void Placement::Destroy::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
+
+Placement::Placement(const RasterFile& file, UtmZone zone)
+    : file_(&file), zone_(zone), transformer_(create_transformer(file, utm_reference(zone))) {}
+
+void Placement::to_pixels(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, true); }
+void Placement::to_plane(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, false); }
+
+GridBox Placement::footprint() const {
+  constexpr int kSteps = 32;
+  const cv::Size size = file_->size();
+  std::vector<cv::Point2d> points;
+  for (int row = 0; row <= kSteps; ++row) {
+    for (int col = 0; col <= kSteps; ++col) {
+      points.emplace_back(size.width * col / static_cast<double>(kSteps),
+                          size.height * row / static_cast<double>(kSteps));
+    }
+  }
+  to_plane(points);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GridBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (const cv::Point2d& p : points) {
+    if (std::isnan(p.x)) continue;
+    box.min = {std::min(box.min.east_m, p.x), std::min(box.min.north_m, p.y)};
+    box.max = {std::max(box.max.east_m, p.x), std::max(box.max.north_m, p.y)};
+  }
+  constexpr double kLatticeM = 10.0 * (1 << 20);
+  const bool on_lattice = !box.empty() && box.max.east_m > 0.0 && box.min.east_m < kLatticeM / 10.0 &&
+                          box.max.north_m > 0.0 && box.min.north_m < kLatticeM;
+  if (!on_lattice) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
+  return box;
+}
+
+double Placement::gsd_m() const {
+  const cv::Point2d centre(file_->size().width / 2.0, file_->size().height / 2.0);
+  std::vector<cv::Point2d> points{centre, centre + cv::Point2d(1.0, 0.0), centre + cv::Point2d(0.0, 1.0)};
+  to_plane(points);
+  const cv::Point2d right = points[1] - points[0];
+  const cv::Point2d down = points[2] - points[0];
+  const double gsd = std::sqrt(std::abs(right.cross(down)));
+  if (!(gsd > 0.0)) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
+  return gsd;
+}
+
+LatLon centre_of(const RasterFile& file) {
+  void* transformer = create_transformer(file, wgs84_reference());
+  std::vector<cv::Point2d> point{{file.size().width / 2.0, file.size().height / 2.0}};
+  transform(transformer, point, false);
+  GDALDestroyGenImgProjTransformer(transformer);
+  const bool on_earth = std::abs(point[0].x) <= 360.0 && std::abs(point[0].y) <= 90.0;
+  if (!on_earth) nowhere(file, "latitude and longitude");
+  return {point[0].y, point[0].x};
+}
+
+}  // namespace roadfix

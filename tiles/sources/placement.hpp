@@ -1,0 +1,42 @@
+// Where the pixels of a raster lie on the plane of the map's zone: geotransform (rotated ones too), ground control
+// points or RPC, and the change of reference system.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/geodesy/utm.hpp"
+#include "core/units/planar.hpp"
+#include "tiles/sources/raster_file.hpp"
+
+namespace roadfix {
+
+class Placement {
+ public:
+  /// Refers to the file, which must outlive it. Throws InvalidInput "crs-not-transformable".
+  Placement(const RasterFile& file, UtmZone zone);
+
+  /// Pixel coordinates of points on the plane; NaN where a point has no place in the image's reference system.
+  void to_pixels(std::vector<cv::Point2d>& points) const;
+  void to_plane(std::vector<cv::Point2d>& points) const;
+
+  /// Bounding box of the image. Throws InvalidInput "crs-not-transformable" when it has no place in the zone.
+  GridBox footprint() const;
+  /// Size of the ground that a pixel covers at the centre: the root of its area.
+  double gsd_m() const;
+
+ private:
+  struct Destroy {
+    void operator()(void* transformer) const;
+  };
+
+  const RasterFile* file_;
+  UtmZone zone_;
+  std::unique_ptr<void, Destroy> transformer_;
+};
+
+/// Geographic centre of the image, to choose a zone by. Throws InvalidInput "crs-not-transformable".
+LatLon centre_of(const RasterFile& file);
+
+}  // namespace roadfix

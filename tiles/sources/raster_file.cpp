@@ -1,0 +1,272 @@
+#include "tiles/sources/raster_file.hpp"
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+#include <type_traits>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr int kOpaque = 128;
+
+DatasetPtr open_raster(const std::string& path, int overview) {
+  CPLStringList options;
+  if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", fmt::format("{}", overview).c_str());
+  return open_dataset(path, GDAL_OF_RASTER, options.List());
+}
+
+bool has_transform(GDALDataset& dataset) {
+  std::array<double, 6> transform{};
+  if (dataset.GetGeoTransform(transform.data()) == CE_None) return true;
+  return dataset.GetGCPCount() >= 3 || dataset.GetMetadata("RPC") != nullptr;
+}
+
+double full_opacity(GDALRasterBand& alpha) {
+  switch (alpha.GetRasterDataType()) {
+    case GDT_Byte:
+      return 255.0;
+    case GDT_UInt16:
+      return 65535.0;
+    case GDT_Int16:
+      return 32767.0;
+    default:
+      return 1.0;
+  }
+}
+
+/// A pixel holds nothing where every band that declares a nodata value has it, or where any value is no number.
+template <typename Value>
+void clear_nodata(const cv::Mat& values, const std::vector<std::optional<double>>& nodata, cv::Mat& valid) {
+  const bool declared = std::ranges::any_of(nodata, [](const auto& value) { return value.has_value(); });
+  if (!declared && std::is_integral_v<Value>) return;
+  std::vector<std::pair<int, Value>> empty;
+  bool reachable = declared;  // -9999 declared for a byte band marks nothing
+  for (std::size_t i = 0; i < nodata.size(); ++i) {
+    if (!nodata[i] || std::isnan(*nodata[i])) continue;
+    const double value = *nodata[i];
+    if (std::is_integral_v<Value> && (value < 0.0 || value > 255.0 || value != std::floor(value))) reachable = false;
+    if (reachable) empty.emplace_back(static_cast<int>(i), static_cast<Value>(value));
+  }
+  for (int row = 0; row < values.rows; ++row) {
+    for (int col = 0; col < values.cols; ++col) {
+      const Value* pixel = values.ptr<Value>(row, col);
+      const bool gone = reachable && !empty.empty() &&
+                        std::ranges::all_of(empty, [pixel](const auto& e) { return pixel[e.first] == e.second; });
+      bool number = true;
+      if constexpr (!std::is_integral_v<Value>) {
+        for (int c = 0; c < values.channels(); ++c) number = number && std::isfinite(pixel[c]);
+      }
+      if (gone || !number) valid.at<std::uint8_t>(row, col) = 0;
+    }
+  }
+}
+
+}  // namespace
+
+RasterFile::RasterFile(std::string path, const RasterOptions& options, int overview)
+    : path_(std::move(path)), dataset_(open_raster(path_, overview)) {
+  if (size().width <= 0 || size().height <= 0 || dataset_->GetRasterCount() == 0) {
+    throw InvalidInput("image-without-bands",
+                       fmt::format("{}: holds no pixels; if it is a container of images, name one "
+                                   "of its subdatasets (gdalinfo lists them)",
+                                   path_));
+  }
+  find_bands();
+  find_reference(options);
+}
+
+void RasterFile::find_bands() {
+  std::array<int, 3> by_colour{0, 0, 0};  // blue, green, red
+  std::vector<int> opaque;
+  for (int i = 1; i <= dataset_->GetRasterCount(); ++i) {
+    const GDALColorInterp meaning = dataset_->GetRasterBand(i)->GetColorInterpretation();
+    if (meaning == GCI_BlueBand) by_colour[0] = i;
+    if (meaning == GCI_GreenBand) by_colour[1] = i;
+    if (meaning == GCI_RedBand) by_colour[2] = i;
+    if (meaning == GCI_AlphaBand) alpha_band_ = i;
+    if (meaning != GCI_AlphaBand) opaque.push_back(i);
+  }
+  if (opaque.empty()) opaque.push_back(1);
+  if (std::ranges::all_of(by_colour, [](int i) { return i > 0; })) {
+    colour_bands_.assign(by_colour.begin(), by_colour.end());
+  } else if (opaque.size() >= 3) {
+    colour_bands_ = {opaque[2], opaque[1], opaque[0]};
+  } else {
+    colour_bands_ = {opaque[0]};
+  }
+  GDALRasterBand& first = *dataset_->GetRasterBand(colour_bands_.front());
+  const GDALColorTable* table = colour_bands_.size() == 1 ? first.GetColorTable() : nullptr;
+  for (int i = 0; table != nullptr && i < table->GetColorEntryCount(); ++i) {
+    GDALColorEntry entry{};
+    table->GetColorEntryAsRGB(i, &entry);
+    palette_.push_back({static_cast<std::uint8_t>(entry.c3), static_cast<std::uint8_t>(entry.c2),
+                        static_cast<std::uint8_t>(entry.c1), static_cast<std::uint8_t>(entry.c4)});
+  }
+  has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
+  for (const int band : colour_bands_) {
+    int has = FALSE;
+    const double value = dataset_->GetRasterBand(band)->GetNoDataValue(&has);
+    nodata_.push_back(has == TRUE ? std::optional(value) : std::nullopt);
+  }
+}
+
+void RasterFile::find_reference(const RasterOptions& options) {
+  if (!has_transform(*dataset_)) {
+    throw InvalidInput(
+        "image-without-georeference",
+        fmt::format("{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
+                    "(.jgw, .pgw, .tfw) and name its reference system with --crs EPSG:...",
+                    path_));
+  }
+  if (!options.crs.empty()) {
+    crs_ = parse_crs(options.crs);
+    return;
+  }
+  const OGRSpatialReference* own = dataset_->GetSpatialRef();
+  if (own == nullptr) own = dataset_->GetGCPSpatialRef();
+  if (own != nullptr) {
+    crs_ = *own;
+    crs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  } else if (dataset_->GetMetadata("RPC") != nullptr) {
+    crs_ = wgs84_reference();
+  } else {
+    throw InvalidInput("image-without-georeference",
+                       fmt::format("{}: has coordinates but no reference system; name it with --crs, for example --crs "
+                                   "EPSG:32637",
+                                   path_));
+  }
+}
+
+std::optional<ValueRange> RasterFile::declared_range() const {
+  GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
+  if (band.GetRasterDataType() != GDT_Byte) return std::nullopt;
+  const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
+  const int count = bits != nullptr ? std::clamp(std::atoi(bits), 1, 8) : 8;
+  return ValueRange{0.0, static_cast<double>((1 << count) - 1)};
+}
+
+bool RasterFile::holds_integers() const {
+  return GDALDataTypeIsInteger(dataset_->GetRasterBand(colour_bands_.front())->GetRasterDataType()) != 0;
+}
+
+int RasterFile::overview_for(double reduction) const {
+  GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
+  int best = -1;
+  double best_factor = 1.0;
+  for (int i = 0; i < band.GetOverviewCount(); ++i) {
+    GDALRasterBand* overview = band.GetOverview(i);
+    if (overview == nullptr || overview->GetXSize() <= 0) continue;
+    const double factor = static_cast<double>(size().width) / overview->GetXSize();
+    if (factor > best_factor && factor <= reduction * 1.01) {
+      best = i;
+      best_factor = factor;
+    }
+  }
+  return best;
+}
+
+RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
+  const bool bytes = declared_range().has_value();
+  const cv::Mat raw = read_bands(window, bytes ? CV_8U : CV_32F, bytes ? GDT_Byte : GDT_Float32);
+  RasterPixels result;
+  result.valid = read_validity(window, raw);
+  if (!palette_.empty()) {
+    cv::Mat indices;
+    raw.convertTo(indices, CV_32S);
+    result.values.create(raw.size(), CV_8UC3);
+    for (int row = 0; row < raw.rows; ++row) {
+      for (int col = 0; col < raw.cols; ++col) {
+        const auto index = static_cast<std::size_t>(std::max(0, indices.at<int>(row, col)));
+        const std::array<std::uint8_t, 4> entry =
+            index < palette_.size() ? palette_[index] : std::array<std::uint8_t, 4>{};
+        result.values.at<cv::Vec3b>(row, col) = {entry[0], entry[1], entry[2]};
+        if (entry[3] < kOpaque) result.valid.at<std::uint8_t>(row, col) = 0;
+      }
+    }
+  } else if (bytes && range.low == 0.0 && range.high == 255.0) {
+    result.values = raw;
+  } else {
+    const double scale = 255.0 / (range.high - range.low);
+    raw.convertTo(result.values, CV_8U, scale, -range.low * scale);
+  }
+  return result;
+}
+
+cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type) {
+  const GdalMessages messages;
+  const auto channels = static_cast<int>(colour_bands_.size());
+  cv::Mat pixels(window.size(), CV_MAKETYPE(cv_depth, channels));
+  const auto value_bytes = static_cast<GSpacing>(pixels.elemSize1());
+  const CPLErr outcome = dataset_->RasterIO(
+      GF_Read, window.x, window.y, window.width, window.height, pixels.data, window.width, window.height, type,
+      channels, colour_bands_.data(), value_bytes * channels, static_cast<GSpacing>(pixels.step), value_bytes, nullptr);
+  if (outcome != CE_None) fail(window, messages.text());
+  return pixels;
+}
+
+cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
+  cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
+  GDALRasterBand* mask = nullptr;
+  if (alpha_band_ > 0)
+    mask = dataset_->GetRasterBand(alpha_band_);
+  else if (has_mask_)
+    mask = dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
+  if (mask != nullptr) {
+    const GdalMessages messages;
+    const double full = alpha_band_ > 0 ? full_opacity(*mask) : 1.0;
+    cv::Mat opacity(window.size(), CV_32FC1);
+    if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, opacity.data, window.width,
+                       window.height, GDT_Float32, 0, static_cast<GSpacing>(opacity.step), nullptr) != CE_None) {
+      fail(window, messages.text());
+    }
+    valid = opacity >= 0.5 * full;
+  }
+  if (values.depth() == CV_8U) {
+    clear_nodata<std::uint8_t>(values, nodata_, valid);
+  } else {
+    clear_nodata<float>(values, nodata_, valid);
+  }
+  return valid;
+}
+
+std::vector<float> RasterFile::sample_values() {
+  constexpr int kWindows = 16;
+  constexpr int kWindowPx = 64;
+  const auto window_px = [=](int length) { return std::min(kWindowPx, (length + kWindows - 1) / kWindows); };
+  const int width = window_px(size().width);
+  const int height = window_px(size().height);
+  std::vector<float> values;
+  for (int i = 0; i < kWindows * kWindows; ++i) {
+    const auto x = static_cast<int>(std::int64_t{size().width - width} * (i % kWindows) / (kWindows - 1));
+    const auto y = static_cast<int>(std::int64_t{size().height - height} * (i / kWindows) / (kWindows - 1));
+    const cv::Rect window(x, y, width, height);
+    const cv::Mat raw = read_bands(window, CV_32F, GDT_Float32);
+    const cv::Mat valid = read_validity(window, raw);
+    for (int row = 0; row < raw.rows; ++row) {
+      for (int col = 0; col < raw.cols; ++col) {
+        if (valid.at<std::uint8_t>(row, col) == 0) continue;
+        const float* pixel = raw.ptr<float>(row, col);
+        values.insert(values.end(), pixel, pixel + raw.channels());
+      }
+    }
+  }
+  return values;
+}
+
+void RasterFile::fail(cv::Rect window, const std::string& reason) const {
+  throw CorruptData(
+      "image-unreadable-block",
+      fmt::format("{}: the pixels at column {} row {} ({} x {}) cannot be read ({}); the file is cut off or "
+                  "damaged: fetch it again and repeat the command",
+                  path_, window.x, window.y, window.width, window.height, reason));
+}
+
+}  // namespace roadfix

@@ -1,0 +1,83 @@
+// One open raster: which of its bands mean what, which of its pixels hold something, and where they lie.
+//
+// Pixel coordinates follow GDAL: (0, 0) is the outer corner of the first pixel, (0.5, 0.5) its centre.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/units/planar.hpp"
+#include "tiles/sources/gdal_session.hpp"
+
+namespace roadfix {
+
+struct Rgb {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+};
+
+/// What the user says about rasters that the files do not.
+struct RasterOptions {
+  std::string crs;            ///< replaces that of the file; needed beside a bare world file
+  std::optional<Rgb> collar;  ///< colour of the declared collar, see collar.hpp
+};
+
+/// Values of the file that become 0 and 255; what lies beyond is clamped.
+struct ValueRange {
+  double low = 0.0;
+  double high = 255.0;
+};
+
+/// Pixels of a window and which of them hold something.
+struct RasterPixels {
+  cv::Mat values;  ///< CV_8UC3 (BGR) or CV_8UC1
+  cv::Mat valid;   ///< CV_8UC1, 0 or 255
+};
+
+/// Not thread-safe: a GDAL handle belongs to one thread at a time.
+class RasterFile {
+ public:
+  /// Throws NotFound, InvalidInput ("source-unreadable", "image-without-bands", "image-without-georeference").
+  /// `overview` >= 0 opens that reduced copy instead of the full image.
+  RasterFile(std::string path, const RasterOptions& options, int overview = -1);
+
+  const std::string& path() const { return path_; }
+  const OGRSpatialReference& crs() const { return crs_; }
+  GDALDataset& dataset() const { return *dataset_; }
+  cv::Size size() const { return {dataset_->GetRasterXSize(), dataset_->GetRasterYSize()}; }
+  /// 3 for colour and palettes, 1 for grey.
+  int channels() const { return palette_.empty() && colour_bands_.size() < 3 ? 1 : 3; }
+  /// The range that the type declares: 0..255, less where NBITS says so; nullopt where the values must be looked at.
+  std::optional<ValueRange> declared_range() const;
+  bool holds_integers() const;
+  /// Width of the coarsest overview that is still at least `reduction` times finer than needed; -1 for none.
+  int overview_for(double reduction) const;
+
+  /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
+  RasterPixels read(cv::Rect window, const ValueRange& range);
+  /// Values of valid pixels in windows spread evenly over the image, the same at every call.
+  std::vector<float> sample_values();
+
+ private:
+  void find_bands();
+  void find_reference(const RasterOptions& options);
+  cv::Mat read_bands(cv::Rect window, int cv_depth, GDALDataType type);
+  cv::Mat read_validity(cv::Rect window, const cv::Mat& values);
+  [[noreturn]] void fail(cv::Rect window, const std::string& reason) const;
+
+  std::string path_;
+  DatasetPtr dataset_;
+  OGRSpatialReference crs_;
+  std::vector<int> colour_bands_;                     ///< one, or three in the order blue, green, red
+  std::vector<std::optional<double>> nodata_;         ///< of each of them
+  std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
+  int alpha_band_ = 0;                                ///< 0 without
+  bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
+};
+
+}  // namespace roadfix

@@ -1,0 +1,139 @@
+#include "tiles/sources/raster_sources.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tiles/sources/fingerprint.hpp"
+#include "tiles/sources/mosaic.hpp"
+#include "tiles/sources/road_rules.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr double kImagerySigmaM = 2.0;
+constexpr double kRasterSigmaM = 3.0;
+
+std::string settings_of(const RasterOptions& options) {
+  std::string text = options.crs.empty() ? "" : fmt::format(" crs={}", options.crs);
+  if (options.collar) {
+    text += fmt::format(" nodata-color={},{},{}", options.collar->red, options.collar->green, options.collar->blue);
+  }
+  return text;
+}
+
+class Imagery final : public CellSource {
+ public:
+  Imagery(const std::vector<std::string>& paths, const RasterOptions& options, UtmZone zone, double cell_m,
+          const RoadDetector& detector)
+      : mosaic_(paths, options, ValueRule::kPicture, zone),
+        detector_(detector),
+        cell_m_(cell_m),
+        gsd_m_(detection_gsd_m(cell_m, detector.preferred_gsd_m(), mosaic_.gsd_m())) {
+    summary_.kind = "imagery";
+    summary_.method = fmt::format("{}; pixels of {} m, values {}..{}{}", detector.describe(), gsd_m_,
+                                  mosaic_.range().low, mosaic_.range().high, settings_of(options));
+    summary_.fingerprint = fingerprint(paths, summary_.method);
+    summary_.crs = mosaic_.crs();
+    summary_.native_gsd_m = mosaic_.gsd_m();
+    summary_.chosen_gsd_m = gsd_m_;
+    summary_.registration_sigma_m = kImagerySigmaM;
+  }
+
+  SourceSummary summary() const override { return summary_; }
+  GridBox extent() const override { return mosaic_.extent(); }
+  bool touches(const GridBox& box) const override { return mosaic_.touches(box); }
+
+  CellArray read(const GridGeometry& block, std::uint64_t seed) const override {
+    assert(block.cell_m == cell_m_);
+    const auto halo = static_cast<int>(std::ceil(detector_.halo_m() / cell_m_));
+    const GridGeometry wide{
+        cell_m_, {block.origin.col - halo, block.origin.row - halo}, block.cols + 2 * halo, block.rows + 2 * halo};
+    CellArray result(block.cols, block.rows);
+    const GroundImage image = mosaic_.view(wide.box(), gsd_m_);
+    const int pixels = static_cast<int>(std::lround(cell_m_ / gsd_m_));
+    const cv::Rect inner(halo * pixels, halo * pixels, block.cols * pixels, block.rows * pixels);
+    if (cv::countNonZero(image.observed(inner)) == 0) return result;
+    paste(detector_.detect(image, cell_m_, seed), result, -halo, -halo);
+    return result;
+  }
+
+ private:
+  Mosaic mosaic_;
+  const RoadDetector& detector_;
+  double cell_m_;
+  double gsd_m_;
+  SourceSummary summary_;
+};
+
+class RoadRaster final : public CellSource {
+ public:
+  RoadRaster(const std::vector<std::string>& paths, const RasterOptions& options, UtmZone zone, double cell_m)
+      : mosaic_(paths, options, ValueRule::kShare, zone),
+        cell_m_(cell_m),
+        gsd_m_(detection_gsd_m(cell_m, mosaic_.gsd_m(), mosaic_.gsd_m())) {
+    summary_.kind = "roads";
+    const Certainty certainty = certainty_of_values();
+    summary_.method =
+        fmt::format("raster of roads; values {}..{} become {}..{}, averaged over cells{}", mosaic_.range().low,
+                    mosaic_.range().high, certainty.elsewhere, certainty.on_road, settings_of(options));
+    summary_.fingerprint = fingerprint(paths, summary_.method);
+    summary_.crs = mosaic_.crs();
+    summary_.native_gsd_m = mosaic_.gsd_m();
+    summary_.chosen_gsd_m = gsd_m_;
+    summary_.registration_sigma_m = kRasterSigmaM;
+  }
+
+  SourceSummary summary() const override { return summary_; }
+  GridBox extent() const override { return mosaic_.extent(); }
+  bool touches(const GridBox& box) const override { return mosaic_.touches(box); }
+
+  CellArray read(const GridGeometry& block, std::uint64_t) const override {
+    assert(block.cell_m == cell_m_);
+    const GroundImage image = mosaic_.view(block.box(), gsd_m_);
+    const auto pixels = static_cast<int>(std::lround(cell_m_ / gsd_m_));
+    const Certainty certainty = certainty_of_values();
+    CellArray result(block.cols, block.rows);
+    for (int row = 0; row < block.rows; ++row) {
+      for (int col = 0; col < block.cols; ++col) {
+        const cv::Rect part(col * pixels, row * pixels, pixels, pixels);
+        const int observed = cv::countNonZero(image.observed(part));
+        if (2 * observed < pixels * pixels) continue;
+        const double share = cv::mean(image.pixels(part), image.observed(part))[0] / 255.0;
+        result.at(col, row) = cell_from_probability(certainty.probability(share));
+      }
+    }
+    return result;
+  }
+
+ private:
+  Certainty certainty_of_values() const { return mosaic_.holds_integers() ? Certainty{} : Certainty{1.0, 0.0}; }
+
+  Mosaic mosaic_;
+  double cell_m_;
+  double gsd_m_;
+  SourceSummary summary_;
+};
+
+}  // namespace
+
+double detection_gsd_m(double cell_m, double preferred_gsd_m, double native_gsd_m) {
+  const double wanted = std::max(preferred_gsd_m, native_gsd_m);
+  const long halvings = std::clamp(std::lround(std::log2(cell_m / wanted)), 0L, 10L);
+  return std::ldexp(cell_m, -static_cast<int>(halvings));
+}
+
+std::unique_ptr<CellSource> open_imagery(const std::vector<std::string>& paths, const RasterOptions& options,
+                                         UtmZone zone, double cell_m, const RoadDetector& detector) {
+  return std::make_unique<Imagery>(paths, options, zone, cell_m, detector);
+}
+
+std::unique_ptr<CellSource> open_road_raster(const std::vector<std::string>& paths, const RasterOptions& options,
+                                             UtmZone zone, double cell_m) {
+  return std::make_unique<RoadRaster>(paths, options, zone, cell_m);
+}
+
+}  // namespace roadfix

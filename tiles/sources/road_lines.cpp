@@ -1,0 +1,156 @@
+#include "tiles/sources/road_lines.hpp"
+
+#include <fmt/format.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/osm_tags.hpp"
+#include "tiles/sources/vector_file.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Attributes of one feature, those packed in hstore text included.
+class FeatureTags {
+ public:
+  explicit FeatureTags(const OGRFeature& feature) : feature_(feature) {}
+
+  std::string operator()(std::string_view key) {
+    const int field = feature_.GetFieldIndex(std::string(key).c_str());
+    if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
+    const int packed = feature_.GetFieldIndex("other_tags");
+    if (packed < 0 || feature_.IsFieldSetAndNotNull(packed) == 0) return {};
+    if (!tags_) tags_ = parse_hstore(feature_.GetFieldAsString(packed));
+    const auto found = tags_->find(key);
+    return found != tags_->end() ? found->second : std::string();
+  }
+
+ private:
+  const OGRFeature& feature_;
+  std::optional<std::map<std::string, std::string, std::less<>>> tags_;
+};
+
+bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, double width_m, RoadNetwork& network) {
+  const int count = line.getNumPoints();
+  if (count < 2) return false;
+  std::vector<double> x(static_cast<std::size_t>(count));
+  std::vector<double> y(x.size());
+  std::vector<int> good(x.size(), FALSE);
+  for (int i = 0; i < count; ++i) {
+    x[static_cast<std::size_t>(i)] = line.getX(i);
+    y[static_cast<std::size_t>(i)] = line.getY(i);
+  }
+  to_plane.Transform(count, x.data(), y.data(), nullptr, good.data());
+  const std::size_t first = network.points.size();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (good[i] == FALSE || !std::isfinite(x[i]) || !std::isfinite(y[i])) {
+      network.points.resize(first);
+      return false;
+    }
+    network.points.push_back({x[i], y[i]});
+  }
+  network.lines.push_back({first, x.size(), width_m / 2.0});
+  return true;
+}
+
+/// Every line of the geometry, however deep it is nested. False when it has none that could be placed.
+bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, double width_m,
+                  RoadNetwork& network) {
+  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+  if (type == wkbLineString) return add_line(*geometry.toLineString(), to_plane, width_m, network);
+  if (type == wkbMultiLineString || type == wkbGeometryCollection) {
+    bool any = false;
+    for (const OGRGeometry* part : *geometry.toGeometryCollection()) {
+      any = add_geometry(*part, to_plane, width_m, network) || any;
+    }
+    return any;
+  }
+  if (OGR_GT_IsCurve(type) != FALSE) {
+    const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
+    return straight && wkbFlatten(straight->getGeometryType()) == wkbLineString &&
+           add_line(*straight->toLineString(), to_plane, width_m, network);
+  }
+  return false;
+}
+
+struct LayerReader {
+  TransformationPtr to_plane;
+  bool classified = false;
+};
+
+void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
+              RoadNetwork& network) {
+  VectorFile file(path, options);
+  const OGRSpatialReference plane = utm_reference(zone);
+  std::map<const OGRLayer*, LayerReader> readers;
+  for (OGRLayer* layer : file.layers()) {
+    const OGRSpatialReference crs = file.crs_of(*layer);
+    if (network.crs.empty()) network.crs = crs_name(crs);
+    const bool classified = layer->GetLayerDefn()->GetFieldIndex(rules.class_attribute().c_str()) >= 0;
+    readers.emplace(layer, LayerReader{transformation(crs, plane, path), classified});
+  }
+  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
+    const auto reader = readers.find(&layer);
+    if (reader == readers.end()) return;
+    const OGRGeometry* geometry = feature.GetGeometryRef();
+    FeatureTags tags(feature);
+    const std::optional<double> width =
+        geometry != nullptr ? rules.width_of(std::ref(tags), reader->second.classified) : std::nullopt;
+    if (!width || !add_geometry(*geometry, *reader->second.to_plane, *width, network)) ++network.left_out;
+  });
+  if (!options.extent.empty()) return;
+  for (OGRLayer* layer : file.layers()) {
+    const std::optional<OGREnvelope> box = file.extent_of(*layer);
+    if (box) network.covered.push_back(box_on_plane(*box, *readers.at(layer).to_plane, path));
+  }
+}
+
+}  // namespace
+
+RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
+                              const RoadRules& rules, UtmZone zone) {
+  RoadNetwork network;
+  for (const std::string& path : paths) add_file(path, options, rules, zone, network);
+  if (!options.extent.empty()) network.covered = read_extent(options.extent, zone);
+  if (network.lines.empty() || network.covered.empty()) {
+    throw InvalidInput(
+        "source-without-roads",
+        fmt::format("{}: none of its {} features is drawn as a road by the rules ({}); name the attribute "
+                    "with --class-attribute or the layer with --layer",
+                    paths.front(), network.left_out, rules.describe()));
+  }
+  return network;
+}
+
+LatLon centre_of_roads(const std::string& path, const VectorOptions& options) {
+  VectorFile file(path, options);
+  for (OGRLayer* layer : file.layers()) {
+    const std::optional<OGREnvelope> box = file.extent_of(*layer);
+    if (!box) continue;
+    const TransformationPtr to_earth = transformation(file.crs_of(*layer), wgs84_reference(), path);
+    double lon = (box->MinX + box->MaxX) / 2.0;
+    double lat = (box->MinY + box->MaxY) / 2.0;
+    const GdalMessages messages;
+    if (to_earth->Transform(1, &lon, &lat) == FALSE || !(std::abs(lat) <= 90.0) || !(std::abs(lon) <= 360.0)) {
+      throw InvalidInput(
+          "crs-not-transformable",
+          fmt::format("{}: its coordinates have no place on Earth; if the reference system is wrong, give "
+                      "the right one with --crs",
+                      path));
+    }
+    return {lat, lon};
+  }
+  throw InvalidInput("source-without-roads", fmt::format("{}: holds no features", path));
+}
+
+}  // namespace roadfix

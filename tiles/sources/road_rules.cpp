@@ -1,0 +1,182 @@
+#include "tiles/sources/road_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+// Widths of one line of OpenStreetMap: a dual carriageway is two lines. Classes after
+// https://wiki.openstreetmap.org/wiki/Key:highway, widths of paved surface as in common design guides.
+constexpr std::string_view kTable = R"(
+# class          width_m  drawn
+motorway         12       yes
+motorway_link     7       yes
+trunk            11       yes
+trunk_link        7       yes
+primary          10       yes
+primary_link      6       yes
+secondary         9       yes
+secondary_link    6       yes
+tertiary          8       yes
+tertiary_link     6       yes
+unclassified      6       yes
+residential       6       yes
+living_street     5       yes
+pedestrian        6       yes
+road              6       yes
+service           4       yes
+track             3       yes
+busway            6       yes
+bus_guideway      6       yes
+raceway          10       yes
+escape            5       yes
+footway           2       no    # beside a road or under trees
+path              1.5     no
+cycleway          2.5     no
+bridleway         2       no
+steps             2       no
+corridor          2       no    # inside buildings
+elevator          2       no
+via_ferrata       1       no
+platform          3       no
+proposed          0       no    # not there, or not there any more
+planned           0       no
+construction      0       no
+abandoned         0       no
+razed             0       no
+disused           0       no
+demolished        0       no
+)";
+
+constexpr std::array<std::string_view, 9> kInvisibleStates{
+    "proposed", "planned", "construction", "abandoned", "razed", "disused", "demolished", "dismantled", "removed"};
+constexpr std::array<std::string_view, 6> kFootClasses{"footway",  "path",       "steps",
+                                                       "corridor", "pedestrian", "elevator"};
+constexpr double kDefaultWidthM = 6.0;
+constexpr double kLaneM = 3.25;
+constexpr double kShouldersM = 1.0;
+constexpr double kMaxLanes = 16.0;
+
+bool yes(const std::string& value) {
+  return !value.empty() && value != "no" && value != "0" && value != "false" && value != "F";
+}
+
+template <typename List>
+bool listed(const List& list, std::string_view value) {
+  return std::ranges::find(list, value) != list.end();
+}
+
+/// What nobody sees from above, or what does not exist.
+bool hidden(const TagLookup& tags, std::string_view road_class) {
+  if (yes(tags("tunnel")) || yes(tags("covered")) || yes(tags("indoor"))) return true;
+  if (tags("location") == "underground" || tags("location") == "indoor") return true;
+  const std::string level = tags("level");
+  if (listed(kFootClasses, road_class) && !level.empty() && level != "0") return true;
+  return std::ranges::any_of(kInvisibleStates, [&](std::string_view state) { return tags(state) == "yes"; });
+}
+
+}  // namespace
+
+RoadRules::RoadRules() : RoadRules(parse(kTable)) {}
+
+RoadRules RoadRules::parse(std::string_view text) {
+  RoadRules result{std::vector<RoadRule>{}};
+  std::istringstream lines{std::string(text)};
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line.substr(0, line.find('#')));
+    RoadRule rule;
+    std::string drawn;
+    if (!(words >> rule.road_class)) continue;
+    std::string more;
+    if (!(words >> rule.width_m >> drawn) || (drawn != "yes" && drawn != "no") || (words >> more) ||
+        !(rule.width_m >= 0.0 && rule.width_m <= 100.0)) {
+      throw InvalidInput("rules-unreadable",
+                         fmt::format("line {} of the road rules, '{}': write class, width in metres (0 "
+                                     "to 100) and yes or no, for example 'residential 6 yes'",
+                                     number, line));
+    }
+    rule.drawn = drawn == "yes";
+    result.rules_.push_back(std::move(rule));
+  }
+  return result;
+}
+
+void RoadRules::select(std::string_view classes) {
+  for (RoadRule& rule : rules_) rule.drawn = false;
+  std::istringstream names{std::string(classes)};
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto rule = std::ranges::find(rules_, name, &RoadRule::road_class);
+    if (rule == rules_.end()) {
+      throw InvalidInput("road-class-unknown",
+                         fmt::format("'{}' is no class of the road rules; add it with --rules FILE", name));
+    }
+    rule->drawn = true;
+    if (rule->width_m <= 0.0) rule->width_m = kDefaultWidthM;
+  }
+}
+
+const RoadRule* RoadRules::find(std::string_view road_class) const {
+  const auto rule = std::ranges::find(rules_, road_class, &RoadRule::road_class);
+  return rule != rules_.end() ? &*rule : nullptr;
+}
+
+std::optional<double> RoadRules::width_of(const TagLookup& tags, bool classified) const {
+  const std::string road_class = classified ? tags(class_attribute_) : std::string();
+  const RoadRule* rule = find(road_class);
+  if (classified && (rule == nullptr || !rule->drawn)) return std::nullopt;
+  if (hidden(tags, road_class)) return std::nullopt;
+  if (!width_attribute_.empty()) {
+    if (const auto width = parse_width_m(tags(width_attribute_))) return width;
+  }
+  if (width_m_) return width_m_;
+  if (const auto width = parse_width_m(tags("width"))) return width;
+  const double lanes = std::strtod(tags("lanes").c_str(), nullptr);
+  if (lanes >= 1.0 && lanes <= kMaxLanes) return lanes * kLaneM + kShouldersM;
+  return rule != nullptr ? rule->width_m : kDefaultWidthM;
+}
+
+std::string RoadRules::describe() const {
+  std::string text = fmt::format("class={}", class_attribute_);
+  if (!width_attribute_.empty()) text += fmt::format(" width-attribute={}", width_attribute_);
+  if (width_m_) text += fmt::format(" width={}", *width_m_);
+  for (const RoadRule& rule : rules_) {
+    if (rule.drawn) text += fmt::format(" {}={}", rule.road_class, rule.width_m);
+  }
+  return text;
+}
+
+std::optional<double> parse_width_m(std::string_view text) {
+  std::string number;
+  while (!text.empty() &&
+         (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '.' || text.front() == ',')) {
+    number += text.front() == ',' ? '.' : text.front();
+    text.remove_prefix(1);
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (number.empty() || error != std::errc{} || end != number.data() + number.size()) return std::nullopt;
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  constexpr double kFootM = 0.3048;
+  if (text == "ft" || text == "'" || text == "feet") {
+    value *= kFootM;
+  } else if (!text.empty() && text != "m" && text != "metres" && text != "meters") {
+    return std::nullopt;
+  }
+  if (!(value >= 0.5 && value <= 100.0)) return std::nullopt;
+  return value;
+}
+
+}  // namespace roadfix

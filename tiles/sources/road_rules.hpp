@@ -1,0 +1,68 @@
+// Which road features are drawn, and how wide: one readable table, replaceable by the user.
+//
+// The question behind every line of it is "does a camera above see a road here?". So footways, steps and cycle ways
+// are left out (too narrow at the cells of a map, and mostly beside a road), tracks are drawn, tunnels are not.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace roadfix {
+
+/// How sure a drawn map is. Map data is never perfect: a road may have gone, another may be missing.
+struct Certainty {
+  double on_road = 0.95;
+  double elsewhere = 0.02;
+  /// Of a cell of which `share` is covered by road.
+  double probability(double share) const { return elsewhere + (on_road - elsewhere) * share; }
+};
+
+struct RoadRule {
+  std::string road_class;  ///< value of the class attribute (`highway` in OpenStreetMap)
+  double width_m = 0.0;    ///< of the carriageway, where the feature itself does not say it
+  bool drawn = true;
+};
+
+/// Value of a feature's attribute or tag; empty when it has none.
+using TagLookup = std::function<std::string(std::string_view key)>;
+
+class RoadRules {
+ public:
+  /// The built-in table, see road_rules.cpp.
+  RoadRules();
+  /// Lines "class width_m yes|no", '#' starts a comment; replaces the table. Throws InvalidInput "rules-unreadable"
+  /// with the line's number.
+  static RoadRules parse(std::string_view text);
+
+  /// Draws exactly these classes of the table, separated by commas. Throws InvalidInput "road-class-unknown".
+  void select(std::string_view classes);
+  void set_width_attribute(std::string key) { width_attribute_ = std::move(key); }
+  void set_class_attribute(std::string key) { class_attribute_ = std::move(key); }
+  /// Width of features that no rule and no attribute gives one; where set by the user it overrides the table.
+  void set_width_m(double width_m) { width_m_ = width_m; }
+
+  /// Width to draw the feature with, nullopt to leave it out. `classified` says that the layer has a class attribute:
+  /// then a feature without class is no road; otherwise every line is one.
+  std::optional<double> width_of(const TagLookup& tags, bool classified) const;
+  const std::string& class_attribute() const { return class_attribute_; }
+  /// All of it in one line, for provenance and fingerprint.
+  std::string describe() const;
+
+ private:
+  explicit RoadRules(std::vector<RoadRule> rules) : rules_(std::move(rules)) {}
+  const RoadRule* find(std::string_view road_class) const;
+
+  std::vector<RoadRule> rules_;
+  std::string class_attribute_ = "highway";
+  std::string width_attribute_;
+  std::optional<double> width_m_;
+};
+
+/// "7.5", "7,5 m", "24 ft", "24'"; nullopt for anything else or a width outside 0.5..100 m.
+std::optional<double> parse_width_m(std::string_view text);
+
+}  // namespace roadfix

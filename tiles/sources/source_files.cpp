@@ -1,0 +1,104 @@
+#include "tiles/sources/source_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/gdal_session.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 9> kImageEndings{".tif", ".tiff", ".jpg", ".jpeg", ".png",
+                                                        ".jp2", ".img",  ".vrt", ".webp"};
+constexpr std::array<std::string_view, 8> kVectorEndings{".shp", ".geojson", ".json", ".gpkg",
+                                                         ".pbf", ".osm",     ".mvt",  ".fgb"};
+
+std::string ending_of(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+template <typename List>
+bool listed(const List& list, std::string_view value) {
+  return std::ranges::find(list, value) != list.end();
+}
+
+/// Whether the file holds pixels. A file that neither opens as raster nor as vectors is reported by name.
+bool is_raster(const std::string& path) {
+  if (listed(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return false;
+  {
+    const GdalMessages messages;
+    const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    if (raster) return true;
+  }
+  if (listed(kImageEndings, ending_of(path))) {
+    open_dataset(path, GDAL_OF_RASTER);  // says why not
+  }
+  return false;
+}
+
+SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
+  SourceFiles result;
+  std::vector<std::string> images;
+  std::vector<std::string> vectors;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string ending = ending_of(entry.path());
+    if (listed(kImageEndings, ending)) images.push_back(entry.path().string());
+    if (listed(kVectorEndings, ending)) vectors.push_back(entry.path().string());
+  }
+  if (images.empty() && vectors.empty()) {
+    throw InvalidInput("source-empty", fmt::format("{}: holds neither images nor vector files", folder.string()));
+  }
+  result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
+  result.paths = std::move(images);
+  if (result.paths.empty()) {
+    result.kind = SourceKind::kRoadVectors;
+    result.paths = std::move(vectors);
+  }
+  std::ranges::sort(result.paths);
+  return result;
+}
+
+}  // namespace
+
+SourceMeaning parse_meaning(std::string_view text) {
+  if (text == "auto") return SourceMeaning::kAuto;
+  if (text == "imagery") return SourceMeaning::kImagery;
+  if (text == "roads") return SourceMeaning::kRoads;
+  throw InvalidInput("source-meaning-unknown", fmt::format("'{}': a source is auto, imagery or roads", text));
+}
+
+SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
+  require_gdal();
+  const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();
+  SourceFiles result;
+  if (fs::is_directory(path)) {
+    result = files_below(path, meaning);
+    result.name = fs::absolute(path).filename().string();
+  } else {
+    result.paths = {argument};
+    const bool raster = is_raster(argument);
+    if (!raster) open_dataset(argument, GDAL_OF_VECTOR);
+    const SourceKind pixels = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
+    result.kind = raster ? pixels : SourceKind::kRoadVectors;
+    result.name = path.stem().string();
+    if (result.name.ends_with(".osm")) result.name.resize(result.name.size() - 4);
+  }
+  if (meaning == SourceMeaning::kImagery && result.kind == SourceKind::kRoadVectors) {
+    throw InvalidInput("source-not-imagery", fmt::format("{}: holds vectors, no pixels; give it as roads", argument));
+  }
+  result.location = argument;
+  return result;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,27 @@
+// What a SOURCE argument of the command line means: which files, and of what kind.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadfix {
+
+enum class SourceKind { kImagery, kRoadRaster, kRoadVectors };
+
+/// What the user says a source is. kAuto: vectors are roads, rasters are imagery.
+enum class SourceMeaning { kAuto, kImagery, kRoads };
+/// "auto", "imagery", "roads". Throws InvalidInput "source-meaning-unknown".
+SourceMeaning parse_meaning(std::string_view text);
+
+struct SourceFiles {
+  std::string name;  ///< stem of the file or name of the folder
+  std::string location;
+  SourceKind kind = SourceKind::kImagery;
+  std::vector<std::string> paths;  ///< of a folder all images or vector files in it and below, sorted
+};
+
+/// Throws NotFound "source-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").
+SourceFiles find_source(const std::string& argument, SourceMeaning meaning);
+
+}  // namespace roadfix

@@ -1,0 +1,176 @@
+#include "tiles/sources/vector_file.hpp"
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <regex>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+DatasetPtr open_vector(const std::string& path, const std::optional<VectorTile>& tile) {
+  CPLStringList options;
+  if (tile) {
+    options.SetNameValue("X", fmt::format("{}", tile->x).c_str());
+    options.SetNameValue("Y", fmt::format("{}", tile->y).c_str());
+    options.SetNameValue("Z", fmt::format("{}", tile->zoom).c_str());
+    options.SetNameValue("CLIP", "NO");
+  }
+  return open_dataset(path, GDAL_OF_VECTOR, options.List());
+}
+
+std::optional<OGREnvelope> bounding_box(OGRLayer& layer) {
+  OGREnvelope box;
+  if (layer.GetExtent(&box, TRUE) != OGRERR_NONE || !(box.MinX <= box.MaxX)) return std::nullopt;
+  return box;
+}
+
+void add_rings(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const std::string& path,
+               std::vector<PlanePolygon>& polygons) {
+  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+  if (type == wkbMultiPolygon || type == wkbGeometryCollection) {
+    for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_rings(*part, to_plane, path, polygons);
+  }
+  if (type != wkbPolygon) return;
+  std::vector<GridPoint> ring;
+  for (const OGRPoint& point : *geometry.toPolygon()->getExteriorRing()) {
+    double x = point.getX();
+    double y = point.getY();
+    if (to_plane.Transform(1, &x, &y) == FALSE || !std::isfinite(x) || !std::isfinite(y)) {
+      throw InvalidInput("extent-unreadable", fmt::format("{}: the polygon has no place in the zone of the map", path));
+    }
+    ring.push_back({x, y});
+  }
+  if (ring.size() >= 3) polygons.emplace_back(std::move(ring));
+}
+
+}  // namespace
+
+std::optional<VectorTile> vector_tile_of(const std::string& path) {
+  static const std::regex pattern(R"((?:^|.*/)(\d{1,2})[-/](\d{1,8})[-/](\d{1,8})\.(?:mvt|pbf)$)");
+  std::smatch match;
+  if (!std::regex_match(path, match, pattern)) return std::nullopt;
+  const VectorTile tile{std::stoi(match[1]), std::stoi(match[2]), std::stoi(match[3])};
+  constexpr int kMaxZoom = 24;
+  if (tile.zoom > kMaxZoom || tile.x >= (1 << tile.zoom) || tile.y >= (1 << tile.zoom)) return std::nullopt;
+  return tile;
+}
+
+VectorFile::VectorFile(const std::string& path, const VectorOptions& options)
+    : path_(path), options_(options), tile_(vector_tile_of(path)), dataset_(open_vector(path, tile_)) {
+  const bool osm = EQUAL(dataset_->GetDriverName(), "OSM");
+  for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
+    OGRLayer* layer = dataset_->GetLayer(i);
+    const std::string name = layer->GetName();
+    if (!options.layer.empty() ? name == options.layer : !osm || name == "lines") layers_.push_back(layer);
+  }
+  if (layers_.empty()) {
+    throw InvalidInput("layer-unknown", fmt::format("{}: has no layer '{}'; ogrinfo lists what it has", path_,
+                                                    options.layer.empty() ? "of lines" : options.layer));
+  }
+}
+
+OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {
+  if (!options_.crs.empty()) return parse_crs(options_.crs);
+  const OGRSpatialReference* own = layer.GetSpatialRef();
+  if (own == nullptr) {
+    throw InvalidInput("roads-without-georeference",
+                       fmt::format("{}: layer '{}' has no reference system; name it with --crs, for example --crs "
+                                   "EPSG:32637",
+                                   path_, layer.GetName()));
+  }
+  OGRSpatialReference crs = *own;
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return crs;
+}
+
+std::optional<OGREnvelope> VectorFile::extent_of(OGRLayer& layer) {
+  if (!tile_) {
+    const GdalMessages messages;
+    return bounding_box(layer);
+  }
+  const double half = 6378137.0 * std::numbers::pi;
+  const double side = std::ldexp(2.0 * half, -tile_->zoom);
+  OGREnvelope box;
+  box.MinX = -half + tile_->x * side;
+  box.MaxX = box.MinX + side;
+  box.MaxY = half - tile_->y * side;
+  box.MinY = box.MaxY - side;
+  return box;
+}
+
+void VectorFile::for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit) {
+  const GdalMessages messages;
+  dataset_->ResetReading();
+  while (true) {
+    OGRLayer* layer = nullptr;
+    const std::unique_ptr<OGRFeature> feature(dataset_->GetNextFeature(&layer, nullptr, nullptr, nullptr));
+    if (!feature) break;
+    visit(*layer, *feature);
+  }
+  if (messages.text() != GdalMessages::kNone) {
+    throw CorruptData("roads-unreadable", fmt::format("{}: reading its features failed ({}); the file is cut off or "
+                                                      "damaged: fetch it again and repeat the command",
+                                                      path_, messages.text()));
+  }
+}
+
+PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path) {
+  constexpr int kSteps = 64;
+  std::vector<GridPoint> ring;
+  const auto edge = [&](double x0, double y0, double x1, double y1) {
+    for (int i = 0; i < kSteps; ++i) {
+      double x = x0 + (x1 - x0) * i / kSteps;
+      double y = y0 + (y1 - y0) * i / kSteps;
+      const GdalMessages messages;
+      if (to_plane.Transform(1, &x, &y) == FALSE || !std::isfinite(x) || !std::isfinite(y)) {
+        throw InvalidInput(
+            "crs-not-transformable",
+            fmt::format("{}: its extent ({} {} to {} {}) has no place in the zone of the map; if the "
+                        "reference system is wrong, give the right one with --crs, or cut it with --extent",
+                        path, box.MinX, box.MinY, box.MaxX, box.MaxY));
+      }
+      ring.push_back({x, y});
+    }
+  };
+  edge(box.MinX, box.MinY, box.MaxX, box.MinY);
+  edge(box.MaxX, box.MinY, box.MaxX, box.MaxY);
+  edge(box.MaxX, box.MaxY, box.MinX, box.MaxY);
+  edge(box.MinX, box.MaxY, box.MinX, box.MinY);
+  return PlanePolygon(std::move(ring));
+}
+
+std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
+  const OGRSpatialReference plane = utm_reference(zone);
+  OGREnvelope box;
+  int used = 0;
+  if (std::sscanf(extent.c_str(), "%lf,%lf,%lf,%lf%n", &box.MinX, &box.MinY, &box.MaxX, &box.MaxY, &used) == 4 &&
+      static_cast<std::size_t>(used) == extent.size()) {
+    if (!(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
+      throw InvalidInput(
+          "extent-unreadable",
+          fmt::format("--extent {}: write west,south,east,north in degrees, west and south first", extent));
+    }
+    const TransformationPtr to_plane = transformation(wgs84_reference(), plane, "--extent");
+    return {box_on_plane(box, *to_plane, "--extent")};
+  }
+  VectorFile file(extent, {});
+  std::vector<PlanePolygon> polygons;
+  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
+    const TransformationPtr to_plane = transformation(file.crs_of(layer), plane, extent);
+    if (feature.GetGeometryRef() != nullptr) add_rings(*feature.GetGeometryRef(), *to_plane, extent, polygons);
+  });
+  if (polygons.empty()) {
+    throw InvalidInput("extent-unreadable", fmt::format("{}: holds no polygon that could say what is covered", extent));
+  }
+  return polygons;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,55 @@
+// One open vector file: its layers that may hold roads, their reference systems and extents.
+#pragma once
+
+#include <ogrsf_frmts.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/plane_polygon.hpp"
+#include "tiles/sources/road_lines.hpp"
+
+namespace roadfix {
+
+/// Column, row and zoom of a vector tile.
+struct VectorTile {
+  int zoom = 0;
+  int x = 0;
+  int y = 0;
+};
+/// From ".../Z/X/Y.mvt" or "Z-X-Y.mvt" (.pbf alike); nullopt for other names or impossible numbers.
+std::optional<VectorTile> vector_tile_of(const std::string& path);
+
+class VectorFile {
+ public:
+  /// Throws NotFound or InvalidInput ("source-unreadable", "layer-unknown").
+  VectorFile(const std::string& path, const VectorOptions& options);
+
+  /// All, or the one that the user chose; of OpenStreetMap files the lines.
+  const std::vector<OGRLayer*>& layers() const { return layers_; }
+  /// Throws InvalidInput "roads-without-georeference".
+  OGRSpatialReference crs_of(OGRLayer& layer) const;
+  /// In the layer's own coordinates; of a vector tile the whole tile. nullopt for an empty layer.
+  std::optional<OGREnvelope> extent_of(OGRLayer& layer);
+  /// Once through all features of all layers. Throws CorruptData "roads-unreadable".
+  void for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit);
+
+ private:
+  std::string path_;
+  VectorOptions options_;
+  std::optional<VectorTile> tile_;
+  DatasetPtr dataset_;
+  std::vector<OGRLayer*> layers_;
+};
+
+/// The box as a polygon on the plane, its edges followed closely. Throws InvalidInput "crs-not-transformable".
+PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path);
+
+/// See VectorOptions::extent.
+std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone);
+
+}  // namespace roadfix

@@ -1,0 +1,19 @@
+// Road lines as a source of a map: drawn with their width, block by block.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tiles/sources/cell_source.hpp"
+#include "tiles/sources/road_lines.hpp"
+#include "tiles/sources/road_rules.hpp"
+
+namespace roadfix {
+
+/// Cells whose centre the source covers are observed: `Certainty` of the share that a road covers. Reads all lines into
+/// memory at once.
+std::unique_ptr<CellSource> open_road_vectors(const std::vector<std::string>& paths, const VectorOptions& options,
+                                              const RoadRules& rules, UtmZone zone, double cell_m);
+
+}  // namespace roadfix

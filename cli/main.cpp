@@ -20,9 +20,9 @@ int main(int argc, char** argv) {
       "roadfix");
   app.set_version_flag("--version", "roadfix " ROADFIX_VERSION);
   app.require_subcommand(1);
+  roadfix::cli::add_ingest_command(app);
   roadfix::cli::add_info_command(app);
   roadfix::cli::add_verify_command(app);
-  roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);
   try {
     app.parse(argc, argv);

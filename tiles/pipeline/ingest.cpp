@@ -1,0 +1,129 @@
+#include "tiles/pipeline/ingest.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Steele, Lea, Flood: Fast splittable pseudorandom number generators (2014), the finalizer of SplitMix64.
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+struct Block {
+  TileIndex index;
+  CellArray cells;
+};
+
+[[noreturn]] void stopped(const std::string& source) {
+  throw Interrupted(
+      "ingest-stopped",
+      fmt::format("stopped while ingesting '{}'; finished blocks are kept: run the same command again to go "
+                  "on",
+                  source));
+}
+
+/// Reads and writes the blocks; returns the number of observed cells.
+std::int64_t carry(const CellSource& source, const std::string& name, double cell_m, std::span<const TileIndex> todo,
+                   std::int64_t before, MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
+                   const std::stop_token& stop) {
+  const auto total = before + static_cast<std::int64_t>(todo.size());
+  std::int64_t done = before;
+  std::int64_t observed = 0;
+  std::size_t next = 0;
+  if (progress.blocks) progress.blocks(done, total);
+  const auto plan = [&](tbb::flow_control& control) -> std::size_t {
+    if (next == todo.size() || stop.stop_requested()) {
+      control.stop();
+      return 0;
+    }
+    return next++;
+  };
+  const auto read = [&](std::size_t i) {
+    return Block{todo[i], source.read(tile_geometry(todo[i], cell_m), block_seed(options.seed, todo[i]))};
+  };
+  const auto write = [&](Block block) {
+    writer.put_block(name, block.index, block.cells);
+    observed += static_cast<std::int64_t>(block.cells.observed_count());
+    if (progress.blocks) progress.blocks(++done, total);
+  };
+  const auto tokens = static_cast<std::size_t>(2 * options.jobs);
+  tbb::task_arena arena(options.jobs);
+  arena.execute([&] {
+    tbb::parallel_pipeline(tokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, plan) &
+                                       tbb::make_filter<std::size_t, Block>(tbb::filter_mode::parallel, read) &
+                                       tbb::make_filter<Block, void>(tbb::filter_mode::serial_out_of_order, write));
+  });
+  return observed;
+}
+
+}  // namespace
+
+std::vector<TileIndex> plan_blocks(const CellSource& source, const MapSettings& settings) {
+  constexpr double kLatticeEastM = 1 << 20;
+  constexpr double kLatticeNorthM = 10.0 * (1 << 20);
+  constexpr double kMaxBlocks = 1e6;
+  GridBox box = source.extent();
+  box.min = {std::max(box.min.east_m, 0.0), std::max(box.min.north_m, 0.0)};
+  box.max = {std::min(box.max.east_m, kLatticeEastM), std::min(box.max.north_m, kLatticeNorthM)};
+  if (box.empty()) return {};
+  const double tile_m = kTileCells * settings.cell_m;
+  if (box.width_m() / tile_m * box.height_m() / tile_m > kMaxBlocks) {
+    throw LimitExceeded(
+        "source-too-large",
+        fmt::format("the source covers {:.0f} x {:.0f} km, more than a million blocks of {:.0f} m: choose "
+                    "larger cells with --cell, or split it",
+                    box.width_m() / 1e3, box.height_m() / 1e3, tile_m));
+  }
+  std::vector<TileIndex> blocks = tiles_covering(GridGeometry::covering(box, settings.cell_m));
+  std::erase_if(blocks, [&](TileIndex tile) { return !source.touches(tile_geometry(tile, settings.cell_m).box()); });
+  return blocks;
+}
+
+std::uint64_t block_seed(std::uint64_t seed, TileIndex block) {
+  const auto col = static_cast<std::uint32_t>(block.col);
+  const auto row = static_cast<std::uint32_t>(block.row);
+  return mixed(mixed(seed) ^ ((std::uint64_t{row} << 32U) | col));
+}
+
+IngestReport ingest(const CellSource& source, const SourceRecord& record, const MapSettings& settings,
+                    MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
+                    std::stop_token stop) {
+  assert(options.jobs >= 1);
+  const std::vector<TileIndex> blocks = plan_blocks(source, settings);
+  if (blocks.empty()) {
+    throw InvalidInput("source-outside-map", fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map",
+                                                         record.name, settings.zone.epsg()));
+  }
+  const std::vector<TileIndex> todo = writer.begin_source(record, blocks, options.replace);
+  IngestReport report;
+  report.blocks = static_cast<std::int64_t>(blocks.size());
+  report.blocks_before = report.blocks - static_cast<std::int64_t>(todo.size());
+  const Clock::time_point start = Clock::now();
+  report.observed_cells =
+      carry(source, record.name, settings.cell_m, todo, report.blocks_before, writer, options, progress, stop);
+  report.reading_s = seconds_since(start);
+  if (stop.stop_requested()) stopped(record.name);
+  const Clock::time_point fusing = Clock::now();
+  writer.finish_source(record.name, progress.fusing, stop);
+  report.fusing_s = seconds_since(fusing);
+  return report;
+}
+
+}  // namespace roadfix

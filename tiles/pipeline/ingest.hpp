@@ -1,0 +1,52 @@
+// From a source to a map: plans the blocks, reads and detects them in parallel, writes them one by one, fuses.
+//
+// Memory is bounded by the blocks in flight. A block's seed follows from the run's seed and the block's place alone, so
+// the cells do not depend on the number of jobs, the order of blocks or how often the work was interrupted.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "tiles/sources/cell_source.hpp"
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/map_writer.hpp"
+
+namespace roadfix {
+
+struct IngestOptions {
+  int jobs = 1;  ///< blocks read and detected at a time, at least 1
+  std::uint64_t seed = 1;
+  bool replace = false;  ///< a source of that name with another fingerprint
+};
+
+struct IngestProgress {
+  std::function<void(std::int64_t done, std::int64_t total)> blocks;
+  std::function<void(std::int64_t done, std::int64_t total)> fusing;
+};
+
+struct IngestReport {
+  std::int64_t blocks = 0;          ///< of the source
+  std::int64_t blocks_before = 0;   ///< of these, done in earlier runs
+  std::int64_t observed_cells = 0;  ///< of the blocks of this run
+  double reading_s = 0.0;           ///< reading and detecting
+  double fusing_s = 0.0;
+};
+
+/// Tiles of the map's lattice that the source touches, row by row from the north-west. Throws LimitExceeded
+/// "source-too-large" beyond a million.
+std::vector<TileIndex> plan_blocks(const CellSource& source, const MapSettings& settings);
+
+/// Seed of a block's random numbers.
+std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
+
+/// Carries the source into the map or goes on where an earlier call was stopped. `record.fingerprint` must tell
+/// everything that changes the cells. Throws Interrupted "ingest-stopped" when `stop` is requested, and whatever
+/// source and writer throw; what was finished until then stays.
+IngestReport ingest(const CellSource& source, const SourceRecord& record, const MapSettings& settings,
+                    MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
+                    std::stop_token stop);
+
+}  // namespace roadfix

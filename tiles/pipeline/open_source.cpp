@@ -1,0 +1,31 @@
+#include "tiles/pipeline/open_source.hpp"
+
+#include <cassert>
+
+#include "tiles/sources/placement.hpp"
+#include "tiles/sources/vector_roads.hpp"
+
+namespace roadfix {
+
+LatLon centre_of_source(const SourceRequest& request) {
+  const std::string& path = request.files.paths.front();
+  if (request.files.kind == SourceKind::kRoadVectors) return centre_of_roads(path, request.vectors);
+  return centre_of(RasterFile(path, request.raster));
+}
+
+std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,
+                                        const RoadDetector* detector) {
+  const SourceFiles& files = request.files;
+  switch (files.kind) {
+    case SourceKind::kImagery:
+      assert(detector != nullptr);
+      return open_imagery(files.paths, request.raster, settings.zone, settings.cell_m, *detector);
+    case SourceKind::kRoadRaster:
+      return open_road_raster(files.paths, request.raster, settings.zone, settings.cell_m);
+    case SourceKind::kRoadVectors:
+      break;
+  }
+  return open_road_vectors(files.paths, request.vectors, request.rules, settings.zone, settings.cell_m);
+}
+
+}  // namespace roadfix

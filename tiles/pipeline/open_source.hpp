@@ -1,0 +1,32 @@
+// One way to open any kind of source for a map.
+#pragma once
+
+#include <memory>
+
+#include "core/detect/road_detector.hpp"
+#include "core/geodesy/latlon.hpp"
+#include "tiles/sources/cell_source.hpp"
+#include "tiles/sources/collar.hpp"
+#include "tiles/sources/raster_sources.hpp"
+#include "tiles/sources/road_lines.hpp"
+#include "tiles/sources/road_rules.hpp"
+#include "tiles/sources/source_files.hpp"
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix {
+
+struct SourceRequest {
+  SourceFiles files;
+  RasterOptions raster;
+  VectorOptions vectors;
+  RoadRules rules;
+};
+
+/// Geographic centre of the first file, to choose the zone of a new map by.
+LatLon centre_of_source(const SourceRequest& request);
+
+/// `detector` is needed for imagery and must outlive the source.
+std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,
+                                        const RoadDetector* detector);
+
+}  // namespace roadfix

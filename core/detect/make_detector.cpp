@@ -9,11 +9,18 @@
 namespace roadfix {
 
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
-  if (choice.name != "auto" && choice.name != "neural") {
+  if (choice.name != "auto" && choice.name != "neural" && choice.name != "tree") {
     throw InvalidInput("unknown-detector",
                        fmt::format("\"{}\" is no detector: choose one of {}.", choice.name, kDetectorNames));
   }
+  if (choice.name == "tree") {
+    if (!choice.model.empty()) {
+      throw InvalidInput("model-without-network", "A model was named for the tree detector, which needs none.");
+    }
+    return std::make_unique<TreeRoadDetector>(choice.tree);
+  }
   const auto model = choice.model.empty() ? default_model() : choice.model;
+  if (!model && choice.name == "auto") return std::make_unique<TreeRoadDetector>(choice.tree);
   if (!model) {
     throw InvalidInput("model-missing",
                        "No weights of the road network were found. Name them with --model FILE.onnx or ROADFIX_MODEL.");

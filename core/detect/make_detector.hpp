@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/detect/road_detector.hpp"
+#include "core/detect/tree_detector.hpp"
 
 namespace roadfix {
 
@@ -14,12 +15,13 @@ struct DetectorChoice {
   std::string name = "auto";    ///< one of kDetectorNames
   std::filesystem::path model;  ///< ONNX file of the neural detector; empty = default_model()
   int orientations = 1;         ///< NeuralOptions::orientations
+  TreeDetectorOptions tree;
 };
 
-/// "auto": neural where `model` is named or default_model() finds one.
-inline constexpr const char* kDetectorNames = "auto, neural";
+/// "auto": neural where `model` is named or default_model() finds one, else the tree.
+inline constexpr const char* kDetectorNames = "auto, neural, tree";
 
-/// InvalidInput "unknown-detector", "model-missing" (no weights found or a model named for another detector) and those
+/// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network" and those
 /// of the detectors' constructors.
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice);
 

@@ -47,13 +47,13 @@ class MakeDetector : public ::testing::Test {
 };
 
 TEST_F(MakeDetector, TakesTheNamedModelAndItsOrientations) {
-  const std::string description = make_detector({"neural", model(), 4})->describe();
+  const std::string description = make_detector({"neural", model(), 4, {}})->describe();
   EXPECT_NE(description.find("neural tiny"), std::string::npos);
   EXPECT_NE(description.find("orientations=4"), std::string::npos);
 }
 
 TEST_F(MakeDetector, AutoIsNeuralWhereAModelIsNamed) {
-  EXPECT_NE(make_detector({"auto", model(), 1})->describe().find("neural tiny"), std::string::npos);
+  EXPECT_NE(make_detector({"auto", model(), 1, {}})->describe().find("neural tiny"), std::string::npos);
 }
 
 TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModel) {
@@ -67,7 +67,12 @@ TEST_F(MakeDetector, AWrongEnvironmentIsSaidAndNotPassedOver) {
   EXPECT_EQ(refusal({}), "model-missing");
 }
 
-TEST_F(MakeDetector, RefusesANameThatIsNoDetector) { EXPECT_EQ(refusal({"sift", {}, 1}), "unknown-detector"); }
+TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
+  EXPECT_EQ(make_detector({"tree", {}, 1, {}})->describe().substr(0, 5), "tree ");
+  EXPECT_EQ(refusal({"tree", model(), 1, {}}), "model-without-network");
+}
+
+TEST_F(MakeDetector, RefusesANameThatIsNoDetector) { EXPECT_EQ(refusal({"sift", {}, 1, {}}), "unknown-detector"); }
 
 }  // namespace
 }  // namespace roadfix

@@ -1,1 +1,121 @@
 #include "core/locate/fix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/locate/decision.hpp"
+#include "core/locate/prepare.hpp"
+#include "core/match/score.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Variance of the observed cells; 0 when none is.
+double spread_of(const CellArray& cells) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double n = 0.0;
+  for (const Cell cell : cells.cells()) {
+    if (!is_observed(cell)) continue;
+    sum += probability(cell);
+    squares += probability(cell) * probability(cell);
+    n += 1.0;
+  }
+  return n > 0.0 ? squares / n - (sum / n) * (sum / n) : 0.0;
+}
+
+/// Sets status and reason and returns true where the feature map alone tells that there is nothing to search for.
+bool hopeless(const FeatureMap& features, Fix& fix) {
+  if (features.cells.observed_count() == 0) {
+    fix.reason = "footprint-unobserved";
+    fix.explanation = "no cell of the feature map was observed: the frame showed no ground";
+    return true;
+  }
+  if (spread_of(features.cells) < kLeastSpread) {
+    fix.reason = "too-few-roads";
+    fix.explanation = "the feature map shows hardly any road, or road everywhere: there is nothing to match";
+    return true;
+  }
+  return false;
+}
+
+struct Ellipse {
+  std::array<double, 2> sigma_m;
+  Angle heading;  ///< of the major axis, clockwise from grid north
+};
+
+Ellipse ellipse_of(double east2, double north2, double east_north) {
+  const double mean = 0.5 * (east2 + north2);
+  const double split = std::hypot(0.5 * (north2 - east2), east_north);
+  const double along_north = 0.5 * std::atan2(2.0 * east_north, north2 - east2);
+  return {{std::sqrt(mean + split), std::sqrt(std::max(0.0, mean - split))}, Angle::radians(along_north)};
+}
+
+FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight) {
+  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
+  const auto& c = mode.covariance;
+  const Ellipse ellipse = ellipse_of(c[0][0] + registration2, c[1][1] + registration2, c[0][1]);
+  const GridPoint at = mode.pose.position;
+  FixMode result;
+  result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};
+  result.weight = weight;
+  result.rho = mode.rho;
+  result.sigma_m = ellipse.sigma_m;
+  const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
+  result.ellipse_heading = Angle::degrees(std::fmod(major_deg, 180.0));
+  result.heading_sigma = Angle::radians(std::sqrt(c[2][2]));
+  result.observed_cells = mode.observed_cells;
+  return result;
+}
+
+void require_valid(const FixOptions& options, double area_km2) {
+  if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
+    throw InvalidInput("confidence-out-of-range",
+                       fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
+  }
+  if (options.max_search_km2 > 0.0 && area_km2 > options.max_search_km2) {
+    throw LimitExceeded("search-area-too-large",
+                        fmt::format("the prior leaves {:.1f} km2 to search, more than the limit of {:.1f} km2: give a "
+                                    "smaller circle or box",
+                                    area_km2, options.max_search_km2));
+  }
+}
+
+}  // namespace
+
+Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
+  const SearchRegion region = region_of(map, prior);
+  require_valid(options, region.area_km2());
+  const FeatureMap cells = in_cells_of(map, features);
+  Fix fix;
+  fix.map_name = map.name;
+  fix.map_version = map.version;
+  if (hopeless(cells, fix)) return fix;
+
+  SearchOptions search_options;
+  search_options.max_modes = options.max_modes;
+  search_options.threads = options.threads;
+  search_options.stop = options.stop;
+  if (options.time_limit.count() > 0) search_options.deadline = started + options.time_limit;
+  const SearchResult found = search(map.read, cells.cell_m, cells, region, search_options);
+
+  Decision decision = decide(found, options.confidence);
+  fix.status = decision.status;
+  fix.reason = std::move(decision.reason);
+  fix.explanation = std::move(decision.explanation);
+  fix.probability = decision.probability;
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    fix.modes.push_back(to_geographic(map, found.modes[i], decision.weights[i]));
+  }
+  fix.searched_km2 = region.area_km2();
+  fix.headings = found.headings;
+  fix.search_time = std::chrono::steady_clock::now() - started;
+  return fix;
+}
+
+}  // namespace roadfix

@@ -51,6 +51,7 @@ struct FixOptions {
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; past it Interrupted
   int threads = 1;
+  std::stop_token stop;  ///< Interrupted when requested
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };
@@ -78,10 +79,9 @@ struct Fix {
   std::chrono::duration<double, std::milli> search_time{};
 };
 
-/// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all.
+/// Search (core/match/search.hpp), then decide (decision.hpp says what is assumed about probabilities).
+/// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all,
+/// LimitExceeded and Interrupted by the options.
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options);
-
-/// Equations (5) to (7) for a list of poses.
-std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses);
 
 }  // namespace roadfix

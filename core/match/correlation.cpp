@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace roadfix {
+namespace {
+
+// Below this mean square a spread is rounding error.
+constexpr double kRounding = 1e-9;
+
+}  // namespace
 
 std::optional<double> rho(const MatchSums& s) {
   if (s.n == 0) return std::nullopt;
@@ -12,9 +18,17 @@ std::optional<double> rho(const MatchSums& s) {
   const double covariance = s.ml - n * mean * mean;
   const double map_spread = s.mm - 2.0 * mean * s.m + n * mean * mean;
   const double feature_spread = s.ll - 2.0 * mean * s.l + n * mean * mean;
-  constexpr double kRounding = 1e-9;
   if (map_spread <= kRounding * n || feature_spread <= kRounding * n) return std::nullopt;
   return covariance / std::sqrt(map_spread * feature_spread);  // (5)
+}
+
+std::optional<double> pearson(const MatchSums& s) {
+  if (s.n == 0) return std::nullopt;
+  const auto n = static_cast<double>(s.n);
+  const double map_spread = s.mm - s.m * s.m / n;
+  const double feature_spread = s.ll - s.l * s.l / n;
+  if (map_spread <= kRounding * n || feature_spread <= kRounding * n) return std::nullopt;
+  return (s.ml - s.m * s.l / n) / std::sqrt(map_spread * feature_spread);
 }
 
 double likelihood(double rho) { return std::max(rho, 0.0); }

@@ -20,6 +20,10 @@ struct MatchSums {
 /// the common mean.
 std::optional<double> rho(const MatchSums& sums);
 
+/// Correlation about the means of m and of l apart (Pearson): what the search ranks by, since unlike (5) it does not
+/// change with the detector's overall rate. nullopt where m or l is constant.
+std::optional<double> pearson(const MatchSums& sums);
+
 /// Equation (7).
 double likelihood(double rho);
 

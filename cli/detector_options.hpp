@@ -1,0 +1,12 @@
+// The options by which every command lets its user choose the detector.
+#pragma once
+
+#include "cli/command.hpp"
+#include "core/detect/make_detector.hpp"
+
+namespace roadfix::cli {
+
+/// Adds --detector, --model and --orientations, which write into `choice`; it must live as long as the command.
+void add_detector_options(CLI::App& command, DetectorChoice& choice);
+
+}  // namespace roadfix::cli

@@ -1,0 +1,25 @@
+// Equations (5) to (7) at poses that the caller has: particles of a filter, candidates of another method.
+#pragma once
+
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "core/locate/fix.hpp"
+
+namespace roadfix {
+
+struct MatchOptions {
+  /// 0: every pose exactly, its feature map resampled to the very heading and place within the cell. Else poses share
+  /// headings in bins of this step and lie on the nearest cell: far faster for many poses.
+  Angle heading_step;
+  int threads = 1;
+  std::stop_token stop;
+};
+
+/// One score per pose, in their order. Where a pose lies off the map nothing is observed and rho is not defined.
+/// Throws InvalidInput for positions that are no place on Earth and for a feature map that cannot be used.
+std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
+                              const MatchOptions& options = {});
+
+}  // namespace roadfix

@@ -1,0 +1,132 @@
+#include "core/locate/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr double kLargestSideM = 20'000.0;
+constexpr int kMostCellsAcross = 8192;
+
+void require_usable(const FeatureMap& features) {
+  if (features.cells.empty()) {
+    throw InvalidInput("feature-map-empty", "the feature map has no cells: give at least one row and one column");
+  }
+  if (!std::isfinite(features.cell_m) || features.cell_m <= 0.0) {
+    throw InvalidInput("cell-size-out-of-range",
+                       fmt::format("the feature map's cell size is {} m: give the side of a cell on the ground, in "
+                                   "metres above 0",
+                                   features.cell_m));
+  }
+  const double side_m = features.cell_m * std::max(features.cells.cols(), features.cells.rows());
+  if (side_m > kLargestSideM) {
+    throw InvalidInput("feature-map-too-large",
+                       fmt::format("the feature map spans {:.0f} m, more than {:.0f} m: check its cell size ({} m)",
+                                   side_m, kLargestSideM, features.cell_m));
+  }
+  const double off_m = features.cell_m * std::hypot(features.nadir.col - features.cells.cols() / 2.0,
+                                                    features.nadir.row - features.cells.rows() / 2.0);
+  if (!(off_m <= kLargestSideM)) {
+    throw InvalidInput("nadir-out-of-range", "the point below the UAV lies too far from its feature map");
+  }
+}
+
+GridBox intersection(const GridBox& a, const GridBox& b) {
+  return {{std::max(a.min.east_m, b.min.east_m), std::max(a.min.north_m, b.min.north_m)},
+          {std::min(a.max.east_m, b.max.east_m), std::min(a.max.north_m, b.max.north_m)}};
+}
+
+SearchRegion::Circle circle_in(const UtmZone& zone, const GeoCircle& circle) {
+  if (!std::isfinite(circle.radius_m) || circle.radius_m <= 0.0) {
+    throw InvalidInput("prior-radius-out-of-range",
+                       fmt::format("the radius of the prior is {} m: give metres above 0", circle.radius_m));
+  }
+  return {zone.project(circle.centre), circle.radius_m};
+}
+
+/// Smallest box of the grid around the geographic one; its sides are curves there, so points between corners count too.
+GridBox box_in(const UtmZone& zone, const GeoBox& box) {
+  if (!(box.south_west.lat_deg < box.north_east.lat_deg) || !(box.south_west.lon_deg < box.north_east.lon_deg)) {
+    throw InvalidInput(
+        "prior-box-empty",
+        fmt::format("the box of the prior runs from {}, {} to {}, {}: the first corner must lie south and "
+                    "west of the second",
+                    box.south_west.lat_deg, box.south_west.lon_deg, box.north_east.lat_deg, box.north_east.lon_deg));
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  constexpr int kSteps = 4;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const auto between = [](double a, double b, int step) { return a + (b - a) * step / kSteps; };
+      const GridPoint p = zone.project({between(box.south_west.lat_deg, box.north_east.lat_deg, i),
+                                        between(box.south_west.lon_deg, box.north_east.lon_deg, j)});
+      result.min = {std::min(result.min.east_m, p.east_m), std::min(result.min.north_m, p.north_m)};
+      result.max = {std::max(result.max.east_m, p.east_m), std::max(result.max.north_m, p.north_m)};
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
+  require_usable(features);
+  double cell_m = map.cell_m;
+  while (2.0 * cell_m <= 1.01 * features.cell_m) cell_m *= 2.0;
+  const double cells_across = features.cell_m * std::max(features.cells.cols(), features.cells.rows()) / cell_m;
+  if (cells_across > kMostCellsAcross) {
+    throw InvalidInput("feature-map-too-large",
+                       fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",
+                                   cells_across, kMostCellsAcross));
+  }
+  if (features.cell_m == cell_m) return features;
+  return resampled(features, cell_m);
+}
+
+SearchRegion region_of(const MapView& map, const Prior& prior) {
+  if (map.extent.empty() || map.extent.width_m() <= 0.0 || map.extent.height_m() <= 0.0) {
+    throw InvalidInput("map-unobserved",
+                       fmt::format("the map {} holds no observed cell: ingest imagery or roads first", map.name));
+  }
+  SearchRegion region;
+  region.box = map.extent;
+  if (prior.circle) {
+    region.circle = circle_in(map.zone, *prior.circle);
+    const GridPoint c = region.circle->centre;
+    const double r = region.circle->radius_m;
+    region.box = intersection(region.box, {{c.east_m - r, c.north_m - r}, {c.east_m + r, c.north_m + r}});
+  }
+  if (prior.box) region.box = intersection(region.box, box_in(map.zone, *prior.box));
+  const GridPoint middle{0.5 * (region.box.min.east_m + region.box.max.east_m),
+                         0.5 * (region.box.min.north_m + region.box.max.north_m)};
+  const auto nearest = [&](GridPoint p) {
+    return GridPoint{std::clamp(p.east_m, region.box.min.east_m, region.box.max.east_m),
+                     std::clamp(p.north_m, region.box.min.north_m, region.box.max.north_m)};
+  };
+  if (region.box.empty() ||
+      (region.circle && distance_m(nearest(region.circle->centre), region.circle->centre) > region.circle->radius_m)) {
+    throw InvalidInput(
+        "prior-outside-map",
+        fmt::format("the prior does not meet the map {}: check its position, or search without it", map.name));
+  }
+  if (prior.heading) {
+    const double half_deg = prior.heading->half_width.degrees();
+    if (!(half_deg >= 0.0) || !std::isfinite(half_deg) || !std::isfinite(prior.heading->centre.degrees())) {
+      throw InvalidInput("prior-heading-out-of-range",
+                         "the heading range must be given as a heading and half a width of 0 to 180 degrees");
+    }
+    region.heading = map.zone.grid_from_true(prior.heading->centre, middle);
+    region.heading_half_width = Angle::degrees(std::min(half_deg, 180.0));
+  }
+  return region;
+}
+
+}  // namespace roadfix

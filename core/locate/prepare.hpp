@@ -1,0 +1,16 @@
+// What the outside gives, made ready for the grid of a map: feature map in its cells, prior in its plane.
+#pragma once
+
+#include "core/locate/fix.hpp"
+#include "core/match/search.hpp"
+
+namespace roadfix {
+
+/// Cells of the map or one of its overviews, the coarsest that still holds what the feature map shows.
+/// Throws InvalidInput for an empty feature map and one of a size that makes no sense.
+FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
+
+/// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing.
+SearchRegion region_of(const MapView& map, const Prior& prior);
+
+}  // namespace roadfix

@@ -1,0 +1,327 @@
+#include "core/match/coarse_scan.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <mutex>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "core/grid/resample.hpp"
+#include "core/match/score.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Correlates one fixed plane of numbers with many small patches.
+class Correlator {
+ public:
+  explicit Correlator(const cv::Mat1f& plane)
+      : size_(cv::getOptimalDFTSize(plane.cols), cv::getOptimalDFTSize(plane.rows)) {
+    cv::Mat1f padded(size_, 0.0F);
+    plane.copyTo(padded(cv::Rect(0, 0, plane.cols, plane.rows)));
+    cv::dft(padded, spectrum_);
+  }
+
+  cv::Size size() const { return size_; }
+
+  static cv::Mat1f spectrum_of(const cv::Mat1f& patch, cv::Size size) {
+    cv::Mat1f padded(size, 0.0F);
+    patch.copyTo(padded(cv::Rect(0, 0, patch.cols, patch.rows)));
+    cv::Mat1f spectrum;
+    cv::dft(padded, spectrum, 0, patch.rows);
+    return spectrum;
+  }
+
+  /// Sum over the patch at each place; the patch's first cell lies on the result's cell. Turned by half a turn it is
+  /// the patch's last cell (counted in the turned patch) instead.
+  cv::Mat1f correlate(const cv::Mat1f& patch_spectrum, bool half_turn) const {
+    cv::Mat1f product;
+    cv::mulSpectrums(spectrum_, patch_spectrum, product, 0, !half_turn);
+    cv::Mat1f result;
+    cv::dft(product, result, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
+    return result;
+  }
+
+ private:
+  cv::Size size_;
+  cv::Mat1f spectrum_;
+};
+
+/// Observed cells as three planes: 1 where observed, the value less `mean`, and its square.
+struct Planes {
+  cv::Mat1f observed, value, square;
+};
+
+double mean_of(const CellArray& cells) {
+  double sum = 0.0;
+  std::int64_t count = 0;
+  for (const Cell cell : cells.cells()) {
+    if (!is_observed(cell)) continue;
+    sum += probability(cell);
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+Planes planes_of(const CellArray& cells, double mean) {
+  Planes planes{cv::Mat1f(cells.rows(), cells.cols(), 0.0F), cv::Mat1f(cells.rows(), cells.cols(), 0.0F),
+                cv::Mat1f(cells.rows(), cells.cols(), 0.0F)};
+  for (int row = 0; row < cells.rows(); ++row) {
+    for (int col = 0; col < cells.cols(); ++col) {
+      const Cell cell = cells.at(col, row);
+      if (!is_observed(cell)) continue;
+      const auto value = static_cast<float>(probability(cell) - mean);
+      planes.observed(row, col) = 1.0F;
+      planes.value(row, col) = value;
+      planes.square(row, col) = value * value;
+    }
+  }
+  return planes;
+}
+
+/// Sum over blocks of q x q cells, the first block starting `lead` cells before the first cell.
+cv::Mat1f block_sums(const cv::Mat1f& plane, int q, int lead) {
+  const auto blocks = [&](int cells) { return (cells + lead + q - 1) / q; };
+  cv::Mat1f sums(blocks(plane.rows), blocks(plane.cols), 0.0F);
+  for (int row = 0; row < plane.rows; ++row) {
+    for (int col = 0; col < plane.cols; ++col) sums((row + lead) / q, (col + lead) / q) += plane(row, col);
+  }
+  return sums;
+}
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+class Scan {
+ public:
+  Scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request, const Deadline& deadline)
+      : features_(features),
+        request_(request),
+        deadline_(deadline),
+        reach_(footprint_reach(features)),
+        lead_col_(request.positions.origin.col - map.geometry.origin.col),
+        lead_row_(request.positions.origin.row - map.geometry.origin.row),
+        full_cells_(static_cast<double>(features.cells.observed_count())),
+        feature_mean_(mean_of(features.cells)),
+        q_(std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, 4)) {
+    assert(lead_col_ >= reach_ && lead_row_ >= reach_);
+    const Planes planes = planes_of(map.cells, mean_of(map.cells));
+    cross_.emplace(planes.value);
+    observed_.emplace(block_sums(planes.observed, q_, 0));
+    value_.emplace(block_sums(planes.value, q_, 0));
+    square_.emplace(block_sums(planes.square, q_, 0));
+    eligible_ = cv::Mat1b(request.positions.rows, request.positions.cols, std::uint8_t{0});
+    for (int row = 0; row < request.positions.rows; ++row) {
+      for (int col = 0; col < request.positions.cols; ++col) eligible_(row, col) = request.eligible(col, row) ? 1 : 0;
+    }
+  }
+
+  ScanResult run() {
+    // A footprint turned by half a turn has the conjugate spectrum: bins b and b + half share their transforms.
+    const int half = request_.bins.count() / 2;
+    std::vector<int> bases;
+    for (const int bin : request_.headings) bases.push_back(bin % half);
+    std::ranges::sort(bases);
+    bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
+    parallel_for(static_cast<int>(bases.size()), request_.threads,
+                 [&](int i) { scan_pair(bases[static_cast<std::size_t>(i)]); });
+    std::ranges::sort(result_.maxima, std::ranges::greater{}, &ScanPose::score);
+    if (result_.maxima.size() > request_.keep) result_.maxima.resize(request_.keep);
+    return std::move(result_);
+  }
+
+ private:
+  struct PatchSpectra {
+    cv::Mat1f cross, observed, value, square;
+  };
+
+  void scan_pair(int base) {
+    const PatchSpectra patch = spectra_of(base);
+    for (const int bin : {base, base + request_.bins.count() / 2}) {
+      if (!std::ranges::binary_search(request_.headings, bin)) continue;
+      deadline_.check();
+      collect(scores(patch, bin != base), bin);
+    }
+  }
+
+  PatchSpectra spectra_of(int bin) const {
+    const FeatureMap turned = rotated(features_, request_.bins.heading(bin));
+    // Every patch is a square of the full reach, so that its nadir is always the same cell.
+    CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
+    paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
+          reach_ - static_cast<int>(turned.nadir.row));
+    const Planes planes = planes_of(square, feature_mean_);
+    const auto means = [&](const cv::Mat1f& plane) {
+      cv::Mat1f sums = block_sums(plane, q_, block_lead());
+      sums *= 1.0 / (q_ * q_);
+      return sums;
+    };
+    return {Correlator::spectrum_of(planes.value, cross_->size()),
+            Correlator::spectrum_of(means(planes.observed), observed_->size()),
+            Correlator::spectrum_of(means(planes.value), observed_->size()),
+            Correlator::spectrum_of(means(planes.square), observed_->size())};
+  }
+
+  /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
+  int block_lead() const { return ((half_block() - reach_) % q_ + q_) % q_; }
+  int half_block() const { return (q_ - 1) / 2; }
+  int nadir_block() const { return (reach_ + block_lead()) / q_; }
+
+  /// Score = (cross - correction) * gain; both vary slowly and are known per block of positions.
+  struct Blocks {
+    cv::Mat1f correction, gain;
+    int first = 0;  ///< block whose result lies in the first row and column
+  };
+
+  Blocks blocks_of(const PatchSpectra& patch, bool half_turn) const {
+    const cv::Mat1f n = observed_->correlate(patch.observed, half_turn);
+    const cv::Mat1f m = value_->correlate(patch.observed, half_turn);
+    const cv::Mat1f mm = square_->correlate(patch.observed, half_turn);
+    const cv::Mat1f l = observed_->correlate(patch.value, half_turn);
+    const cv::Mat1f ll = observed_->correlate(patch.square, half_turn);
+    Blocks blocks{cv::Mat1f(n.size(), 0.0F), cv::Mat1f(n.size(), 0.0F), half_turn ? -nadir_block() : nadir_block()};
+    const double least = std::max(1.0, request_.min_observed_share * full_cells_);
+    for (int row = 0; row < n.rows; ++row) {
+      for (int col = 0; col < n.cols; ++col) {
+        const double cells = n(row, col);
+        if (cells < least) continue;
+        const double m_sum = m(row, col);
+        const double l_sum = l(row, col);
+        const double map_spread = double{mm(row, col)} - m_sum * m_sum / cells;
+        const double feature_spread = double{ll(row, col)} - l_sum * l_sum / cells;
+        if (map_spread < kLeastSpread * cells || feature_spread < kLeastSpread * cells) continue;
+        blocks.correction(row, col) = static_cast<float>(m_sum * l_sum / cells);
+        blocks.gain(row, col) = static_cast<float>(std::sqrt(cells / full_cells_ / (map_spread * feature_spread)));
+      }
+    }
+    return blocks;
+  }
+
+  cv::Mat1f scores(const PatchSpectra& patch, bool half_turn) const {
+    const cv::Mat1f cross = cross_->correlate(patch.cross, half_turn);
+    const Blocks blocks = blocks_of(patch, half_turn);
+    const GridGeometry& positions = request_.positions;
+    cv::Mat1f result(positions.rows, positions.cols, 0.0F);
+    // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
+    const int shift = half_turn ? reach_ : -reach_;
+    // A block result with its nadir block at B stands for the nadir at B * q + half_block, turned around at
+    // B * q + q - 1 - half_block.
+    const int centre = half_turn ? q_ - 1 - half_block() : half_block();
+    const std::vector<Mix> rows = mixes(positions.rows, lead_row_ - centre, blocks.first, blocks.gain.rows);
+    const std::vector<Mix> cols = mixes(positions.cols, lead_col_ - centre, blocks.first, blocks.gain.cols);
+    std::vector<float> correction(static_cast<std::size_t>(blocks.gain.cols));
+    std::vector<float> gain(correction.size());
+    for (int row = 0; row < positions.rows; ++row) {
+      const Mix down = rows[static_cast<std::size_t>(row)];
+      for (std::size_t i = 0; i < gain.size(); ++i) {
+        const int col = static_cast<int>(i);
+        correction[i] = down.of(blocks.correction(down.first, col), blocks.correction(down.second, col));
+        gain[i] = down.of(blocks.gain(down.first, col), blocks.gain(down.second, col));
+      }
+      const float* sums = cross[row + lead_row_ + shift] + lead_col_ + shift;
+      for (int col = 0; col < positions.cols; ++col) {
+        if (eligible_(row, col) == 0) continue;
+        const Mix right = cols[static_cast<std::size_t>(col)];
+        const auto left = static_cast<std::size_t>(right.first);
+        const auto next = static_cast<std::size_t>(right.second);
+        result(row, col) =
+            (sums[col] - right.of(correction[left], correction[next])) * right.of(gain[left], gain[next]);
+      }
+    }
+    return result;
+  }
+
+  /// Linear interpolation between two blocks.
+  struct Mix {
+    int first = 0;
+    int second = 0;
+    float share = 0.0F;  ///< of the second
+    float of(float a, float b) const { return a + share * (b - a); }
+  };
+
+  /// For cells start, start + 1, ...: between which blocks they lie. Transforms are cyclic, so indices wrap around.
+  std::vector<Mix> mixes(int count, int start, int first_block, int blocks) const {
+    std::vector<Mix> result;
+    for (int cell = start; cell < start + count; ++cell) {
+      const int block = floor_div(cell, q_);
+      const auto wrapped = [&](int i) { return ((i - first_block) % blocks + blocks) % blocks; };
+      result.push_back(
+          {wrapped(block), wrapped(block + 1), static_cast<float>(cell - block * q_) / static_cast<float>(q_)});
+    }
+    return result;
+  }
+
+  /// Local maxima among the eight neighbours, and the spread of all scores.
+  void collect(const cv::Mat1f& scores, int bin) {
+    std::vector<ScanPose> found;
+    double squares = 0.0;
+    std::int64_t poses = 0;
+    const float floor = current_floor();
+    for (int row = 0; row < scores.rows; ++row) {
+      for (int col = 0; col < scores.cols; ++col) {
+        const float score = scores(row, col);
+        if (score == 0.0F) continue;  // not eligible, or not enough observed
+        squares += double{score} * double{score};
+        ++poses;
+        if (score > floor && is_peak(scores, row, col)) found.push_back({col, row, bin, score});
+      }
+    }
+    const std::lock_guard lock(mutex_);
+    result_.score_square_sum += squares;
+    result_.poses += poses;
+    result_.maxima.insert(result_.maxima.end(), found.begin(), found.end());
+    if (result_.maxima.size() < 4 * request_.keep) return;
+    const auto cut = result_.maxima.begin() + static_cast<std::ptrdiff_t>(request_.keep);
+    std::ranges::nth_element(result_.maxima, cut, std::ranges::greater{}, &ScanPose::score);
+    floor_ = cut->score;
+    result_.maxima.erase(cut, result_.maxima.end());
+  }
+
+  static bool is_peak(const cv::Mat1f& scores, int row, int col) {
+    for (int r = std::max(0, row - 1); r <= std::min(scores.rows - 1, row + 1); ++r) {
+      for (int c = std::max(0, col - 1); c <= std::min(scores.cols - 1, col + 1); ++c) {
+        if (scores(r, c) > scores(row, col)) return false;
+      }
+    }
+    return true;
+  }
+
+  float current_floor() {
+    const std::lock_guard lock(mutex_);
+    return floor_;
+  }
+
+  const FeatureMap& features_;
+  const ScanRequest& request_;
+  const Deadline& deadline_;
+  int reach_;
+  int lead_col_;  ///< of the positions within the map
+  int lead_row_;
+  double full_cells_;
+  double feature_mean_;
+  int q_;  ///< cells per block, an edge
+  std::optional<Correlator> cross_, observed_, value_, square_;
+  cv::Mat1b eligible_;
+  std::mutex mutex_;
+  float floor_ = 0.0F;
+  ScanResult result_;
+};
+
+}  // namespace
+
+int footprint_reach(const FeatureMap& features) {
+  double reach = 0.0;
+  for (const double col : {0.0, static_cast<double>(features.cells.cols())}) {
+    for (const double row : {0.0, static_cast<double>(features.cells.rows())}) {
+      reach = std::max(reach, std::hypot(col - features.nadir.col, row - features.nadir.row));
+    }
+  }
+  return static_cast<int>(std::ceil(reach)) + 1;
+}
+
+ScanResult coarse_scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request,
+                       const Deadline& deadline) {
+  return Scan(map, features, request, deadline).run();
+}
+
+}  // namespace roadfix

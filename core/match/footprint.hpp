@@ -1,0 +1,61 @@
+// A feature map turned to grid north-up, packed for the matching kernel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/feature_map.hpp"
+
+namespace roadfix {
+
+/// Observed cells only matter, so each row keeps just the span from its first to its last observed cell.
+class Footprint {
+ public:
+  static constexpr int kAlignment = 64;
+  static constexpr int kMaxCols = 65536;
+
+  struct Row {
+    int first_col = 0;  ///< of the span, relative to the nadir cell
+    int row = 0;        ///< relative to the nadir cell
+    int cells = 0;
+    std::size_t offset = 0;  ///< into values() and mask(), multiple of kAlignment
+  };
+
+  /// `north_up` comes from rotated(): its nadir lies within the cell that counts as the centre.
+  /// At most kMaxCols columns (the kernel's 32-bit sums).
+  explicit Footprint(const FeatureMap& north_up);
+
+  std::span<const Row> rows() const { return rows_; }
+  /// 0..254, 0 where unobserved or padding.
+  const std::uint8_t* values() const { return values_.data()->cells; }
+  /// 255 where observed, else 0.
+  const std::uint8_t* mask() const { return mask_.data()->cells; }
+  /// Largest distance of an observed cell from the nadir cell along an axis: the margin that a MapPlane needs.
+  int reach() const { return reach_; }
+
+  // Sums over all observed cells, in units of 1/254.
+  std::int64_t observed_cells() const { return observed_cells_; }
+  std::int64_t sum() const { return sum_; }
+  std::int64_t sum_of_squares() const { return sum_of_squares_; }
+
+ private:
+  struct alignas(kAlignment) Block {
+    std::uint8_t cells[kAlignment] = {};
+  };
+
+  std::vector<Row> rows_;
+  std::vector<Block> values_;
+  std::vector<Block> mask_;
+  int reach_ = 0;
+  std::int64_t observed_cells_ = 0;
+  std::int64_t sum_ = 0;
+  std::int64_t sum_of_squares_ = 0;
+};
+
+/// The footprint of a feature map at a grid heading, with its nadir `offset` from the centre of a cell (cells, each
+/// component within +-0.5): exact to sub-cell by resampling.
+Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
+
+}  // namespace roadfix

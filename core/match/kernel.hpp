@@ -1,0 +1,28 @@
+// The sums of equation (5) for many places of one footprint, vectorised for the processor that runs it.
+#pragma once
+
+#include <span>
+
+#include "core/match/correlation.hpp"
+#include "core/match/footprint.hpp"
+#include "core/match/map_plane.hpp"
+
+namespace roadfix {
+
+/// A cell of a map plane, counted from its first cell; may lie outside.
+struct PlaneCell {
+  int col = 0;
+  int row = 0;
+};
+
+/// Puts the nadir cell of the footprint on each of the places; sums run over the cells observed in both and are exact
+/// (integers inside). A place may lie anywhere, but one so far off that the footprint would leave the plane's margin
+/// counts as not observed at all: with a margin of twice the reach these are the places that touch no cell.
+/// `sums` is as long as `places`.
+void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                std::span<MatchSums> sums);
+
+/// Name of the instruction set in use ("AVX3_DL", "AVX2", ...), for reports.
+const char* kernel_target();
+
+}  // namespace roadfix

@@ -1,0 +1,16 @@
+// The score that the search ranks poses by: see search.hpp for its meaning.
+#pragma once
+
+#include "core/match/correlation.hpp"
+
+namespace roadfix {
+
+/// Variance of the cells below which a footprint, or the map under it, holds too little road to be compared: about one
+/// cell of road in a thousand.
+inline constexpr double kLeastSpread = 1e-3;
+
+/// r * sqrt(n / full_cells); 0 where less than `least_cells` were observed in both or one of them holds too little
+/// road.
+double score_of(const MatchSums& sums, std::int64_t full_cells, double least_cells);
+
+}  // namespace roadfix

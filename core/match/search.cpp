@@ -1,0 +1,279 @@
+#include "core/match/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/grid/resample.hpp"
+#include "core/match/coarse_scan.hpp"
+#include "core/match/peak.hpp"
+#include "core/match/refine.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr double kCoarsestCellM = 8.0;  // beyond it streets of a town blur into each other
+constexpr int kFootprintCells = 32;     // that the coarse level keeps at least across a footprint
+
+constexpr std::size_t kScanMaxima = 8192;
+constexpr std::size_t kCandidates = 256;  // followed from the coarse level
+constexpr std::size_t kSurvivors = 96;    // followed from each finer level
+constexpr int kRivalsWanted = 1000;       // distinct places that a background is drawn from
+
+double side_m(const FeatureMap& features) {
+  return features.cell_m * std::max(features.cells.cols(), features.cells.rows());
+}
+
+int coarse_level(double finest_cell_m, const FeatureMap& features) {
+  int level = 0;
+  double cell_m = finest_cell_m;
+  while (2.0 * cell_m <= kCoarsestCellM && side_m(features) / (2.0 * cell_m) >= kFootprintCells) {
+    cell_m *= 2.0;
+    ++level;
+  }
+  return level;
+}
+
+GridBox grown(const GridBox& box, double by_m) {
+  return {{box.min.east_m - by_m, box.min.north_m - by_m}, {box.max.east_m + by_m, box.max.north_m + by_m}};
+}
+
+SearchRegion grown(SearchRegion region, double by_m, Angle heading) {
+  region.box = grown(region.box, by_m);
+  if (region.circle) region.circle->radius_m += by_m;
+  region.heading_half_width += heading;
+  return region;
+}
+
+/// Everything that one search knows; `run` names the steps.
+class Search {
+ public:
+  Search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const SearchRegion& region,
+         const SearchOptions& options)
+      : read_(read),
+        region_(region),
+        options_(options),
+        deadline_(options.stop, options.deadline),
+        coarsest_(coarse_level(finest_cell_m, features)) {
+    for (int k = 0; k <= coarsest_; ++k) {
+      const double cell_m = std::ldexp(finest_cell_m, k);
+      const HeadingBins bins = HeadingBins::for_footprint(0.5 * side_m(features), std::ldexp(finest_cell_m, coarsest_));
+      FeatureMap scaled = k == 0 && features.cell_m == cell_m ? features : resampled(features, cell_m);
+      const double least = options.min_observed_share * static_cast<double>(scaled.cells.observed_count());
+      levels_.push_back({read, std::move(scaled), HeadingBins(bins.count() << (coarsest_ - k)), std::max(1.0, least),
+                         options.threads});
+    }
+    separation_m_ = std::max(2.5 * coarse().cell_m(), 0.1 * side_m(features));
+    plan_scan();
+  }
+
+  SearchResult run() {
+    SearchResult result;
+    result.cell_m = levels_.front().cell_m();
+    result.coarse_cell_m = coarse().cell_m();
+    std::vector<LatticePose> candidates = scan(result);
+    refine(coarse(), 1, 1, deadline_, candidates);
+    for (int k = coarsest_ - 1; k >= 0; --k) {
+      candidates = distinct(candidates, levels_[static_cast<std::size_t>(k + 1)], 2.5 * coarse().cell_m(), 2,
+                            k == coarsest_ - 1 ? kCandidates : kSurvivors);
+      descend(candidates);
+      refine(levels_[static_cast<std::size_t>(k)], 2, 2, deadline_, candidates);
+    }
+    const Level& finest = levels_.front();
+    candidates = distinct(candidates, finest, separation_m_, kDistinctBins, kSurvivors);
+    rank(candidates, result);
+    return result;
+  }
+
+ private:
+  static constexpr int kDistinctBins = 3;  // of the coarse level
+
+  const Level& coarse() const { return levels_.back(); }
+
+  /// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
+  void plan_scan() {
+    scanned_ = region_;
+    const double turns = region_.heading_half_width.degrees() / 180.0;
+    const double places_per_m2 = coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
+    const double wanted_m2 = kRivalsWanted / places_per_m2;
+    if (region_.area_km2() * 1e6 * std::min(turns, 1.0) >= wanted_m2) return;
+    const double need = 0.5 * std::sqrt(wanted_m2);
+    scanned_.circle.reset();
+    const GridPoint centre{0.5 * (region_.box.min.east_m + region_.box.max.east_m),
+                           0.5 * (region_.box.min.north_m + region_.box.max.north_m)};
+    scanned_.box.min.east_m = std::min(region_.box.min.east_m, centre.east_m - need);
+    scanned_.box.min.north_m = std::min(region_.box.min.north_m, centre.north_m - need);
+    scanned_.box.max.east_m = std::max(region_.box.max.east_m, centre.east_m + need);
+    scanned_.box.max.north_m = std::max(region_.box.max.north_m, centre.north_m + need);
+    scanned_.heading_half_width = Angle::degrees(180.0);
+  }
+
+  /// Candidates at the coarse level, distinct and best first: those within the region and, where it was enlarged, as
+  /// many from around it.
+  std::vector<LatticePose> scan(SearchResult& result) {
+    ScanRequest request;
+    const double cell_m = coarse().cell_m();
+    request.positions = GridGeometry::covering(scanned_.box, cell_m);
+    request.bins = coarse().bins;
+    const SearchRegion wide = grown(scanned_, 0.71 * cell_m, coarse().bins.step());
+    for (int bin = 0; bin < request.bins.count(); ++bin) {
+      if (wide.contains(request.bins.heading(bin))) request.headings.push_back(bin);
+    }
+    request.eligible = [&](int col, int row) { return wide.contains(request.positions.cell_center(col, row)); };
+    request.min_observed_share = options_.min_observed_share;
+    request.keep = kScanMaxima;
+    request.threads = options_.threads;
+    const int reach = footprint_reach(coarse().features);
+    const GridGeometry& positions = request.positions;
+    const GridGeometry window{cell_m,
+                              {positions.origin.col - reach, positions.origin.row - reach},
+                              positions.cols + 2 * reach,
+                              positions.rows + 2 * reach};
+    const ScanResult found = coarse_scan(read_(window), coarse().features, request, deadline_);
+
+    result.headings = static_cast<int>(request.headings.size());
+    result.background.poses = found.poses;
+    if (found.poses > 0) {
+      result.background.sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
+    }
+    std::vector<LatticePose> inside;
+    std::vector<LatticePose> outside;
+    for (const ScanPose& pose : found.maxima) {
+      const LatticePose lattice{
+          {positions.origin.col + pose.col, positions.origin.row + pose.row}, pose.bin, double{pose.score}};
+      (within_region(coarse(), lattice) ? inside : outside).push_back(lattice);
+    }
+    std::vector<LatticePose> candidates = distinct(inside, coarse(), 2.5 * cell_m, 2, kCandidates);
+    const std::vector<LatticePose> others = distinct(outside, coarse(), 2.5 * cell_m, 2, kCandidates);
+    candidates.insert(candidates.end(), others.begin(), others.end());
+    return candidates;
+  }
+
+  bool within_region(const Level& level, const LatticePose& pose) const {
+    const SearchRegion wide = grown(region_, 0.71 * level.cell_m(), level.bins.step());
+    const GridPose at = level.pose_of(pose);
+    return wide.contains(at.position) && wide.contains(at.heading);
+  }
+
+  /// The best `keep` of those within the region, and of the others, that are apart; best first.
+  std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
+                                    int coarse_bins_apart, std::size_t keep) const {
+    std::ranges::stable_sort(poses, std::ranges::greater{}, &LatticePose::score);
+    const int bins_apart = coarse_bins_apart * (level.bins.count() / coarse().bins.count());
+    std::vector<LatticePose> kept;
+    std::array<std::size_t, 2> count{};
+    for (const LatticePose& pose : poses) {
+      std::size_t& same_side = count[within_region(level, pose) ? 0 : 1];
+      if (pose.score <= 0.0 || same_side >= keep) continue;
+      const bool known = std::ranges::any_of(kept, [&](const LatticePose& other) {
+        return level.bins.distance(pose.bin, other.bin) <= bins_apart &&
+               level.cell_m() * std::hypot(pose.cell.col - other.cell.col, pose.cell.row - other.cell.row) <= apart_m;
+      });
+      if (known) continue;
+      kept.push_back(pose);
+      ++same_side;
+    }
+    return kept;
+  }
+
+  /// From the cells of one level to those of the next finer one.
+  static void descend(std::vector<LatticePose>& candidates) {
+    for (LatticePose& pose : candidates) {
+      pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};
+      pose.bin *= 2;
+    }
+  }
+
+  /// Modes from the best candidates of the region, rivals from all others.
+  void rank(const std::vector<LatticePose>& candidates, SearchResult& result) {
+    const Level& finest = levels_.front();
+    bool best_seen = false;
+    std::vector<LatticePose> inside;
+    for (const LatticePose& pose : candidates) {
+      const bool in_region = within_region(finest, pose);
+      if (in_region) inside.push_back(pose);
+      if (in_region && !best_seen) {
+        best_seen = true;
+      } else {
+        result.background.rivals.push_back(pose.score);
+        if (in_region) result.background.rivals_within.push_back(pose.score);
+      }
+    }
+    const double scanned = scanned_.area_km2() * std::min(1.0, scanned_.heading_half_width.degrees() / 180.0);
+    const double asked = region_.area_km2() * std::min(1.0, region_.heading_half_width.degrees() / 180.0);
+    result.background.region_share = scanned > 0.0 ? std::clamp(asked / scanned, 1e-6, 1.0) : 1.0;
+    for (const LatticePose& pose : inside) {
+      if (result.modes.size() >= static_cast<std::size_t>(std::max(1, options_.max_modes))) break;
+      deadline_.check();
+      result.modes.push_back(mode_at(pose, result.background));
+    }
+    std::ranges::stable_sort(result.modes, std::ranges::greater{}, &SearchMode::score);
+  }
+
+  SearchMode mode_at(LatticePose pose, const ScoreBackground& background) const {
+    Level level = levels_.front();
+    level.bins = level.bins.halved();
+    pose.bin *= 2;
+    Peak peak = peak_around(level, pose);
+    for (int moves = 0; moves < 3; ++moves) {
+      const std::array<int, 3> top = highest(peak.scores);
+      if (top == std::array<int, 3>{}) break;
+      pose = {{pose.cell.col + top[0], pose.cell.row + top[1]}, pose.bin + top[2], 0.0};
+      peak = peak_around(level, pose);
+    }
+    const PeakShape shape = shape_of(peak.scores, background);
+    const double cell = level.cell_m();
+    const std::array<double, 3> unit{cell, -cell, level.bins.step().radians()};  // rows grow to the south
+    SearchMode mode;
+    mode.pose = level.pose_of(pose);
+    mode.pose.position.east_m += unit[0] * shape.offset[0];
+    mode.pose.position.north_m += unit[1] * shape.offset[1];
+    mode.pose.heading += Angle::radians(unit[2] * shape.offset[2]);
+    mode.score = peak.scores[kPeakRadius][kPeakRadius][kPeakRadius];
+    mode.pearson = pearson(peak.centre).value_or(0.0);
+    mode.rho = rho(peak.centre).value_or(0.0);
+    mode.observed_cells = peak.centre.n;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) mode.covariance[i][j] = unit[i] * unit[j] * shape.covariance[i][j];
+      mode.covariance[i][i] += unit[i] * unit[i] / 12.0;  // the lattice is no finer than that
+    }
+    return mode;
+  }
+
+  const GridReader& read_;
+  const SearchRegion& region_;
+  const SearchOptions& options_;
+  Deadline deadline_;
+  int coarsest_;
+  std::vector<Level> levels_;  ///< finest first
+  double separation_m_ = 0.0;
+  SearchRegion scanned_;
+};
+
+}  // namespace
+
+bool SearchRegion::contains(GridPoint point) const {
+  return box.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m);
+}
+
+bool SearchRegion::contains(Angle grid_heading) const {
+  return heading_half_width.radians() >= std::numbers::pi ||
+         angular_distance(grid_heading, heading) <= heading_half_width;
+}
+
+double SearchRegion::area_km2() const {
+  const double boxed = box.empty() ? 0.0 : box.width_m() * box.height_m() * 1e-6;
+  if (!circle) return boxed;
+  return std::min(boxed, std::numbers::pi * circle->radius_m * circle->radius_m * 1e-6);
+}
+
+double ScoreBackground::log_likelihood(double score) const {
+  if (sd <= 0.0 || score <= 0.0) return 0.0;
+  return kTemper * 0.5 * (score / sd) * (score / sd);
+}
+
+SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,
+                    const SearchRegion& region, const SearchOptions& options) {
+  return Search(read, finest_cell_m, features, region, options).run();
+}
+
+}  // namespace roadfix

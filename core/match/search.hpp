@@ -1,0 +1,96 @@
+// Where does a feature map fit best? Every position of a region and every heading of a range, coarse to fine.
+//
+// Coarse: at a cell size that keeps the footprint about 50 cells wide, all poses are scored by FFT correlation. Fine:
+// the best distinct candidates are followed down the pyramid to the cells of the map, then within the cell. It is not
+// exact: a true pose that is not among the candidates at the coarse level is missed.
+//
+// The score of a pose is r * sqrt(n / n_full): Pearson's correlation over the n cells observed in both, of n_full
+// observed in the feature map. For chance matches its spread does not depend on n, so small overlaps do not win by
+// luck.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "core/grid/feature_map.hpp"
+#include "core/grid/road_grid.hpp"
+
+namespace roadfix {
+
+/// Cells of the map at `geometry.cell_m` = finest cell * 2^k; unobserved where the map has none. Thread-safe.
+using GridReader = std::function<RoadGrid(const GridGeometry& geometry)>;
+
+/// Grid positions of the nadir and grid headings to consider.
+struct SearchRegion {
+  struct Circle {
+    GridPoint centre;
+    double radius_m = 0.0;
+  };
+
+  GridBox box;
+  std::optional<Circle> circle;  ///< intersects the box
+  Angle heading;                 ///< centre of the range
+  Angle heading_half_width = Angle::degrees(180.0);
+
+  bool contains(GridPoint point) const;
+  bool contains(Angle grid_heading) const;
+  double area_km2() const;
+};
+
+struct SearchOptions {
+  int max_modes = 8;
+  double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
+  int threads = 1;
+  std::stop_token stop;
+  std::optional<std::chrono::steady_clock::time_point> deadline;
+};
+
+/// A place that fits, apart from the others by a tenth of the footprint or several heading bins.
+struct SearchMode {
+  GridPose pose;
+  double score = 0.0;
+  double rho = 0.0;      ///< equation (5) at the nearest cell
+  double pearson = 0.0;  ///< the same about the separate means
+  std::int64_t observed_cells = 0;
+  /// Of east (m), north (m), heading (rad, clockwise): from the shape of the peak, and the cell size.
+  std::array<std::array<double, 3>, 3> covariance{};
+};
+
+/// What scores look like by chance over the searched region.
+struct ScoreBackground {
+  double sd = 0.0;  ///< of all scanned poses, about 0
+  std::int64_t poses = 0;
+  /// Scores of the distinct places beside the best mode, also such around the region where that is small; descending.
+  std::vector<double> rivals;
+  /// Those of them that lie within the region.
+  std::vector<double> rivals_within;
+  /// Share of the places that `rivals` came from which lies within the region, in (0, 1].
+  double region_share = 1.0;
+
+  /// Log-likelihood of a pose against chance, up to a constant. Scores are normal with this sd by chance, which makes
+  /// it (score / sd)^2 / 2; kTemper says how far that is trusted, since the errors of neighbouring cells are not
+  /// independent.
+  double log_likelihood(double score) const;
+  /// Assumed, not yet learned from data.
+  static constexpr double kTemper = 0.25;
+};
+
+struct SearchResult {
+  std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
+  ScoreBackground background;
+  double cell_m = 0.0;         ///< finest cell
+  double coarse_cell_m = 0.0;  ///< of the exhaustive scan
+  int headings = 0;            ///< bins of the exhaustive scan within the range
+};
+
+/// `features` in cells of `finest_cell_m` (see resampled()), with an observed cell that is not like all others.
+/// Throws Interrupted at the deadline or when asked to stop.
+SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,
+                    const SearchRegion& region, const SearchOptions& options);
+
+}  // namespace roadfix

@@ -1,0 +1,45 @@
+#include "core/detect/frame_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+TEST(FrameImage, BlackThatReachesTheRimWasNotSeenAndBlackInsideWas) {
+  cv::Mat frame(40, 60, CV_8UC3, cv::Scalar(90, 100, 110));
+  frame(cv::Rect(0, 0, 10, 40)).setTo(cv::Scalar(0, 2, 4));
+  frame(cv::Rect(30, 15, 8, 8)).setTo(cv::Scalar::all(0));
+  const GroundImage image = frame_image(frame, 0.5, Border::kBlackUnseen);
+  EXPECT_EQ(image.observed.at<unsigned char>(20, 5), 0);
+  EXPECT_EQ(image.observed.at<unsigned char>(20, 10), 255);
+  EXPECT_EQ(image.observed.at<unsigned char>(18, 33), 255);
+  EXPECT_EQ(cv::countNonZero(image.observed), 50 * 40);
+  EXPECT_EQ(cv::countNonZero(frame_image(frame, 0.5).observed), 60 * 40);
+}
+
+TEST(FrameImage, AlphaSaysWhatWasSeen) {
+  cv::Mat frame(8, 8, CV_8UC4, cv::Scalar(10, 20, 30, 255));
+  frame.at<cv::Vec4b>(2, 3)[3] = 0;
+  const GroundImage image = frame_image(frame, 1.0);
+  EXPECT_EQ(image.pixels.type(), CV_8UC3);
+  EXPECT_EQ(image.pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(cv::countNonZero(image.observed), 63);
+}
+
+TEST(FrameImage, SixteenBitsAreCutToTheirUpperEight) {
+  const cv::Mat frame(4, 4, CV_16UC1, cv::Scalar(0x8000));
+  EXPECT_EQ(frame_image(frame, 1.0).pixels.at<unsigned char>(1, 1), 128);
+}
+
+TEST(FrameImage, RefusesOtherPictures) {
+  EXPECT_THROW(frame_image({}, 1.0), InvalidInput);
+  EXPECT_THROW(frame_image(cv::Mat(4, 4, CV_32FC1), 1.0), InvalidInput);
+  EXPECT_THROW(frame_image(cv::Mat(4, 4, CV_8UC2), 1.0), InvalidInput);
+}
+
+}  // namespace
+}  // namespace roadfix

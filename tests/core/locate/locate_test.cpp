@@ -1,0 +1,236 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/grid/resample.hpp"
+#include "core/locate/fix.hpp"
+#include "core/locate/match_poses.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/map_view.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::observed_at;
+using testing::street_map;
+using testing::uniform;
+using testing::view_of;
+
+constexpr double kConvergenceMatters = 0.5;
+
+// Some 100 km east of the central meridian of zone 34, at 57.7 north: convergence is more than a degree.
+GridGeometry town(double width_m, double height_m) {
+  return {2.0, {300'000, -3'200'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};
+}
+
+GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& random) {
+  return {{uniform(random, box.min.east_m + margin_m, box.max.east_m - margin_m),
+           uniform(random, box.min.north_m + margin_m, box.max.north_m - margin_m)},
+          Angle::degrees(uniform(random, 0, 360))};
+}
+
+std::string code_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return "no error";
+}
+
+class Locate : public ::testing::Test {
+ protected:
+  RoadGrid map_ = street_map(21, town(2400, 1800));
+  MapView view_ = view_of(map_);
+  std::mt19937_64 random_{22};
+
+  GeoPose geo(const GridPose& pose) const {
+    return {view_.zone.unproject(pose.position), view_.zone.true_from_grid(pose.heading, pose.position)};
+  }
+  double error_m(const GeoPose& found, const GridPose& truth) const {
+    return distance_m(view_.zone.project(found.position), truth.position);
+  }
+};
+
+TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  ASSERT_GT(std::abs(view_.zone.convergence(truth.position).degrees()), kConvergenceMatters);
+  const Fix fix = locate(view_, observed_at(map_, truth, 200, 200, 2.0, {0.2, 0.2}, random_), {}, {});
+  ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason << ' ' << fix.probability;
+  EXPECT_GE(fix.probability, 0.99);
+  EXPECT_LT(error_m(fix.modes[0].pose, truth), 2.0);
+  EXPECT_LT(angular_distance(fix.modes[0].pose.heading, geo(truth).heading).degrees(), 0.5);
+  EXPECT_EQ(fix.map_name, view_.name);
+  EXPECT_NEAR(fix.searched_km2, 2.4 * 1.8, 1e-6);
+  EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
+}
+
+TEST_F(Locate, TakesFinerCellsThanTheMapHas) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  const Fix fix = locate(view_, cut_out(map_, truth, 600, 600, 0.6), {}, {});
+  ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason;
+  EXPECT_LT(error_m(fix.modes[0].pose, truth), 1.0);
+}
+
+TEST_F(Locate, ReportsTheNadirWhereverItLiesInTheFeatureMap) {
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  FeatureMap window = cut_out(map_, truth, 200, 200, 2.0);
+  // The camera looks ahead: the UAV is 100 m behind the centre of what it sees.
+  window.nadir.row += 50.0;
+  const GridPose behind{
+      {truth.position.east_m - 100.0 * sin(truth.heading), truth.position.north_m - 100.0 * cos(truth.heading)},
+      truth.heading};
+  const Fix fix = locate(view_, window, {}, {});
+  ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason;
+  EXPECT_LT(error_m(fix.modes[0].pose, behind), 1.0);
+}
+
+TEST_F(Locate, WithANarrowPriorIsSureOfSmallerFootprints) {
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  const GeoPose geo_truth = geo(truth);
+  Prior prior;
+  prior.circle = GeoCircle{geo_truth.position, 60.0};
+  prior.heading = HeadingRange{geo_truth.heading, Angle::degrees(15.0)};
+  const Fix fix = locate(view_, observed_at(map_, truth, 150, 150, 2.0, {0.1, 0.1}, random_), prior, {});
+  ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason << ' ' << fix.probability;
+  EXPECT_LT(error_m(fix.modes[0].pose, truth), 2.0);
+}
+
+TEST_F(Locate, SaysNoFixOverAnotherTown) {
+  const RoadGrid elsewhere = street_map(77, town(2400, 1800));
+  for (int round = 0; round < 2; ++round) {
+    const GridPose pose = pose_within(view_.extent, 300.0, random_);
+    const Fix fix = locate(view_, cut_out(elsewhere, pose, 160, 160, 2.0), {}, {});
+    EXPECT_EQ(fix.status, FixStatus::kNoFix);
+    EXPECT_TRUE(fix.reason == "not-above-chance" || fix.reason == "too-few-roads") << fix.reason;
+    EXPECT_LT(fix.probability, 0.9);
+  }
+}
+
+TEST_F(Locate, SaysAmbiguousInACityOfEqualBlocks) {
+  const RoadGrid city = testing::grid_city(town(1600, 1200), 90.0);
+  const MapView view = view_of(city);
+  const GridPose truth = pose_within(view.extent, 300.0, random_);
+  const Fix fix = locate(view, observed_at(city, truth, 160, 160, 2.0, {0.1, 0.1}, random_), {}, {});
+  EXPECT_EQ(fix.status, FixStatus::kAmbiguous) << fix.reason;
+  EXPECT_EQ(fix.reason, "several-places-fit");
+  EXPECT_LT(fix.probability, 0.5);
+  EXPECT_GT(fix.modes.size(), 3U);
+}
+
+TEST_F(Locate, SaysWhyAFeatureMapCannotTell) {
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0), {}, {}).reason, "too-few-roads");
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(100, 100, kRoad), 2.0), {}, {}).reason, "too-few-roads");
+  const Fix unseen = locate(view_, FeatureMap::centred(CellArray(100, 100), 2.0), {}, {});
+  EXPECT_EQ(unseen.reason, "footprint-unobserved");
+  EXPECT_EQ(unseen.status, FixStatus::kNoFix);
+  EXPECT_TRUE(unseen.modes.empty());
+}
+
+TEST_F(Locate, SaysWhenTheMapHoldsNothingThere) {
+  RoadGrid bare{map_.geometry, CellArray(map_.geometry.cols, map_.geometry.rows, kNoRoad)};
+  const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 120, 120, 2.0);
+  EXPECT_EQ(locate(view_of(bare), window, {}, {}).reason, "map-too-empty");
+}
+
+TEST_F(Locate, RefusesWhatItCannotUse) {
+  const FeatureMap good = FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0);
+  const auto code = [&](const FeatureMap& features, const Prior& prior = {}, const FixOptions& options = {}) {
+    return code_of([&] { locate(view_, features, prior, options); });
+  };
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(), 2.0)), "feature-map-empty");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), 0.0)), "cell-size-out-of-range");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), std::nan(""))), "cell-size-out-of-range");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), 1e9)), "feature-map-too-large");
+  FeatureMap far = good;
+  far.nadir.col = 1e12;
+  EXPECT_EQ(code(far), "nadir-out-of-range");
+
+  Prior prior;
+  prior.circle = GeoCircle{{50.0, 21.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "prior-outside-map");
+  prior.circle = GeoCircle{{10.0, -100.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "position-outside-zone");
+  const LatLon here = view_.zone.unproject(view_.extent.min);
+  prior.circle = GeoCircle{here, -1.0};
+  EXPECT_EQ(code(good, prior), "prior-radius-out-of-range");
+  prior.circle = GeoCircle{{std::nan(""), 10.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "position-out-of-range");
+  prior = {};
+  prior.box = GeoBox{{58.0, 18.0}, {57.0, 19.0}};
+  EXPECT_EQ(code(good, prior), "prior-box-empty");
+  prior = {};
+  prior.heading = HeadingRange{Angle::degrees(10.0), Angle::degrees(-5.0)};
+  EXPECT_EQ(code(good, prior), "prior-heading-out-of-range");
+
+  FixOptions options;
+  options.max_search_km2 = 1.0;
+  EXPECT_EQ(code(good, {}, options), "search-area-too-large");
+  options = {};
+  options.confidence = 1.5;
+  EXPECT_EQ(code(good, {}, options), "confidence-out-of-range");
+  MapView empty = view_;
+  empty.extent = {{1.0, 1.0}, {0.0, 0.0}};
+  EXPECT_EQ(code_of([&] { locate(empty, good, {}, {}); }), "map-unobserved");
+}
+
+TEST_F(Locate, EndsAtItsTimeLimit) {
+  FixOptions options;
+  options.time_limit = std::chrono::milliseconds(1);
+  const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 160, 160, 2.0);
+  EXPECT_EQ(code_of([&] { locate(view_, window, {}, options); }), "search-time-limit");
+}
+
+TEST_F(Locate, TheEllipseHoldsTheErrors) {
+  // Normalised estimation error squared over many fixes, position and heading: 3 on average if the covariance is right.
+  // The band is wide on purpose: what is excluded is a covariance that is wrong by its kind.
+  double nees = 0.0;
+  int fixes = 0;
+  for (int round = 0; round < 8; ++round) {
+    const GridPose truth = pose_within(view_.extent, 300.0, random_);
+    Prior prior;
+    prior.circle = GeoCircle{geo(truth).position, 100.0};
+    const Fix fix = locate(view_, observed_at(map_, truth, 150, 150, 2.0, {0.2, 0.2}, random_), prior, {});
+    if (fix.status != FixStatus::kFix) continue;
+    ++fixes;
+    const FixMode& mode = fix.modes[0];
+    const GridPoint at = view_.zone.project(mode.pose.position);
+    const double east = at.east_m - truth.position.east_m;
+    const double north = at.north_m - truth.position.north_m;
+    const Angle major = view_.zone.grid_from_true(mode.ellipse_heading, at);
+    const double along = east * sin(major) + north * cos(major);
+    const double across = east * cos(major) - north * sin(major);
+    const double turn = (mode.pose.heading - geo(truth).heading).wrapped().radians() / mode.heading_sigma.radians();
+    nees += std::pow(along / mode.sigma_m[0], 2) + std::pow(across / mode.sigma_m[1], 2) + turn * turn;
+  }
+  ASSERT_GT(fixes, 4);
+  EXPECT_LT(nees / fixes, 6.0);
+  EXPECT_GT(nees / fixes, 0.02);
+}
+
+TEST_F(Locate, MatchScoresPosesExactlyAndInBins) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  const FeatureMap window = cut_out(map_, truth, 100, 100, 2.0);
+  GridPose off = truth;
+  off.position.east_m += 12.0;
+  GridPose turned = truth;
+  turned.heading += Angle::degrees(20.0);
+  const std::vector<GeoPose> poses{geo(truth), geo(off), geo(turned), {{10.0, 10.0 + 11.0}, Angle()}};
+  for (const double step_deg : {0.0, 0.5}) {
+    MatchOptions options;
+    options.heading_step = Angle::degrees(step_deg);
+    options.threads = 2;
+    const std::vector<MatchScore> scores = match(view_, window, poses, options);
+    ASSERT_EQ(scores.size(), 4U);
+    EXPECT_GT(scores[0].rho.value(), step_deg > 0.0 ? 0.7 : 0.9);
+    EXPECT_LT(scores[1].rho.value(), scores[0].rho.value());
+    EXPECT_LT(scores[2].rho.value(), scores[0].rho.value());
+    EXPECT_NEAR(static_cast<double>(scores[0].observed_cells), 10000.0, 150.0);
+    EXPECT_FALSE(scores[3].rho);
+    EXPECT_EQ(scores[3].observed_cells, 0);
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

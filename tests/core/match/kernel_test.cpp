@@ -1,0 +1,117 @@
+#include "core/match/kernel.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <random>
+
+#include "core/grid/resample.hpp"
+#include "tests/support/ascii_map.hpp"
+#include "tests/support/random_cells.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::random_cells;
+
+/// Cell by cell, the definition.
+MatchSums scalar_sums(const CellArray& map, const FeatureMap& north_up, PlaneCell place) {
+  MatchSums s;
+  const int nadir_col = static_cast<int>(north_up.nadir.col);
+  const int nadir_row = static_cast<int>(north_up.nadir.row);
+  for (int r = 0; r < north_up.cells.rows(); ++r) {
+    for (int c = 0; c < north_up.cells.cols(); ++c) {
+      const Cell m = map.get(place.col + c - nadir_col, place.row + r - nadir_row);
+      const Cell l = north_up.cells.at(c, r);
+      if (!is_observed(m) || !is_observed(l)) continue;
+      ++s.n;
+      s.m += probability(m);
+      s.l += probability(l);
+      s.mm += probability(m) * probability(m);
+      s.ll += probability(l) * probability(l);
+      s.ml += probability(m) * probability(l);
+    }
+  }
+  return s;
+}
+
+void expect_equal(const MatchSums& a, const MatchSums& b) {
+  EXPECT_EQ(a.n, b.n);
+  const double tolerance = 1e-9 * static_cast<double>(b.n + 1);
+  EXPECT_NEAR(a.m, b.m, tolerance);
+  EXPECT_NEAR(a.l, b.l, tolerance);
+  EXPECT_NEAR(a.mm, b.mm, tolerance);
+  EXPECT_NEAR(a.ll, b.ll, tolerance);
+  EXPECT_NEAR(a.ml, b.ml, tolerance);
+}
+
+/// Each instruction set that this processor has, in turn.
+class KernelOnEachTarget : public ::testing::TestWithParam<std::int64_t> {
+ protected:
+  KernelOnEachTarget() { hwy::SetSupportedTargetsForTest(GetParam()); }
+  ~KernelOnEachTarget() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+TEST_P(KernelOnEachTarget, AgreesWithTheDefinitionForRandomSizesPlacesAndHoles) {
+  std::mt19937_64 random(7);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  for (int round = 0; round < 150; ++round) {
+    const double holes = round % 3 == 0 ? 0.0 : 0.1 * (round % 5);
+    const CellArray map = random_cells(random, 1 + below(150), 1 + below(90), holes);
+    const FeatureMap features =
+        FeatureMap::centred(random_cells(random, 1 + below(140), 1 + below(70), 0.1 * (round % 4)), 1.0);
+    const Footprint footprint(features);
+    const MapPlane plane(map, 2 * footprint.reach() + round % 2);
+    std::vector<PlaneCell> places;
+    for (int i = 0; i < 12; ++i) places.push_back({below(400) - 150, below(300) - 100});
+    std::vector<MatchSums> sums(places.size());
+    match_sums(plane, footprint, places, sums);
+    for (std::size_t i = 0; i < places.size(); ++i) expect_equal(sums[i], scalar_sums(map, features, places[i]));
+    if (HasFailure()) FAIL() << "round " << round << " on " << kernel_target();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, KernelOnEachTarget, ::testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
+                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+
+TEST(Kernel, SumsOfAllRoadDoNotOverflow) {
+  const int cols = 4000;
+  const int rows = 700;
+  const FeatureMap features = FeatureMap::centred(CellArray(cols, rows, kRoad), 1.0);
+  const Footprint footprint(features);
+  CellArray map(cols, rows, kRoad);
+  for (const bool hole : {false, true}) {
+    if (hole) map.at(5, 5) = kUnobserved;
+    const MapPlane plane(map, footprint.reach());
+    const PlaneCell place{cols / 2, rows / 2};
+    MatchSums sums;
+    match_sums(plane, footprint, std::span(&place, 1), std::span(&sums, 1));
+    const double expected = static_cast<double>(cols) * rows - (hole ? 1 : 0);
+    EXPECT_EQ(sums.n, static_cast<std::int64_t>(expected));
+    EXPECT_NEAR(sums.mm, expected, 1e-3);
+    EXPECT_NEAR(sums.ml, expected, 1e-3);
+  }
+}
+
+TEST(FootprintAt, TurnsAndShiftsTheFeatureMapLikeCuttingItOutOfTheGround) {
+  // The window at a pose, laid back at that pose, fits the map perfectly; half a cell off it does not.
+  std::mt19937_64 random(3);
+  const RoadGrid grid{{1.0, {0, 0}, 80, 80}, testing::smooth_cells(random, 80, 80)};
+  const Angle heading = Angle::degrees(37.0);
+  const GridGeometry::CellPosition at{40.8, 39.7};
+  const FeatureMap window = cut_out(grid, {grid.geometry.point_at(at), heading}, 31, 25, 1.0);
+  const auto fit = [&](GridGeometry::CellPosition offset) {
+    const Footprint footprint = footprint_at(window, heading, offset);
+    const MapPlane plane(grid.cells, footprint.reach());
+    const PlaneCell place{40, 39};
+    MatchSums sums;
+    match_sums(plane, footprint, std::span(&place, 1), std::span(&sums, 1));
+    return rho(sums).value();
+  };
+  EXPECT_GT(fit({0.3, 0.2}), 0.97);
+  EXPECT_GT(fit({0.3, 0.2}), fit({-0.2, 0.2}));
+  EXPECT_GT(fit({0.3, 0.2}), fit({0.3, -0.3}));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,181 @@
+#include "core/match/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/grid/resample.hpp"
+#include "core/match/footprint.hpp"
+#include "core/match/heading_bins.hpp"
+#include "core/match/kernel.hpp"
+#include "core/match/score.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/random_cells.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::observed_at;
+using testing::reader_of;
+using testing::street_map;
+using testing::uniform;
+
+GridGeometry town(double width_m, double height_m) {
+  return {2.0, {150'000, -2'000'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};
+}
+
+GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& random) {
+  return {{uniform(random, box.min.east_m + margin_m, box.max.east_m - margin_m),
+           uniform(random, box.min.north_m + margin_m, box.max.north_m - margin_m)},
+          Angle::degrees(uniform(random, 0, 360))};
+}
+
+TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
+  const RoadGrid map = street_map(1, town(2000, 1600));
+  std::mt19937_64 random(2);
+  const GridReader read = reader_of(map);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  for (int round = 0; round < 2; ++round) {
+    const GridPose truth = pose_within(region.box, 250.0, random);
+    const FeatureMap window = cut_out(map, truth, 150, 150, 2.0);
+    const SearchResult found = search(read, 2.0, window, region, {});
+    ASSERT_FALSE(found.modes.empty());
+    EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 1.0);
+    EXPECT_LT(angular_distance(found.modes[0].pose.heading, truth.heading).degrees(), 1.0);
+    EXPECT_GT(found.modes[0].rho, 0.9);
+  }
+}
+
+TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
+  const RoadGrid map = street_map(3, town(2000, 1600));
+  std::mt19937_64 random(4);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  // A third of the footprint lies west of the map.
+  const GridPose truth{{region.box.min.east_m + 60.0, region.box.min.north_m + 800.0}, Angle::degrees(211.0)};
+  const FeatureMap seen = observed_at(street_map(3, town(2000, 1600)), truth, 160, 160, 2.0, {0.15, 0.15}, random);
+  FeatureMap whole = seen;  // the UAV sees ground beyond the map, too
+  for (Cell& cell : whole.cells.cells()) {
+    if (!is_observed(cell)) cell = kNoRoad;
+  }
+  const SearchResult found = search(reader_of(map), 2.0, whole, region, {});
+  ASSERT_FALSE(found.modes.empty());
+  EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 2.0);
+  EXPECT_LT(found.modes[0].observed_cells, 160 * 160 * 9 / 10);
+}
+
+TEST(Search, StaysWithinItsRegionAndHeadingRange) {
+  const RoadGrid map = street_map(5, town(1600, 1600));
+  std::mt19937_64 random(6);
+  const GridPose truth = pose_within(map.geometry.box(), 300.0, random);
+  const FeatureMap window = cut_out(map, truth, 128, 128, 2.0);
+  SearchRegion region;
+  const GridPoint centre{truth.position.east_m + 30.0, truth.position.north_m};
+  region.box = {{centre.east_m - 50.0, centre.north_m - 50.0}, {centre.east_m + 50.0, centre.north_m + 50.0}};
+  region.circle = SearchRegion::Circle{centre, 50.0};
+  region.heading = truth.heading + Angle::degrees(5.0);
+  region.heading_half_width = Angle::degrees(10.0);
+  const SearchResult near = search(reader_of(map), 2.0, window, region, {});
+  ASSERT_FALSE(near.modes.empty());
+  EXPECT_LT(distance_m(near.modes[0].pose.position, truth.position), 1.0);
+  EXPECT_LT(near.background.region_share, 1.0);
+  EXPECT_GT(near.background.rivals.size(), 12U);
+  for (const SearchMode& mode : near.modes) {
+    EXPECT_LE(distance_m(mode.pose.position, centre), 54.0);
+    EXPECT_LE(angular_distance(mode.pose.heading, region.heading).degrees(), 13.0);
+  }
+  region.heading = truth.heading + Angle::degrees(90.0);
+  for (const SearchMode& mode : search(reader_of(map), 2.0, window, region, {}).modes) EXPECT_LT(mode.rho, 0.7);
+}
+
+TEST(Search, ManyThreadsGiveWhatOneGives) {
+  const RoadGrid map = street_map(7, town(1200, 1200));
+  std::mt19937_64 random(8);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const FeatureMap window = cut_out(map, pose_within(region.box, 250.0, random), 128, 128, 2.0);
+  SearchOptions options;
+  const SearchResult one = search(reader_of(map), 2.0, window, region, options);
+  options.threads = 4;
+  const SearchResult four = search(reader_of(map), 2.0, window, region, options);
+  ASSERT_EQ(one.modes.size(), four.modes.size());
+  EXPECT_EQ(one.modes[0].score, four.modes[0].score);
+  EXPECT_EQ(one.background.poses, four.background.poses);
+}
+
+TEST(Search, EndsAtItsDeadlineAndWhenStopped) {
+  const RoadGrid map = street_map(7, town(800, 800));
+  std::mt19937_64 random(9);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 128, 128, 2.0);
+  SearchOptions options;
+  options.deadline = std::chrono::steady_clock::now();
+  EXPECT_THROW(search(reader_of(map), 2.0, window, region, options), Interrupted);
+  std::stop_source source;
+  source.request_stop();
+  options = {};
+  options.stop = source.get_token();
+  EXPECT_THROW(search(reader_of(map), 2.0, window, region, options), Interrupted);
+}
+
+TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {
+  const RoadGrid map = RoadGrid::unobserved(town(800, 800));
+  std::mt19937_64 random(9);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const FeatureMap features = FeatureMap::centred(testing::smooth_cells(random, 64, 64), 2.0);
+  EXPECT_TRUE(search(reader_of(map), 2.0, features, region, {}).modes.empty());
+}
+
+/// Best score over every cell and heading bin of the map.
+double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double least_share) {
+  const auto full = static_cast<std::int64_t>(features.cells.observed_count());
+  double best = 0.0;
+  std::vector<PlaneCell> places;
+  for (int row = 0; row < map.cells.rows(); ++row) {
+    for (int col = 0; col < map.cells.cols(); ++col) places.push_back({col, row});
+  }
+  std::vector<MatchSums> sums(places.size());
+  for (int bin = 0; bin < bins.count(); ++bin) {
+    const Footprint footprint = footprint_at(features, bins.heading(bin));
+    match_sums(MapPlane(map.cells, 2 * footprint.reach()), footprint, places, sums);
+    for (const MatchSums& s : sums) {
+      best = std::max(best, score_of(s, full, least_share * static_cast<double>(full)));
+    }
+  }
+  return best;
+}
+
+TEST(Search, FindsTheBestPoseOfBruteForceOnSmallMaps) {
+  // Footprints this small are scanned at the finest cells: only the approximate means of the scan could mislead it.
+  std::mt19937_64 random(11);
+  int missed = 0;
+  constexpr int kCases = 60;
+  for (int round = 0; round < kCases; ++round) {
+    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+    RoadGrid map{{2.0, {1000, -1000}, 30 + below(40), 30 + below(40)}, {}};
+    map.cells = testing::smooth_cells(random, map.geometry.cols, map.geometry.rows);
+    for (int hole = below(4); hole > 0; --hole) {
+      paste(CellArray(8, 8), map.cells, below(map.geometry.cols), below(map.geometry.rows));
+    }
+    SearchRegion region;
+    region.box = map.geometry.box();
+    const bool unrelated = round % 3 == 0;
+    const FeatureMap features = unrelated ? FeatureMap::centred(testing::smooth_cells(random, 15, 13), 2.0)
+                                          : observed_at(map, pose_within(region.box, 14.0, random), 12 + below(10),
+                                                        12 + below(10), 2.0, {0.2, 0.1}, random);
+    const double extent_m = 2.0 * std::max(features.cells.cols(), features.cells.rows());
+    const double best =
+        brute_force(map, features, HeadingBins::for_footprint(0.5 * extent_m, 2.0), SearchOptions{}.min_observed_share);
+    const SearchResult found = search(reader_of(map), 2.0, features, region, {});
+    if (best == 0.0) continue;
+    if (found.modes.empty() || found.modes[0].score < best - 1e-9) ++missed;
+  }
+  EXPECT_EQ(missed, 0) << "of " << kCases;
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,141 @@
+#include "tests/support/street_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "core/grid/resample.hpp"
+
+namespace roadfix::testing {
+namespace {
+
+/// Walks a road over the cells; unit: cells.
+class Brush {
+ public:
+  Brush(CellArray& cells, double width) : cells_(cells), radius_(0.5 * width) {}
+
+  void dab(double col, double row) {
+    const int reach = static_cast<int>(std::ceil(radius_));
+    const int c0 = static_cast<int>(std::floor(col));
+    const int r0 = static_cast<int>(std::floor(row));
+    for (int r = r0 - reach; r <= r0 + reach; ++r) {
+      for (int c = c0 - reach; c <= c0 + reach; ++c) {
+        if (cells_.contains(c, r) && std::hypot(c + 0.5 - col, r + 0.5 - row) <= radius_) cells_.at(c, r) = kRoad;
+      }
+    }
+  }
+
+  /// `bend` radians of random turning per cell.
+  std::vector<std::pair<double, double>> walk(std::mt19937_64& random, double col, double row, double heading,
+                                              double length, double bend) {
+    std::vector<std::pair<double, double>> trace;
+    double turn = 0.0;
+    for (double done = 0.0; done < length; done += 0.5) {
+      dab(col, row);
+      trace.emplace_back(col, row);
+      turn = 0.98 * turn + uniform(random, -bend, bend);
+      heading += 0.5 * turn;
+      col += 0.5 * std::cos(heading);
+      row += 0.5 * std::sin(heading);
+    }
+    return trace;
+  }
+
+ private:
+  CellArray& cells_;
+  double radius_;
+};
+
+}  // namespace
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1.0p-53;
+}
+
+RoadGrid street_map(std::uint64_t seed, const GridGeometry& geometry) {
+  std::mt19937_64 random(seed);
+  RoadGrid map{geometry, CellArray(geometry.cols, geometry.rows, kNoRoad)};
+  const double metre = 1.0 / geometry.cell_m;
+  const double area_km2 = geometry.cols * geometry.cell_m * geometry.rows * geometry.cell_m * 1e-6;
+  const auto main_roads = static_cast<int>(std::ceil(6.0 * area_km2)) + 2;
+  std::vector<std::pair<double, double>> junctions;
+  for (int i = 0; i < main_roads; ++i) {
+    Brush brush(map.cells, 9.0 * metre);
+    const auto trace = brush.walk(random, uniform(random, 0, geometry.cols), uniform(random, 0, geometry.rows),
+                                  uniform(random, 0, 6.283), 1500.0 * metre, 0.004 / metre);
+    junctions.insert(junctions.end(), trace.begin(), trace.end());
+  }
+  const auto streets = static_cast<int>(std::ceil(70.0 * area_km2)) + 4;
+  for (int i = 0; i < streets; ++i) {
+    const auto [col, row] = junctions[random() % junctions.size()];
+    Brush brush(map.cells, 6.0 * metre);
+    const auto trace =
+        brush.walk(random, col, row, uniform(random, 0, 6.283), uniform(random, 60.0, 350.0) * metre, 0.002 / metre);
+    junctions.insert(junctions.end(), trace.begin(), trace.end());
+  }
+  return map;
+}
+
+RoadGrid grid_city(const GridGeometry& geometry, double block_m) {
+  RoadGrid map{geometry, CellArray(geometry.cols, geometry.rows, kNoRoad)};
+  const auto on_street = [&](int cell) { return std::fmod((cell + 0.5) * geometry.cell_m, block_m) < 6.0; };
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int col = 0; col < geometry.cols; ++col) {
+      if (on_street(col) || on_street(row)) map.cells.at(col, row) = kRoad;
+    }
+  }
+  return map;
+}
+
+FeatureMap observed_at(const RoadGrid& map, const GridPose& pose, int cols, int rows, double cell_m,
+                       const DetectorNoise& noise, std::mt19937_64& random) {
+  FeatureMap features = cut_out(map, pose, cols, rows, cell_m);
+  CellArray& cells = features.cells;
+  const auto is_road = [](Cell cell) { return is_observed(cell) && cell > 127; };
+  const auto road_cells = static_cast<double>(std::ranges::count_if(cells.cells(), is_road));
+  const double patch = 30.0 / cell_m;
+  const double patches = noise.erase * cols * rows / (patch * patch);
+  for (int i = 0; i < static_cast<int>(std::ceil(patches)); ++i) {
+    const double left = uniform(random, -patch / 2, cols - patch / 2);
+    const double top = uniform(random, -patch / 2, rows - patch / 2);
+    for (int r = 0; r < rows; ++r) {
+      for (int c = 0; c < cols; ++c) {
+        const bool inside = c >= left && c < left + patch && r >= top && r < top + patch;
+        if (inside && is_observed(cells.at(c, r))) cells.at(c, r) = kNoRoad;
+      }
+    }
+  }
+  CellArray invented(cols, rows, kNoRoad);
+  Brush brush(invented, 6.0 / cell_m);
+  const double length = noise.invent * road_cells / (6.0 / cell_m);
+  for (double done = 0.0; done < length; done += 60.0 / cell_m) {
+    brush.walk(random, uniform(random, 0, cols), uniform(random, 0, rows), uniform(random, 0, 6.283), 60.0 / cell_m,
+               0.0);
+  }
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      if (is_road(invented.at(c, r)) && is_observed(cells.at(c, r))) cells.at(c, r) = kRoad;
+    }
+  }
+  return features;
+}
+
+std::function<RoadGrid(const GridGeometry&)> reader_of(const RoadGrid& map) {
+  auto levels = std::make_shared<std::vector<RoadGrid>>();
+  levels->push_back(map);
+  while (levels->back().geometry.cell_m < 64.0) levels->push_back(halved(levels->back()));
+  return [levels](const GridGeometry& geometry) {
+    for (const RoadGrid& level : *levels) {
+      if (level.geometry.cell_m != geometry.cell_m) continue;
+      RoadGrid window = RoadGrid::unobserved(geometry);
+      paste(level.cells, window.cells, level.geometry.origin.col - geometry.origin.col,
+            level.geometry.origin.row - geometry.origin.row);
+      return window;
+    }
+    throw std::invalid_argument("no level of that cell size");
+  };
+}
+
+}  // namespace roadfix::testing

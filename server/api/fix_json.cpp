@@ -1,0 +1,71 @@
+#include "server/api/fix_json.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+
+json pose_json(const GeoPose& pose) {
+  return {
+      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+}
+
+json mode_json(const FixMode& mode) {
+  const LatLon at = mode.pose.position;
+  return {{"pose", pose_json(mode.pose)},
+          {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}},
+          {"weight", mode.weight},
+          {"rho", mode.rho},
+          {"sigma_m", mode.sigma_m},
+          {"ellipse_heading_deg", mode.ellipse_heading.degrees()},
+          {"heading_sigma_deg", mode.heading_sigma.degrees()},
+          {"observed_cells", mode.observed_cells}};
+}
+
+}  // namespace
+
+const char* to_string(FixStatus status) {
+  switch (status) {
+    case FixStatus::kFix:
+      return "fix";
+    case FixStatus::kAmbiguous:
+      return "ambiguous";
+    case FixStatus::kNoFix:
+      break;
+  }
+  return "no_fix";
+}
+
+json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time) {
+  json answer{{"status", to_string(fix.status)}};
+  if (fix.status == FixStatus::kFix) {
+    answer.update(mode_json(fix.modes.at(0)));
+    answer.erase("weight");
+  } else {
+    answer["reason"] = fix.reason;
+    answer["explanation"] = fix.explanation;
+  }
+  answer["probability"] = fix.probability;
+  answer["modes"] = json::array();
+  for (const FixMode& mode : fix.modes) answer["modes"].push_back(mode_json(mode));
+  answer["searched"] = {{"area_km2", fix.searched_km2}, {"headings", fix.headings}};
+  answer["map"] = {{"name", fix.map_name}, {"version", fix.map_version}};
+  answer["time_ms"] = {{"search", fix.search_time.count()}};
+  if (detect_time) answer["time_ms"]["detect"] = detect_time->count();
+  return answer;
+}
+
+json to_json(std::span<const MatchScore> scores) {
+  json answer = json::array();
+  for (const MatchScore& score : scores) {
+    json entry{{"rho", nullptr}, {"probability", nullptr}, {"observed_cells", score.observed_cells}};
+    if (score.rho) {
+      entry["rho"] = *score.rho;
+      entry["probability"] = likelihood(*score.rho);
+    }
+    answer.push_back(std::move(entry));
+  }
+  return answer;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,26 @@
+// Fixes and match scores as the API and `roadfix --json` give them.
+//
+// Degrees, metres, milliseconds. A position stands at the top only in an answer of status "fix"; otherwise only the
+// modes have one. `geometry` is the same position as GeoJSON.
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+#include "core/locate/fix.hpp"
+#include "core/match/correlation.hpp"
+
+namespace roadfix::api {
+
+/// "fix", "ambiguous" or "no_fix".
+const char* to_string(FixStatus status);
+
+/// `detect_time` where the fix began with a frame.
+nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time = {});
+
+/// One object per pose: rho and probability (equations 5 and 7) are null where they are not defined.
+nlohmann::json to_json(std::span<const MatchScore> scores);
+
+}  // namespace roadfix::api

@@ -1,0 +1,64 @@
+#include "server/api/fix_json.hpp"
+
+#include <gtest/gtest.h>
+
+namespace roadfix::api {
+namespace {
+
+FixMode mode() {
+  FixMode mode;
+  mode.pose = {{37.7632, 38.2571}, Angle::degrees(-90.0)};
+  mode.weight = 0.996;
+  mode.rho = 0.31;
+  mode.sigma_m = {2.1, 1.7};
+  mode.ellipse_heading = Angle::degrees(40.0);
+  mode.heading_sigma = Angle::degrees(0.8);
+  mode.observed_cells = 9812;
+  return mode;
+}
+
+TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
+  Fix fix;
+  fix.status = FixStatus::kFix;
+  fix.probability = 0.996;
+  fix.modes = {mode()};
+  fix.searched_km2 = 24.6;
+  fix.headings = 360;
+  fix.map_name = "adiyaman";
+  const auto answer = to_json(fix, std::chrono::milliseconds(140));
+  EXPECT_EQ(answer["status"], "fix");
+  EXPECT_EQ(answer["pose"]["lat"], 37.7632);
+  EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), 270.0, 1e-9);
+  EXPECT_EQ(answer["geometry"]["coordinates"], (nlohmann::json{38.2571, 37.7632}));
+  EXPECT_EQ(answer["sigma_m"], (nlohmann::json{2.1, 1.7}));
+  EXPECT_EQ(answer["modes"][0]["weight"], 0.996);
+  EXPECT_EQ(answer["searched"]["headings"], 360);
+  EXPECT_EQ(answer["map"]["name"], "adiyaman");
+  EXPECT_EQ(answer["time_ms"]["detect"], 140.0);
+  EXPECT_FALSE(answer.contains("reason"));
+}
+
+TEST(FixJson, WithoutAFixNoPositionStandsAtTheTop) {
+  Fix fix;
+  fix.status = FixStatus::kAmbiguous;
+  fix.reason = "several-places-fit";
+  fix.modes = {mode()};
+  const auto answer = to_json(fix);
+  EXPECT_EQ(answer["status"], "ambiguous");
+  EXPECT_EQ(answer["reason"], "several-places-fit");
+  EXPECT_FALSE(answer.contains("pose"));
+  EXPECT_FALSE(answer.contains("geometry"));
+  EXPECT_EQ(answer["modes"].size(), 1U);
+  EXPECT_FALSE(answer["time_ms"].contains("detect"));
+}
+
+TEST(FixJson, AMatchWithoutCommonCellsHasNoRho) {
+  const std::vector<MatchScore> scores{{0.25, 100}, {-0.5, 7}, {std::nullopt, 0}};
+  const auto answer = to_json(scores);
+  EXPECT_EQ(answer[0], (nlohmann::json{{"rho", 0.25}, {"probability", 0.25}, {"observed_cells", 100}}));
+  EXPECT_EQ(answer[1]["probability"], 0.0);
+  EXPECT_TRUE(answer[2]["rho"].is_null());
+}
+
+}  // namespace
+}  // namespace roadfix::api

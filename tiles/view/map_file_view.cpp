@@ -1,0 +1,23 @@
+#include "tiles/view/map_file_view.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace roadfix {
+
+MapView view_of(std::shared_ptr<const MapReader> reader, std::string name) {
+  const MapInfo& info = reader->info();
+  double registration_sigma_m = 0.0;
+  for (const SourceStatus& source : info.sources) {
+    if (source.complete) registration_sigma_m = std::max(registration_sigma_m, source.record.registration_sigma_m);
+  }
+  return {std::move(name),
+          info.version,
+          info.settings.zone,
+          info.settings.cell_m,
+          info.extent,
+          registration_sigma_m,
+          [reader](const GridGeometry& geometry) { return reader->read(geometry); }};
+}
+
+}  // namespace roadfix

@@ -1,0 +1,16 @@
+// A map file behind the port that localization reads through: what the service and the command line compose.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/locate/map_view.hpp"
+#include "tiles/store/map_reader.hpp"
+
+namespace roadfix {
+
+/// `name` is what the map is called in answers. The view keeps the reader alive; its registration error is the largest
+/// of the sources in force.
+MapView view_of(std::shared_ptr<const MapReader> reader, std::string name);
+
+}  // namespace roadfix

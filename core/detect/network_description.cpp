@@ -59,6 +59,14 @@ std::array<double, 3> three(const json& object, const char* name, double least, 
   return result;
 }
 
+LocalContrast local_contrast_of(const json& value) {
+  if (!value.is_object()) refuse("\"local_contrast\" must be an object");
+  const LocalContrast local{integer_in(value, "window_px", 3, 1023),
+                            number_in(field(value, "floor"), "floor", 1e-3, 255.0)};
+  if (local.window_px % 2 == 0) refuse("\"window_px\" must be odd");
+  return local;
+}
+
 void check_tiles(const NetworkDescription& network) {
   if (network.multiple % network.stride != 0) refuse("\"multiple\" must be a multiple of \"stride\"");
   if (network.tile_px % network.multiple != 0 || network.overlap_px % network.multiple != 0) {
@@ -80,6 +88,7 @@ NetworkDescription parse_network_description(std::string_view text) {
   network.tile_px = integer_in(object, "tile_px", 16, 4096);
   network.overlap_px = integer_in(object, "overlap_px", 0, 2048);
   network.rgb = first_of(object, "channels", "rgb", "bgr");
+  if (object.contains("local_contrast")) network.local_contrast = local_contrast_of(object["local_contrast"]);
   network.mean = three(object, "mean", 0.0, 255.0);
   network.std = three(object, "std", 1e-3, 1e6);
   network.logits = first_of(object, "output", "logits", "probability");

@@ -32,6 +32,35 @@ cv::Mat resized(const cv::Mat& image, double factor, const cv::Scalar& value) {
   return padded(result, target, value)(cv::Rect({}, target));
 }
 
+/// Sum over the square window around each pixel; nothing lies beyond the border.
+cv::Mat window_sum(const cv::Mat& values, int window_px) {
+  cv::Mat sum;
+  cv::boxFilter(values, sum, CV_32F, {window_px, window_px}, {-1, -1}, false, cv::BORDER_CONSTANT);
+  return sum;
+}
+
+void to_local_contrast(cv::Mat& bgr, const cv::Mat& observed, const LocalContrast& local) {
+  constexpr double kOffset = 118.0;  // keeps the sums of squares small
+  bgr -= cv::Scalar::all(kOffset);
+  cv::Mat grey;
+  cv::transform(bgr, grey, cv::Matx13f(1.0F / 3, 1.0F / 3, 1.0F / 3));
+  grey.setTo(0, observed == 0);
+  cv::Mat seen;
+  observed.convertTo(seen, CV_32F);
+  cv::threshold(seen, seen, 0.5, 1.0, cv::THRESH_BINARY);
+  const cv::Mat count = cv::max(window_sum(seen, local.window_px), 1.0);
+  const cv::Mat mean = window_sum(grey, local.window_px) / count;
+  cv::Mat spread = window_sum(grey.mul(grey), local.window_px) / count - mean.mul(mean);
+  cv::sqrt(cv::max(spread, 0.0), spread);
+  spread += local.floor;
+  for (int row = 0; row < bgr.rows; ++row) {
+    for (int col = 0; col < bgr.cols; ++col) {
+      bgr.at<cv::Vec3f>(row, col) -= cv::Vec3f::all(mean.at<float>(row, col));
+      bgr.at<cv::Vec3f>(row, col) /= spread.at<float>(row, col);
+    }
+  }
+}
+
 void check(const GroundImage& image) {
   const int type = image.pixels.type();
   if (image.pixels.empty() || (type != CV_8UC3 && type != CV_8UC1) || image.observed.type() != CV_8UC1 ||
@@ -62,6 +91,7 @@ NetworkPicture network_picture(const GroundImage& image, const NetworkDescriptio
   picture.observed = resized(image.observed, factor, cv::Scalar::all(0));
   const cv::Mat small = resized(bgr, factor, mean);
   small.convertTo(picture.pixels, CV_32FC3);
+  if (network.local_contrast) to_local_contrast(picture.pixels, picture.observed, *network.local_contrast);
   picture.pixels -= mean;
   picture.pixels /= cv::Scalar(network.std[2], network.std[1], network.std[0]);
   picture.pixels.setTo(cv::Scalar::all(0), picture.observed == 0);

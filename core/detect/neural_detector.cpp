@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <mutex>
@@ -155,7 +155,10 @@ CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, st
 
 double NeuralRoadDetector::preferred_gsd_m() const { return network_.gsd_m; }
 
-double NeuralRoadDetector::halo_m() const { return network_.overlap_px / 2.0 * network_.gsd_m; }
+double NeuralRoadDetector::halo_m() const {
+  const int window = network_.local_contrast ? network_.local_contrast->window_px : 0;
+  return std::max(network_.overlap_px, window) / 2 * network_.gsd_m;
+}
 
 std::string NeuralRoadDetector::describe() const {
   return fmt::format("neural {} fnv1a64={} gsd_m={} orientations={}", network_.name, checksum_, network_.gsd_m,

@@ -9,7 +9,7 @@ import numpy as np
 
 
 def apply(image, label, weight, gsd_m, rng, strength=1.0):
-    """Returns the changed float32 picture (0 to 255) and weights; what was not seen stays the neutral fill.
+    """Returns the changed float32 picture (0 to 255), the weights, and what was seen of it (bool).
     `strength` in [0, 1] scales the chance of each change: training starts with few of them."""
     hidden = weight_is_unseen(image, weight)
     out = image.astype(np.float32)
@@ -30,7 +30,7 @@ def apply(image, label, weight, gsd_m, rng, strength=1.0):
     if rng.random() < 0.15 * strength:
         hide(hidden, rng)
     out[hidden] = 118
-    return out.astype(np.float32), weight * ~hidden
+    return out.astype(np.float32), weight * ~hidden, ~hidden
 
 
 def weight_is_unseen(image, weight):
@@ -98,11 +98,11 @@ def coarse(image, rng):
 
 def noise(image, rng):
     field = rng.standard_normal(image.shape[:2] + (1 if rng.random() < 0.5 else 3,), dtype=np.float32)
-    return image + field * rng.uniform(2, 10)
+    return image + field * rng.uniform(0.03, 0.2) * image.std()
 
 
 def jpeg(image, rng):
-    _, data = cv2.imencode(".jpg", image.astype(np.uint8), [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(25, 85))])
+    _, data = cv2.imencode(".jpg", image.astype(np.uint8), [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(40, 90))])
     return cv2.imdecode(data, cv2.IMREAD_COLOR).astype(np.float32)
 
 

@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 
 from . import augment
+from .normalise import network_input
 
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 FILL = 118  # grey that stands for "not seen", close to the mean that the network subtracts
@@ -161,8 +162,8 @@ class Crops:
         rng = np.random.default_rng([self.seed, index])
         chosen = int(rng.choice(len(self.pairs), p=self.shares))
         image, label, weight = self.crop(chosen, self.size, rng)
-        image, weight = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
-        return image.transpose(2, 0, 1).copy(), label[None], weight[None]
+        image, weight, seen = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
+        return network_input(image, seen).transpose(2, 0, 1).copy(), label[None], weight[None]
 
     def crop(self, chosen, size, rng):
         """A tile that is much smaller than the crop is joined with three others into one."""

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import torch
 
-from .normalise import MEAN, STD, normalised
+from .normalise import FLOOR, WINDOW
 
 STRIDE = 2  # the network's output cells, in its input pixels
 
@@ -28,7 +28,7 @@ def export(model, gsd_m, path, name, scale=1.0, bias=0.0, licence=""):
                       output_names=["logits"], do_constant_folding=True)
     description = {
         "name": name, "gsd_m": gsd_m, "stride": STRIDE, "multiple": 16, "tile_px": 384, "overlap_px": 96,
-        "channels": "rgb", "mean": list(MEAN), "std": list(STD), "output": "logits",
+        "channels": "rgb", "local_contrast": {"window_px": WINDOW, "floor": FLOOR}, "mean": [0, 0, 0], "std": [1, 1, 1], "output": "logits",
         "calibration": {"scale": round(scale, 6), "bias": round(bias, 6)},
         "licence": licence, "fnv1a64": fnv1a64(path.read_bytes())}
     path.with_suffix(".json").write_text(json.dumps(description, indent=2) + "\n")
@@ -36,12 +36,12 @@ def export(model, gsd_m, path, name, scale=1.0, bias=0.0, licence=""):
 
 def difference(model, path, height=208, width=176):
     """Largest difference of the logits between torch and OpenCV on a random picture of another size than exported."""
-    picture = np.random.default_rng(1).uniform(0, 255, (1, 3, height, width)).astype(np.float32)
+    picture = np.random.default_rng(1).normal(0, 1, (1, 3, height, width)).astype(np.float32)
     net = cv2.dnn.readNetFromONNX(str(path))
-    net.setInput(normalised(picture))
+    net.setInput(picture)
     ours = net.forward()
     with torch.no_grad():
-        theirs = model.cpu().eval()(normalised(torch.from_numpy(picture))).numpy()
+        theirs = model.cpu().eval()(torch.from_numpy(picture)).numpy()
     if ours.shape != theirs.shape:
         raise RuntimeError(f"OpenCV answers {ours.shape}, torch {theirs.shape}")
     return float(np.abs(ours - theirs).max())

@@ -17,7 +17,7 @@ def recall(predict, pairs, gsd_m, footprint_m=200.0, queries=6, tolerance_m=10.0
         image, truth, seen = at_scale(pair, gsd_m)
         if min(image.shape[:2]) < 1.5 * side:
             continue
-        city = road_map(predict, image)
+        city = road_map(predict, image, seen)
         rng = np.random.default_rng([seed, number])
         for _ in range(queries):
             col, row = (int(rng.integers(0, (limit - side) // 2)) * 2 for limit in (image.shape[1], image.shape[0]))
@@ -25,8 +25,8 @@ def recall(predict, pairs, gsd_m, footprint_m=200.0, queries=6, tolerance_m=10.0
             if seen[place].mean() < 0.95 or truth[place].mean() < 0.01:
                 continue
             weight = np.ones((side, side), np.float32)
-            changed, _ = augment.apply(image[place].copy(), truth[place].astype(np.float32), weight, gsd_m, rng)
-            found = road_map(predict, changed)
+            changed, _, visible = augment.apply(image[place].copy(), truth[place].astype(np.float32), weight, gsd_m, rng)
+            found = road_map(predict, changed, visible)
             answer = cv2.matchTemplate(city, found, cv2.TM_CCOEFF_NORMED)
             best = np.unravel_index(np.argmax(answer), answer.shape)
             error = np.hypot(best[0] * 2 - row, best[1] * 2 - col) * gsd_m
@@ -34,5 +34,5 @@ def recall(predict, pairs, gsd_m, footprint_m=200.0, queries=6, tolerance_m=10.0
     return right / max(1, total), total
 
 
-def road_map(predict, image):
-    return (1 / (1 + np.exp(-predict(image)))).astype(np.float32)
+def road_map(predict, image, seen):
+    return (1 / (1 + np.exp(-predict(image, seen)))).astype(np.float32)

@@ -64,7 +64,7 @@ def evaluate_pairs(predict, pairs, gsd_m, threshold=0.5, tolerance_m=3.0, scale=
     totals = defaultdict(Counts)
     for pair in pairs:
         image, truth, seen = at_scale(pair, gsd_m)
-        found = probability_of_pixels(predict(image), image.shape, scale, bias) > threshold
+        found = probability_of_pixels(predict(image, seen), image.shape, scale, bias) > threshold
         counts = relaxed_counts(found, truth, seen, tolerance_m, gsd_m)
         totals[pair.set_name] += counts
         totals["all"] += counts
@@ -79,7 +79,7 @@ def logits_and_labels(predict, pairs, gsd_m, each=20000, seed=1):
         image, truth, seen = at_scale(pair, gsd_m)
         size = image.shape[1::-1]
         sure = cv2.resize(pair.levels[0].weight, size, interpolation=cv2.INTER_AREA) > 0.75
-        cells = predict(image)
+        cells = predict(image, seen)
         whole = cv2.resize(cells, (cells.shape[1] * 2, cells.shape[0] * 2), interpolation=cv2.INTER_LINEAR)
         rows, cols = np.nonzero(seen & sure)
         chosen = rng.integers(0, len(rows), min(each, len(rows)))

@@ -3,33 +3,36 @@ import cv2
 import numpy as np
 import torch
 
-from .normalise import normalised
+from .normalise import network_input
 
 MULTIPLE = 16
 
 
-def padded(image):
+def blob(image, seen):
+    """1 x 3 x rows x columns; the sides are padded to the network's multiple with what was not seen."""
+    values = network_input(image, seen)
     height, width = image.shape[:2]
-    return cv2.copyMakeBorder(image, 0, -height % MULTIPLE, 0, -width % MULTIPLE, cv2.BORDER_REFLECT_101)
+    padded = cv2.copyMakeBorder(values, 0, -height % MULTIPLE, 0, -width % MULTIPLE, cv2.BORDER_CONSTANT, value=0)
+    return np.ascontiguousarray(padded.transpose(2, 0, 1)[None])
 
 
 class TorchNetwork:
     def __init__(self, model, device="cpu"):
         self.model, self.device = model, device
 
-    def __call__(self, image):
-        tensor = torch.from_numpy(padded(image).astype(np.float32).transpose(2, 0, 1)[None]).to(self.device)
+    def __call__(self, image, seen=None):
+        tensor = torch.from_numpy(blob(image, seen)).to(self.device)
         self.model.eval()
         with torch.no_grad():
-            return self.model(normalised(tensor))[0, 0].cpu().numpy()
+            return self.model(tensor)[0, 0].cpu().numpy()
 
 
 class OnnxNetwork:
     def __init__(self, path):
         self.net = cv2.dnn.readNetFromONNX(str(path))
 
-    def __call__(self, image):
-        self.net.setInput(normalised(padded(image).astype(np.float32).transpose(2, 0, 1)[None]))
+    def __call__(self, image, seen=None):
+        self.net.setInput(blob(image, seen))
         return self.net.forward()[0, 0]
 
 

@@ -9,7 +9,6 @@ from torch.utils.data import DataLoader, Sampler
 from .losses import road_loss
 from .metrics import evaluate_pairs
 from .network import RoadNet
-from .normalise import normalised
 from .predict import TorchNetwork
 
 class Consecutive(Sampler):
@@ -73,7 +72,7 @@ def train(crops, options):
         model.train()
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(step, options.steps, options.rate, options.cool)
-        logits = model(normalised(image.to(device)))
+        logits = model(image.to(device))
         loss = road_loss(logits, label.to(device), weight.to(device))
         optimizer.zero_grad(set_to_none=True)
         loss.backward()

@@ -88,7 +88,7 @@ class Parts(unittest.TestCase):
         weight = np.ones((64, 64), np.float32)
         weight[:, :20] = 0
         for seed in range(20):
-            changed, after = augment.apply(image, (image[:, :, 0] > 200).astype(np.float32), weight, 1.0,
+            changed, after, _ = augment.apply(image, (image[:, :, 0] > 200).astype(np.float32), weight, 1.0,
                                            np.random.default_rng(seed))
             self.assertTrue((changed[:, :20] == data.FILL).all())
             self.assertTrue((after[:, :20] == 0).all())

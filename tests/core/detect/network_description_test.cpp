@@ -67,6 +67,17 @@ TEST(NetworkDescription, RefusesWhatNoNetworkCanMean) {
   EXPECT_NE(with("calibration", 1).find("object"), std::string::npos);
 }
 
+TEST(NetworkDescription, LocalContrastIsOptionalAndItsWindowOdd) {
+  EXPECT_FALSE(parse_network_description(example().dump()).local_contrast.has_value());
+  json local = example();
+  local["local_contrast"] = {{"window_px", 129}, {"floor", 4}};
+  EXPECT_EQ(parse_network_description(local.dump()).local_contrast.value().window_px, 129);
+  local["local_contrast"]["window_px"] = 128;
+  EXPECT_NE(refusal(local).find("odd"), std::string::npos);
+  local["local_contrast"] = true;
+  EXPECT_NE(refusal(local).find("object"), std::string::npos);
+}
+
 TEST(NetworkDescription, RefusesTextThatIsNotAnObject) {
   for (const char* text : {"", "{", "[]", "1", "\xff\xfe"}) {
     EXPECT_THROW(parse_network_description(text), InvalidInput) << text;

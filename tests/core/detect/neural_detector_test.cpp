@@ -195,6 +195,21 @@ TEST_F(NeuralDetector, GreyPicturesAreAnsweredLikeTheirColourCopy) {
   EXPECT_EQ(detector.detect(grey, 2.0, 1), detector.detect({colour, grey.observed, 1.0}, 2.0, 1));
 }
 
+TEST_F(NeuralDetector, WithLocalContrastBrightnessAndUnseenPixelsDoNotMatter) {
+  json description = tiny_description();
+  description["local_contrast"] = {{"window_px", 31}, {"floor", 0.001}};
+  description["mean"] = {0, 0, 0};
+  description["std"] = {1, 1, 1};
+  const NeuralRoadDetector detector(model(description));
+  GroundImage image = random_image(96, 80);
+  image.observed.colRange(0, 30).setTo(0);
+  cv::Mat quarter;
+  image.pixels.convertTo(quarter, CV_8U, 0.25, 20.0);
+  quarter.colRange(0, 30).setTo(cv::Scalar::all(255));
+  EXPECT_LE(largest_difference(detector.detect({quarter, image.observed, 1.0}, 2.0, 1), detector.detect(image, 2.0, 1)),
+            4);
+}
+
 TEST_F(NeuralDetector, EightOrientationsTurnWithThePicture) {
   const NeuralRoadDetector detector(model(tiny_description()), {8});
   const GroundImage image = random_image(64, 96);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <ranges>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
@@ -29,7 +28,7 @@ struct ObservedCells {
       const auto line = cells.row(row);
       const auto first = std::ranges::find_if(line, is_observed);
       if (first == line.end()) continue;
-      const auto last = std::ranges::find_if(line | std::views::reverse, is_observed);
+      const auto last = std::find_if(line.rbegin(), line.rend(), is_observed);
       west = std::min(west, tile.col * kTileCells + static_cast<int>(first - line.begin()));
       east = std::max(east, tile.col * kTileCells + static_cast<int>(last.base() - line.begin()));
       north = std::min(north, tile.row * kTileCells + row);

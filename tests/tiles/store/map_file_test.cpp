@@ -119,6 +119,41 @@ TEST_F(MapFile, ACorruptTileIsNamed) {
   }
 }
 
+/// Copies the map as a writer leaves it that is killed in the middle of a transaction, its pages half written.
+void copy_as_if_killed(const fs::path& map, const fs::path& copy) {
+  sqlite::Connection writer(map, sqlite::Access::kReadWrite);
+  writer.execute("PRAGMA cache_size = 1");  // writes pages before the transaction ends
+  writer.execute("BEGIN");
+  writer.execute("UPDATE roadfix_meta SET value = 'half written'");
+  writer.execute("UPDATE road_probability SET tile_data = zeroblob(50000)");
+  fs::copy_file(map, copy);
+  fs::copy_file(map.string() + "-journal", copy.string() + "-journal");
+}
+
+TEST_F(MapFile, AHalfWrittenOneIsPutBackWhenItIsOpened) {
+  const auto expected = testing::tile_bytes(path);
+  const auto version = MapReader(path).info().version;
+  const auto copy = folder / "copy.gpkg";
+  copy_as_if_killed(path, copy);
+  EXPECT_EQ(MapReader(copy).info().version, version);
+  EXPECT_EQ(testing::tile_bytes(copy), expected);
+  EXPECT_FALSE(fs::exists(copy.string() + "-journal"));
+}
+
+TEST_F(MapFile, AWriterThatDiesDuringAReadIsUndone) {
+  const auto copy = folder / "copy.gpkg";
+  fs::copy_file(path, copy);
+  const MapReader reader(copy);
+  const auto killed = folder / "killed.gpkg";
+  copy_as_if_killed(path, killed);
+  // In place, so that the reader's descriptor sees it as it would see a dead writer's file.
+  std::ofstream(copy, std::ios::binary | std::ios::in | std::ios::out)
+      << std::ifstream(killed, std::ios::binary).rdbuf();
+  fs::rename(killed.string() + "-journal", copy.string() + "-journal");
+  EXPECT_EQ(reader.version_now(), reader.info().version);
+  for (const TileIndex tile : some_blocks(2)) EXPECT_EQ(reader.tile(0, tile), testing::random_cells(1, tile));
+}
+
 TEST_F(MapFile, GdalFindsItValid) {
   if (std::system("/usr/bin/python3 -c 'import osgeo_utils.samples.validate_gpkg' 2>/dev/null") != 0) {
     GTEST_SKIP() << "GDAL for Python is not installed (python3-gdal)";

@@ -1,0 +1,70 @@
+// Other programs see what we wrote: a map opened by GDAL's own GeoPackage driver.
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::random_cells;
+using testing::TemporaryFolder;
+using testing::TestSource;
+
+class MapInGdal : public ::testing::TestWithParam<int> {};
+
+TEST_P(MapInGdal, IsARasterOfProbabilitiesInPlaceWithNoData) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  const MapSettings settings{*UtmZone::from_epsg(GetParam()), 2.0};
+  const TileIndex block{847, settings.zone.northern() ? -8165 : -12100};
+  CellArray cells = random_cells(7, block);
+  for (int row = 0; row < 10; ++row) std::ranges::fill(cells.row(row), kUnobserved);  // an extent within the tile
+  cells.at(100, 10) = kRoad;
+  cells.at(0, 255) = cells.at(255, 255) = kNoRoad;
+  {
+    MapWriter writer(path, settings);
+    writer.begin_source(TestSource{"a", 1, {}}.record(), std::vector{block}, false);
+    writer.put_block("a", block, cells);
+    writer.finish_source("a");
+  }
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
+  ASSERT_NE(data, nullptr);
+  EXPECT_STREQ(data->GetSpatialRef()->GetAuthorityCode(nullptr), std::to_string(GetParam()).c_str());
+  std::array<double, 6> transform{};
+  data->GetGeoTransform(transform.data());
+  const GridBox box = MapReader(path).info().extent;
+  EXPECT_EQ(transform[0], box.min.east_m);
+  EXPECT_EQ(transform[3], box.max.north_m);
+  EXPECT_EQ(transform[1], 2.0);
+  ASSERT_EQ(data->GetRasterXSize(), 256);
+  ASSERT_EQ(data->GetRasterYSize(), 246);
+
+  GDALRasterBand* band = data->GetRasterBand(1);
+  EXPECT_EQ(band->GetRasterDataType(), GDT_Float32);
+  int has_no_data = 0;
+  const auto no_data = static_cast<float>(band->GetNoDataValue(&has_no_data));
+  ASSERT_NE(has_no_data, 0);
+  std::vector<float> values(256 * 246);
+  ASSERT_EQ(band->RasterIO(GF_Read, 0, 0, 256, 246, values.data(), 256, 246, GDT_Float32, 0, 0), CE_None);
+  for (int row = 0; row < 246; ++row) {
+    for (int col = 0; col < 256; ++col) {
+      const float value = values[static_cast<std::size_t>(row * 256 + col)];
+      const Cell cell = cells.at(col, row + 10);
+      if (is_observed(cell)) {
+        ASSERT_NEAR(static_cast<double>(value), probability(cell), 1e-6);
+      } else {
+        ASSERT_EQ(value, no_data);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(NorthAndSouth, MapInGdal, ::testing::Values(32637, 32734));
+
+}  // namespace
+}  // namespace roadfix

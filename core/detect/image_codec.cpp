@@ -1,0 +1,118 @@
+#include "core/detect/image_codec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/detect/frame_image.hpp"
+#include "core/detect/ground_scale.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
+std::int64_t big_endian(Bytes bytes) {
+  std::int64_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+std::optional<ImageHeader> png_header(Bytes bytes) {
+  constexpr std::size_t kHeaderEnd = 24;  // signature, chunk length and name, width, height
+  if (bytes.size() < kHeaderEnd || !std::ranges::equal(bytes.first(8), kPngSignature)) return std::nullopt;
+  return ImageHeader{ImageHeader::Format::kPng, big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)),
+                     kHeaderEnd};
+}
+
+bool is_frame_header(std::uint8_t marker) {
+  // SOF0..SOF15 without DHT, JPG and DAC, which share the range.
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+std::optional<ImageHeader> jpeg_header(Bytes bytes) {
+  if (bytes.size() < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return std::nullopt;
+  std::size_t at = 2;
+  while (at + 9 <= bytes.size() && bytes[at] == 0xff) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == 0xff) {  // fill byte
+      ++at;
+      continue;
+    }
+    if (is_frame_header(marker)) {
+      return ImageHeader{ImageHeader::Format::kJpeg, big_endian(bytes.subspan(at + 7, 2)),
+                         big_endian(bytes.subspan(at + 5, 2)), at + 9};
+    }
+    at += 2 + static_cast<std::size_t>(big_endian(bytes.subspan(at + 2, 2)));
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_damaged() {
+  throw InvalidInput("image-damaged", "the image cannot be decoded: it is damaged or cut off");
+}
+
+/// The library fills a JPEG that was cut off with grey. Within scan data 0xff is always followed by 0 or a restart
+/// marker, and thumbnails come before the frame header, so an end marker behind it is the image's own.
+bool is_whole(Bytes bytes, const ImageHeader& header) {
+  if (header.format == ImageHeader::Format::kPng) return true;
+  constexpr std::array<std::uint8_t, 2> kEnd{0xff, 0xd9};
+  return !std::ranges::search(bytes.subspan(header.end), kEnd).empty();
+}
+
+}  // namespace
+
+std::optional<ImageHeader> read_image_header(Bytes bytes) {
+  if (auto header = png_header(bytes)) return header;
+  return jpeg_header(bytes);
+}
+
+cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
+  const auto header = read_image_header(bytes);
+  if (!header) throw InvalidInput("image-format", "the bytes are neither a PNG nor a JPEG image");
+  if (header->cols <= 0 || header->rows <= 0 || !is_whole(bytes, *header)) refuse_damaged();
+  if (header->cols > max_pixels / header->rows) {
+    throw LimitExceeded("image-too-large", fmt::format("the image has {} x {} pixels; at most {} pixels are allowed",
+                                                       header->cols, header->rows, max_pixels));
+  }
+  // OpenCV takes a non-const pointer but only reads.
+  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+  cv::Mat image;
+  try {
+    image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {
+    refuse_damaged();
+  }
+  if (image.empty() || image.cols != header->cols || image.rows != header->rows) refuse_damaged();
+  return image;
+}
+
+CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
+  const GroundImage frame = frame_image(decode_image(bytes, max_pixels), 1.0);
+  const cv::Mat grey = brightness_of(frame);
+  CellArray cells(grey.cols, grey.rows);
+  for (int row = 0; row < grey.rows; ++row) {
+    for (int col = 0; col < grey.cols; ++col) {
+      if (frame.observed.at<uchar>(row, col) != 0) cells.at(col, row) = std::min(grey.at<uchar>(row, col), kRoad);
+    }
+  }
+  return cells;
+}
+
+std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
+  cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4);
+  for (int row = 0; row < cells.rows(); ++row) {
+    for (int col = 0; col < cells.cols(); ++col) {
+      const Cell cell = cells.at(col, row);
+      picture.at<cv::Vec4b>(row, col) = is_observed(cell) ? cv::Vec4b(cell, cell, cell, 255) : cv::Vec4b(0, 0, 0, 0);
+    }
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", picture, png);
+  return png;
+}
+
+}  // namespace roadfix

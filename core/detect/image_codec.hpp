@@ -1,0 +1,40 @@
+// Pictures and feature maps as bytes from outside. Sizes are read from the header and checked before anything is
+// decoded.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/grid/cell_array.hpp"
+
+namespace roadfix {
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// Format and size as the header says them.
+struct ImageHeader {
+  enum class Format { kPng, kJpeg };
+  Format format = Format::kPng;
+  std::int64_t cols = 0;
+  std::int64_t rows = 0;
+  std::size_t end = 0;  ///< bytes up to and with the size
+};
+
+/// nullopt for bytes that are neither PNG (W3C PNG 5.2, 11.2.2) nor JPEG (ITU-T T.81 B.2.2).
+std::optional<ImageHeader> read_image_header(Bytes bytes);
+
+/// The image as it is stored: 8 or 16 bits; grey, BGR or BGR with alpha; frame_image() makes a picture of the ground of
+/// it. Throws InvalidInput ("image-format", "image-damaged") and LimitExceeded ("image-too-large").
+cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels);
+
+/// A feature map as a picture: grey k = probability k / 254 (255 counts as 254, so that 0/255 masks work); alpha below
+/// one half = unobserved. 16-bit grey is scaled linearly. Throws as decode_image.
+CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels);
+
+/// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell.
+std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
+
+}  // namespace roadfix

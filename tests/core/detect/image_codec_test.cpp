@@ -1,0 +1,87 @@
+#include "core/detect/image_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::int64_t kMany = 1'000'000;
+
+std::vector<std::uint8_t> encoded(const char* extension, const cv::Mat& image) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(extension, image, bytes);
+  return bytes;
+}
+
+template <typename Call>
+std::string code_of(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return "accepted";
+}
+
+TEST(FeatureMapCodec, EveryCellValueComesBack) {
+  CellArray cells(16, 16);
+  for (int i = 0; i < 256; ++i) cells.at(i % 16, i / 16) = static_cast<Cell>(i);
+  EXPECT_EQ(decode_feature_map(encode_feature_map(cells), kMany), cells);
+}
+
+TEST(FeatureMapCodec, AMaskOf255IsRoad) {
+  const cv::Mat mask = (cv::Mat_<uchar>(1, 2) << 0, 255);
+  const CellArray cells = decode_feature_map(encoded(".png", mask), kMany);
+  EXPECT_EQ(cells.at(0, 0), kNoRoad);
+  EXPECT_EQ(cells.at(1, 0), kRoad);
+}
+
+TEST(FeatureMapCodec, SixteenBitsScaleLinearly) {
+  const cv::Mat deep = (cv::Mat_<ushort>(1, 3) << 0, 32768, 65535);
+  const CellArray cells = decode_feature_map(encoded(".png", deep), kMany);
+  EXPECT_NEAR(probability(cells.at(1, 0)), 0.5, 0.005);
+  EXPECT_EQ(cells.at(2, 0), kRoad);
+}
+
+TEST(ImageHeader, TellsTheSizeOfPngAndJpeg) {
+  const cv::Mat image(30, 47, CV_8UC3, cv::Scalar(1, 2, 3));
+  for (const char* extension : {".png", ".jpg"}) {
+    const auto header = read_image_header(encoded(extension, image));
+    ASSERT_TRUE(header) << extension;
+    EXPECT_EQ(header->cols, 47);
+    EXPECT_EQ(header->rows, 30);
+  }
+}
+
+TEST(DecodeImage, RefusesABombByItsHeader) {
+  auto png = encoded(".png", cv::Mat(2, 2, CV_8UC1, cv::Scalar(0)));
+  png[16] = 0x7f;  // 2 billion columns
+  EXPECT_EQ(code_of([&] { decode_image(png, kMany); }), "image-too-large");
+  EXPECT_EQ(code_of([&] { decode_image(encoded(".png", cv::Mat(100, 100, CV_8UC1)), 9'999); }), "image-too-large");
+}
+
+TEST(DecodeImage, RefusesWhatIsNoImageAndWhatIsDamaged) {
+  const std::vector<std::uint8_t> text{'h', 'e', 'l', 'l', 'o'};
+  EXPECT_EQ(code_of([&] { decode_image(text, kMany); }), "image-format");
+  EXPECT_EQ(code_of([&] { decode_image({}, kMany); }), "image-format");
+  auto png = encoded(".png", cv::Mat(64, 64, CV_8UC3, cv::Scalar(9, 99, 199)));
+  png.resize(40);
+  EXPECT_EQ(code_of([&] { decode_image(png, kMany); }), "image-damaged");
+}
+
+TEST(DecodeImage, RefusesAJpegThatWasCutOffAnywhere) {
+  cv::Mat noise(64, 64, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  const auto jpeg = encoded(".jpg", noise);
+  EXPECT_EQ(code_of([&] { decode_image(jpeg, kMany); }), "accepted");
+  for (std::size_t size = 4; size < jpeg.size(); size += 97) {
+    EXPECT_NE(code_of([&] { decode_image(Bytes(jpeg).first(size), kMany); }), "accepted") << size;
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,4 +1,5 @@
 #include "cli/command.hpp"
+#include "cli/detector_options.hpp"
 
 #include <fmt/format.h>
 
@@ -254,8 +255,7 @@ void add_ingest_command(CLI::App& app) {
   command->add_option("--zone", a->zone,
                       "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
   add_content_options(*command, *a);
-  command->add_option("--detector", a->detector.name, fmt::format("Road detector for imagery: {}", kDetectorNames));
-  command->add_option("--model", a->detector.model, "Weights of the neural detector (ONNX)");
+  add_detector_options(*command, a->detector);
   add_provenance_options(*command, *a);
   a->options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--jobs", a->options.jobs, "Blocks in work at a time; default: number of processors")

@@ -25,11 +25,16 @@ class Consecutive(Sampler):
         return self.last - self.first
 
 
-def learning_rate(step, steps, peak, cool):
-    """Short warm-up, constant, then a straight line to zero over the last `cool` share: a run can be stretched."""
+def learning_rate(step, done, peak, cool):
+    """Short warm-up, constant, then a straight line to zero over the last `cool` share; `done` in [0, 1]."""
     warm = min(1.0, (step + 1) / 50)
-    left = (steps - step) / max(1, steps * cool)
-    return peak * warm * min(1.0, max(0.02, left))
+    return peak * warm * min(1.0, max(0.02, (1.0 - done) / max(1e-6, cool)))
+
+
+def share_done(step, started, options):
+    """Of the steps, or of the minutes where those run out first."""
+    by_time = (time.time() - started) / 60 / options.minutes if options.minutes > 0 else 0.0
+    return min(1.0, max(step / options.steps, by_time))
 
 
 def average_into(averaged, model, step, decay=0.998):
@@ -68,10 +73,11 @@ def train(crops, options):
     batches = Consecutive(first * options.batch, options.steps * options.batch)
     loader = DataLoader(crops, options.batch, sampler=batches, num_workers=options.workers)
     started, running = time.time(), None
+    over = False
     for step, (image, label, weight) in zip(range(first, options.steps), loader):
         model.train()
         for group in optimizer.param_groups:
-            group["lr"] = learning_rate(step, options.steps, options.rate, options.cool)
+            group["lr"] = learning_rate(step, share_done(step, started, options), options.rate, options.cool)
         logits = model(image.to(device))
         loss = road_loss(logits, label.to(device), weight.to(device))
         optimizer.zero_grad(set_to_none=True)
@@ -84,14 +90,17 @@ def train(crops, options):
             raise RuntimeError(f"the loss is {value} at step {step}: lower --rate")
         running = value if running is None else 0.98 * running + 0.02 * value
         done = step + 1
-        if done % options.report == 0 or done == options.steps:
+        over = share_done(done, started, options) >= 1.0
+        if done % options.report == 0 or over:
             pace = (time.time() - started) / (done - first)
             print(f"step {done}/{options.steps}  loss {running:.4f}  {pace:.2f} s a step  "
                   f"{pace * (options.steps - done) / 60:.0f} min left", flush=True)
-        if done % options.save_every == 0 or done == options.steps:
+        if done % options.save_every == 0 or over:
             save(checkpoint, model=model.state_dict(), averaged=averaged.state_dict(), optimizer=optimizer.state_dict(),
                  step=done, gsd_m=crops.gsd_m, seed=options.seed)
-        if done % options.validate_every == 0 or done == options.steps:
+        if done % options.validate_every == 0 or over:
             for name, figures in evaluate_pairs(TorchNetwork(averaged, device), crops.held_out, crops.gsd_m).items():
                 print(f"  held out {name}: {figures}", flush=True)
+        if over:
+            break
     return averaged

@@ -1,6 +1,8 @@
 #include "tiles/pipeline/ingest.hpp"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -64,6 +66,9 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
     if (progress.blocks) progress.blocks(++done, total);
   };
   const auto tokens = static_cast<std::size_t>(2 * options.jobs);
+  // More jobs than processors are the user's choice: reading may wait for a disk or a network.
+  const auto threads = static_cast<std::size_t>(std::max(options.jobs, tbb::info::default_concurrency()));
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(options.jobs);
   arena.execute([&] {
     tbb::parallel_pipeline(tokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, plan) &

@@ -26,12 +26,6 @@ DatasetPtr open_vector(const std::string& path, const std::optional<VectorTile>&
   return open_dataset(path, GDAL_OF_VECTOR, options.List());
 }
 
-std::optional<OGREnvelope> bounding_box(OGRLayer& layer) {
-  OGREnvelope box;
-  if (layer.GetExtent(&box, TRUE) != OGRERR_NONE || !(box.MinX <= box.MaxX)) return std::nullopt;
-  return box;
-}
-
 void add_rings(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const std::string& path,
                std::vector<PlanePolygon>& polygons) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
@@ -92,10 +86,7 @@ OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {
 }
 
 std::optional<OGREnvelope> VectorFile::extent_of(OGRLayer& layer) {
-  if (!tile_) {
-    const GdalMessages messages;
-    return bounding_box(layer);
-  }
+  if (!tile_) return bounding_box(layer);
   const double half = 6378137.0 * std::numbers::pi;
   const double side = std::ldexp(2.0 * half, -tile_->zoom);
   OGREnvelope box;
@@ -103,6 +94,24 @@ std::optional<OGREnvelope> VectorFile::extent_of(OGRLayer& layer) {
   box.MaxX = box.MinX + side;
   box.MaxY = half - tile_->y * side;
   box.MinY = box.MaxY - side;
+  return box;
+}
+
+std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
+  OGREnvelope box;
+  {
+    const GdalMessages messages;
+    if (layer.GetExtent(&box, FALSE) == OGRERR_NONE && box.MinX <= box.MaxX) return box;
+  }
+  box = OGREnvelope();
+  // Not layer.GetExtent(TRUE): the OpenStreetMap driver gives its layers interleaved only.
+  for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
+    if (&of != &layer || feature.GetGeometryRef() == nullptr) return;
+    OGREnvelope own;
+    feature.GetGeometryRef()->getEnvelope(&own);
+    box.Merge(own);
+  });
+  if (box.IsInit() == 0) return std::nullopt;
   return box;
 }
 

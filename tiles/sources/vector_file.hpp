@@ -39,6 +39,8 @@ class VectorFile {
   void for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit);
 
  private:
+  std::optional<OGREnvelope> bounding_box(OGRLayer& layer);
+
   std::string path_;
   VectorOptions options_;
   std::optional<VectorTile> tile_;

@@ -1,0 +1,227 @@
+// Does the ground come out where it is? The pictures are ramps that grow with east or north, written through formulas
+// of their own (GeographicLib, the sphere of Web Mercator), so a value tells its place.
+#include "tiles/sources/mosaic.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "core/geodesy/utm.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::RasterSpec;
+using testing::write_raster;
+
+constexpr GridPoint kCentre{400000.0, 4200000.0};
+const UtmZone kZone = *UtmZone::from_epsg(32637);
+constexpr double kRampM = 200.0;
+
+double east_ramp(GridPoint p) { return 127.5 + (p.east_m - kCentre.east_m) / kRampM * 255.0; }
+double north_ramp(GridPoint p) { return 127.5 + (p.north_m - kCentre.north_m) / kRampM * 255.0; }
+
+struct Crs {
+  const char* name;
+  int epsg;
+  std::array<double, 6> transform;
+  GridPoint (*plane)(double x, double y);  ///< from the raster's own coordinates
+};
+
+GridPoint from_degrees(double lon, double lat) { return kZone.project({lat, lon}); }
+GridPoint from_web_mercator(double x, double y) {
+  constexpr double kRadius = 6378137.0;
+  const double lat = 2.0 * std::atan(std::exp(y / kRadius)) - std::numbers::pi / 2.0;
+  return from_degrees(x / kRadius * 180.0 / std::numbers::pi, lat * 180.0 / std::numbers::pi);
+}
+GridPoint from_plane(double x, double y) { return {x, y}; }
+GridPoint from_other_zone(double x, double y) {
+  const UtmZone next = *UtmZone::from_epsg(32636);
+  return kZone.project(next.unproject({x, y}));
+}
+
+std::array<double, 6> around(double x, double y, double dx, double dy, double angle_deg) {
+  const double c = std::cos(angle_deg * std::numbers::pi / 180.0);
+  const double s = std::sin(angle_deg * std::numbers::pi / 180.0);
+  const double half = 150.0;  // pixels
+  const std::array<double, 4> m{dx * c, -dy * s, -dx * s, -dy * c};
+  return {x - half * (m[0] + m[1]), m[0], m[1], y - half * (m[2] + m[3]), m[2], m[3]};
+}
+
+std::vector<Crs> reference_systems() {
+  const LatLon centre = kZone.unproject(kCentre);
+  constexpr double kRadius = 6378137.0;
+  const double x = centre.lon_deg * std::numbers::pi / 180.0 * kRadius;
+  const double y = std::asinh(std::tan(centre.lat_deg * std::numbers::pi / 180.0)) * kRadius;
+  const GridPoint next = UtmZone::from_epsg(32636)->project(centre);
+  return {{"Utm", 32637, around(kCentre.east_m, kCentre.north_m, 1.0, 1.0, 0.0), from_plane},
+          {"UtmRotated", 32637, around(kCentre.east_m, kCentre.north_m, 1.0, 1.0, 33.0), from_plane},
+          {"UtmSouthUp", 32637, around(kCentre.east_m, kCentre.north_m, 1.0, -1.0, 0.0), from_plane},
+          {"OtherZone", 32636, around(next.east_m, next.north_m, 1.0, 1.0, 0.0), from_other_zone},
+          {"WebMercator", 3857, around(x, y, 1.27, 1.27, 0.0), from_web_mercator},
+          {"Degrees", 4326, around(centre.lon_deg, centre.lat_deg, 1.14e-5, 0.9e-5, 0.0), from_degrees}};
+}
+
+class Position : public ::testing::TestWithParam<Crs> {};
+
+TEST_P(Position, IsRightToATenthOfACell) {
+  const Crs crs = GetParam();
+  const testing::TemporaryFolder folder;
+  const RasterSpec spec{.width = 300, .height = 300, .bands = 3, .epsg = crs.epsg, .transform = crs.transform};
+  const std::string path = write_raster(folder / "a.tif", spec, [&](int band, int col, int row) {
+    const std::array<double, 6>& t = crs.transform;
+    const double x = t[0] + (col + 0.5) * t[1] + (row + 0.5) * t[2];
+    const double y = t[3] + (col + 0.5) * t[4] + (row + 0.5) * t[5];
+    const GridPoint p = crs.plane(x, y);
+    return band == 1 ? std::round(east_ramp(p)) : std::round(north_ramp(p));
+  });
+  const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+  EXPECT_NEAR(mosaic.gsd_m(), 1.0, 0.02);
+  for (const double gsd : {0.5, 1.0, 4.0}) {
+    const GridBox box{{kCentre.east_m - 96.0, kCentre.north_m - 96.0}, {kCentre.east_m + 96.0, kCentre.north_m + 96.0}};
+    const GroundImage view = mosaic.view(box, gsd);
+    ASSERT_EQ(cv::countNonZero(view.observed), view.observed.total());
+    double east_error = 0.0;
+    double north_error = 0.0;
+    for (int row = 0; row < view.pixels.rows; ++row) {
+      for (int col = 0; col < view.pixels.cols; ++col) {
+        const GridPoint p{box.min.east_m + (col + 0.5) * gsd, box.max.north_m - (row + 0.5) * gsd};
+        const cv::Vec3b pixel = view.pixels.at<cv::Vec3b>(row, col);
+        east_error += (pixel[2] - east_ramp(p)) * kRampM / 255.0;
+        north_error += (pixel[0] - north_ramp(p)) * kRampM / 255.0;
+        ASSERT_NEAR(pixel[2], east_ramp(p), 1.6) << "gsd " << gsd << " column " << col << " row " << row;
+        ASSERT_NEAR(pixel[0], north_ramp(p), 1.6) << "gsd " << gsd << " column " << col << " row " << row;
+      }
+    }
+    // Means of whole numbers are rounded: up to half a step of the ramp.
+    const double step_m = kRampM / 255.0;
+    const double tolerance_m = gsd > 1.0 ? 0.5 * step_m : 0.2;
+    EXPECT_NEAR(east_error / static_cast<double>(view.pixels.total()), 0.0, tolerance_m) << "gsd " << gsd;
+    EXPECT_NEAR(north_error / static_cast<double>(view.pixels.total()), 0.0, tolerance_m) << "gsd " << gsd;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ReferenceSystems, Position, ::testing::ValuesIn(reference_systems()),
+                         [](const auto& param) { return param.param.name; });
+
+class MosaicTest : public ::testing::Test {
+ protected:
+  /// A square of `side` pixels of 1 m whose south-western corner lies `east`, `north` of the centre.
+  std::string square(const std::string& name, double east, double north, int side, double value,
+                     double nodata_cols = 0) {
+    RasterSpec spec{.width = side, .height = side, .nodata = 9.0};
+    spec.transform = {kCentre.east_m + east, 1.0, 0.0, kCentre.north_m + north + side, 0.0, -1.0};
+    return write_raster(folder / name, spec, [&](int, int col, int) { return col < nodata_cols ? 9.0 : value; });
+  }
+  static GridBox box(double east, double north, double side) {
+    return {{kCentre.east_m + east, kCentre.north_m + north},
+            {kCentre.east_m + east + side, kCentre.north_m + north + side}};
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(MosaicTest, TheFirstImageThatHoldsSomethingWins) {
+  const Mosaic mosaic({square("a.tif", 0, 0, 64, 100, 16), square("b.tif", 0, 0, 64, 200)}, {}, ValueRule::kPicture,
+                      kZone);
+  const GroundImage view = mosaic.view(box(0, 0, 64), 1.0);
+  EXPECT_EQ(cv::countNonZero(view.observed), 64 * 64);
+  EXPECT_EQ(cv::countNonZero(view.pixels == 200), 16 * 64);
+  EXPECT_EQ(cv::countNonZero(view.pixels == 100), 48 * 64);
+}
+
+TEST_F(MosaicTest, GroundBesideTheImagesIsNotObserved) {
+  const Mosaic mosaic({square("a.tif", 0, 0, 64, 100)}, {}, ValueRule::kPicture, kZone);
+  const GroundImage view = mosaic.view(box(-32, -32, 128), 1.0);
+  EXPECT_EQ(cv::countNonZero(view.observed), 64 * 64);
+  EXPECT_EQ(view.observed.at<std::uint8_t>(32, 31), 0);
+  EXPECT_EQ(view.observed.at<std::uint8_t>(32, 32), 255);
+  EXPECT_TRUE(mosaic.touches(box(63, 63, 10)));
+  EXPECT_FALSE(mosaic.touches(box(65, 65, 10)));
+}
+
+TEST_F(MosaicTest, NodataDoesNotBleedIntoItsNeighbours) {
+  const Mosaic mosaic({square("a.tif", 0, 0, 64, 100, 21)}, {}, ValueRule::kPicture, kZone);
+  for (const double gsd : {0.5, 1.0, 2.0, 4.0}) {
+    const GroundImage view = mosaic.view(box(0, 0, 64), gsd);
+    cv::Mat wrong = (view.pixels != 100) & (view.observed != 0);
+    EXPECT_EQ(cv::countNonZero(wrong), 0) << "gsd " << gsd;
+    EXPECT_NEAR(cv::countNonZero(view.observed) * gsd * gsd, 43.0 * 64.0, gsd * 64.0) << "gsd " << gsd;
+  }
+}
+
+TEST_F(MosaicTest, FinePixelsAreAveragedNotPickedOut) {
+  RasterSpec spec{.width = 512, .height = 512};
+  spec.transform = {kCentre.east_m, 0.25, 0.0, kCentre.north_m + 128, 0.0, -0.25};
+  const std::string path =
+      write_raster(folder / "a.tif", spec, [](int, int col, int row) { return (col + row) % 2 * 200.0; });
+  const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+  const GroundImage view = mosaic.view(box(8, 8, 64), 2.0);
+  double low = 0.0;
+  double high = 0.0;
+  cv::minMaxLoc(view.pixels, &low, &high);
+  EXPECT_NEAR(low, 100.0, 1.0);
+  EXPECT_NEAR(high, 100.0, 1.0);
+}
+
+TEST_F(MosaicTest, AViewDoesNotDependOnHowTheGroundIsCutIntoViews) {
+  RasterSpec spec{.width = 700, .height = 700, .bands = 3};
+  spec.transform = around(kCentre.east_m, kCentre.north_m, 0.4, 0.4, 20.0);
+  const std::string path = write_raster(
+      folder / "a.tif", spec, [](int band, int col, int row) { return (col * 31 + row * 17 + band * 50) % 256; });
+  const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+  const GroundImage whole = mosaic.view(box(-64, -64, 128), 0.5);
+  const GroundImage part = mosaic.view(box(-32, -16, 64), 0.5);
+  const cv::Rect same(64, 256 - 96 - 128, 128, 128);
+  EXPECT_LE(cv::norm(whole.pixels(same), part.pixels, cv::NORM_INF), 12.0);
+  EXPECT_EQ(cv::norm(whole.observed(same), part.observed, cv::NORM_INF), 0.0);
+}
+
+TEST_F(MosaicTest, SixteenBitImagesOfOneSourceShareOneRange) {
+  const auto image = [&](const std::string& name, double east, double low) {
+    RasterSpec spec{.type = GDT_UInt16};
+    spec.transform = {kCentre.east_m + east, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
+    return write_raster(folder / name, spec, [low](int, int col, int) { return low + 10.0 * col; });
+  };
+  const Mosaic mosaic({image("a.tif", 0, 1000), image("b.tif", 64, 3000)}, {}, ValueRule::kPicture, kZone);
+  EXPECT_NEAR(mosaic.range().low, 1000.0, 20.0);
+  EXPECT_NEAR(mosaic.range().high, 3630.0, 20.0);
+}
+
+TEST_F(MosaicTest, ADeclaredCollarIsNotObservedButAWhiteRoofIs) {
+  RasterSpec spec{.width = 200, .height = 200, .bands = 3};
+  spec.transform = {kCentre.east_m, 1.0, 0.0, kCentre.north_m + 200, 0.0, -1.0};
+  const auto inside = [](int col, int row) { return col + row > 100 && col < 190; };
+  const auto roof = [](int col, int row) { return col >= 120 && col < 140 && row >= 120 && row < 140; };
+  const std::string path = write_raster(folder / "a.tif", spec, [&](int, int col, int row) {
+    return roof(col, row) ? 255.0 : (inside(col, row) ? 90.0 : 252.0 + (col % 4));
+  });
+  const Mosaic mosaic({path}, {.crs = "", .collar = Rgb{255, 255, 255}}, ValueRule::kPicture, kZone);
+  const GroundImage view = mosaic.view(box(0, 0, 200), 1.0);
+  for (int row = 0; row < 200; ++row) {
+    for (int col = 0; col < 200; ++col) {
+      ASSERT_EQ(view.observed.at<std::uint8_t>(row, col) != 0, inside(col, row)) << col << ' ' << row;
+    }
+  }
+}
+
+TEST_F(MosaicTest, CoordinatesWithoutAPlaceInTheZoneAreRefused) {
+  RasterSpec spec;
+  spec.epsg = 4326;
+  spec.transform = {500000.0, 1.0, 0.0, 4200064.0, 0.0, -1.0};  // metres given as degrees
+  const std::string path = write_raster(folder / "a.tif", spec, [](int, int, int) { return 1.0; });
+  try {
+    const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+    FAIL() << "extent " << mosaic.extent().min.east_m;
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.code(), "crs-not-transformable");
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("--crs"));
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,159 @@
+#include "tiles/sources/raster_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "core/units/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::RasterSpec;
+using testing::write_raster;
+
+class RasterFileTest : public ::testing::Test {
+ protected:
+  RasterPixels read(const RasterSpec& spec, const testing::PixelFunction& value,
+                    const std::function<bool(int, int)>& mask = {}, ValueRange range = {}) {
+    RasterFile file(write_raster(folder / "a.tif", spec, value, mask), {});
+    return file.read({{0, 0}, file.size()}, range);
+  }
+  template <typename Function>
+  static std::string code_of(Function function) {
+    try {
+      function();
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return "nothing thrown";
+  }
+  testing::TemporaryFolder folder;
+};
+
+double band_number(int band, int, int) { return 10.0 * band; }
+
+TEST_F(RasterFileTest, ThreeBandsAreRedGreenBlueInTheirOrder) {
+  const RasterPixels pixels = read({.bands = 3}, band_number);
+  EXPECT_EQ(pixels.values.at<cv::Vec3b>(5, 5), cv::Vec3b(30, 20, 10));
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 64 * 64);
+}
+
+TEST_F(RasterFileTest, ColourMeaningsOfTheBandsWinOverTheirOrder) {
+  const RasterSpec spec{.bands = 3, .meanings = {GCI_BlueBand, GCI_GreenBand, GCI_RedBand}, .creation = {}};
+  EXPECT_EQ(read(spec, band_number).values.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
+}
+
+TEST_F(RasterFileTest, AFourthBandThatIsNoAlphaIsLeftAside) {
+  const RasterSpec spec{.bands = 4, .meanings = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_Undefined}};
+  const RasterPixels pixels = read(spec, [](int band, int, int) { return band == 4 ? 0.0 : 10.0 * band; });
+  EXPECT_EQ(pixels.values.at<cv::Vec3b>(5, 5), cv::Vec3b(30, 20, 10));
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 64 * 64);
+}
+
+TEST_F(RasterFileTest, AlphaBelowHalfMeansThatNothingIsThere) {
+  for (const int bands : {2, 4}) {
+    RasterSpec spec{.bands = bands, .meanings = {GCI_GrayIndex, GCI_AlphaBand}};
+    if (bands == 4) spec.meanings = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_AlphaBand};
+    const RasterPixels pixels = read(spec, [bands](int band, int col, int) {
+      return band < bands ? 77.0 : (col < 10 ? 0.0 : (col < 20 ? 127.0 : 200.0));
+    });
+    EXPECT_EQ(pixels.values.channels(), bands - 1);
+    EXPECT_EQ(cv::countNonZero(pixels.valid), 44 * 64);
+  }
+}
+
+TEST_F(RasterFileTest, AMaskBandMeansThatNothingIsThere) {
+  const RasterPixels pixels = read({.bands = 3}, band_number, [](int col, int) { return col >= 16; });
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 48 * 64);
+  EXPECT_EQ(pixels.valid.at<std::uint8_t>(0, 15), 0);
+}
+
+TEST_F(RasterFileTest, APixelHoldsNothingOnlyWhereEveryBandHasTheNodataValue) {
+  const RasterSpec spec{.bands = 3, .nodata = 0.0};
+  const RasterPixels pixels = read(spec, [](int band, int col, int) { return col < 8 || band == 1 ? 0.0 : 90.0; });
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 56 * 64);
+}
+
+TEST_F(RasterFileTest, ANodataValueThatTheTypeCannotHoldMarksNothing) {
+  const RasterPixels pixels = read({.nodata = -9999.0}, [](int, int, int) { return 241.0; });
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 64 * 64);
+}
+
+TEST_F(RasterFileTest, PalettesBecomeColourAndTheirClearEntriesNothing) {
+  RasterSpec spec;
+  spec.palette = {{1, 2, 3, 255}, {200, 100, 50, 255}};
+  spec.nodata = 0.0;
+  const RasterPixels pixels = read(spec, [](int, int col, int) { return col < 32 ? 0.0 : 1.0; });
+  EXPECT_EQ(pixels.values.at<cv::Vec3b>(3, 40), cv::Vec3b(50, 100, 200));
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 32 * 64);
+}
+
+TEST_F(RasterFileTest, FloatsThatAreNoNumbersHoldNothing) {
+  const auto value = [](int, int col, int) {
+    return col == 0 ? std::numeric_limits<double>::quiet_NaN() : (col == 1 ? HUGE_VAL : 0.5);
+  };
+  const RasterPixels pixels = read({.type = GDT_Float32}, value, {}, {0.0, 1.0});
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 62 * 64);
+  EXPECT_EQ(pixels.values.at<std::uint8_t>(0, 5), 128);
+}
+
+TEST_F(RasterFileTest, SixteenBitsAreStretchedAndClamped) {
+  const auto value = [](int, int col, int) { return 1000.0 + 100.0 * col; };
+  const RasterPixels pixels = read({.type = GDT_UInt16}, value, {}, {2000.0, 4000.0});
+  EXPECT_EQ(pixels.values.at<std::uint8_t>(0, 0), 0);
+  EXPECT_NEAR(pixels.values.at<std::uint8_t>(0, 20), 127.5, 0.6);
+  EXPECT_EQ(pixels.values.at<std::uint8_t>(0, 60), 255);
+}
+
+TEST_F(RasterFileTest, OneBitImagesDeclareTheirRange) {
+  const RasterFile file(write_raster(folder / "a.tif", {.creation = {"NBITS=1"}}, [](int, int, int) { return 1.0; }),
+                        {});
+  ASSERT_TRUE(file.declared_range());
+  EXPECT_EQ(file.declared_range()->high, 1.0);
+}
+
+TEST_F(RasterFileTest, SamplesLeaveOutWhatHoldsNothing) {
+  RasterFile file(write_raster(folder / "a.tif", {.width = 300, .height = 200, .type = GDT_UInt16, .nodata = 7.0},
+                               [](int, int col, int) { return col < 150 ? 7.0 : 500.0; }),
+                  {});
+  const std::vector<float> values = file.sample_values();
+  EXPECT_GT(values.size(), 1000U);
+  EXPECT_THAT(values, ::testing::Each(500.0F));
+}
+
+TEST_F(RasterFileTest, WithoutGeoreferenceItSaysWhatToDo) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+}
+
+TEST_F(RasterFileTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+  std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32637", .collar = {}}).crs()), "EPSG:32637");
+  EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
+}
+
+TEST_F(RasterFileTest, FilesThatAreNoImagesAreRefusedByName) {
+  std::ofstream(folder / "empty.tif");
+  std::ofstream(folder / "broken.tif") << "II*\0garbage that is no directory of a TIFF file";
+  EXPECT_EQ(code_of([&] { RasterFile((folder / "none.tif").string(), {}); }), "source-not-found");
+  EXPECT_EQ(code_of([&] { RasterFile((folder / "empty.tif").string(), {}); }), "source-unreadable");
+  EXPECT_EQ(code_of([&] { RasterFile((folder / "broken.tif").string(), {}); }), "source-unreadable");
+}
+
+TEST_F(RasterFileTest, ATruncatedImageFailsAtTheBlockThatIsMissing) {
+  const std::string path = write_raster(folder / "a.tif", {.width = 512, .height = 512, .creation = {"TILED=YES"}},
+                                        [](int, int col, int row) { return (col * 7 + row * 13) % 251; });
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) * 6 / 10);
+  RasterFile file(path, {});
+  EXPECT_EQ(code_of([&] { file.read({0, 0, 512, 512}, {}); }), "image-unreadable-block");
+}
+
+}  // namespace
+}  // namespace roadfix

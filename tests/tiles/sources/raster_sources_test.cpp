@@ -1,0 +1,124 @@
+#include "tiles/sources/raster_sources.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "core/geodesy/utm.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/road_rules.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::RasterSpec;
+using testing::write_raster;
+
+const UtmZone kZone = *UtmZone::from_epsg(32637);
+
+/// Brightness blurred over 9 x 9 cells: looks as far beyond a cell as it says, and no further.
+class BlurDetector final : public RoadDetector {
+ public:
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+    const int step = static_cast<int>(std::lround(cell_m / image.gsd_m));
+    cv::Mat cells;
+    cv::resize(image.pixels, cells, {image.pixels.cols / step, image.pixels.rows / step}, 0, 0, cv::INTER_AREA);
+    cv::blur(cells, cells, {9, 9}, {-1, -1}, cv::BORDER_REPLICATE);
+    const cv::Mat observed = observed_cells(image, cell_m);
+    CellArray result(cells.cols, cells.rows);
+    for (int row = 0; row < cells.rows; ++row) {
+      for (int col = 0; col < cells.cols; ++col) {
+        if (observed.at<std::uint8_t>(row, col) != 0) result.at(col, row) = std::min(kRoad, cells.at<Cell>(row, col));
+      }
+    }
+    return result;
+  }
+  double preferred_gsd_m() const override { return 1.0; }
+  double halo_m() const override { return 8.0; }
+  std::string describe() const override { return "blur"; }
+};
+
+TEST(DetectionGsd, DividesTheCellByAPowerOfTwoNearestToWhatIsNeeded) {
+  EXPECT_EQ(detection_gsd_m(2.0, 0.5, 0.5), 0.5);
+  EXPECT_EQ(detection_gsd_m(2.0, 0.5, 0.506), 0.5);
+  EXPECT_EQ(detection_gsd_m(2.0, 0.5, 0.1), 0.5);   // not finer than the detector wants
+  EXPECT_EQ(detection_gsd_m(2.0, 0.5, 0.9), 1.0);   // not finer than the imagery has
+  EXPECT_EQ(detection_gsd_m(2.0, 0.5, 30.0), 2.0);  // never coarser than a cell
+}
+
+TEST(Imagery, BlocksJoinWithoutASeam) {
+  const testing::TemporaryFolder folder;
+  const RasterSpec spec{.width = 400, .height = 400, .transform = {{400003.3, 1.0, 0.0, 4200404.7, 0.0, -1.0}}};
+  const std::string path =
+      write_raster(folder / "a.tif", spec, [](int, int col, int row) { return (col * 3 + row * 5) % 240; });
+  const BlurDetector detector;
+  const auto source = open_imagery({path}, {}, kZone, 2.0, detector);
+  const GridGeometry whole = GridGeometry::covering(source->extent(), 2.0);
+  const CellArray expected = source->read(whole, 1);
+  CellArray joined(whole.cols, whole.rows);
+  constexpr int kSide = 64;
+  for (int row = 0; row < whole.rows; row += kSide) {
+    for (int col = 0; col < whole.cols; col += kSide) {
+      const GridGeometry block{2.0, {whole.origin.col + col, whole.origin.row + row}, kSide, kSide};
+      paste(source->read(block, 1), joined, col, row);
+    }
+  }
+  ASSERT_GT(expected.observed_count(), 39000U);
+  EXPECT_EQ(joined.observed_count(), expected.observed_count());
+  for (int row = 0; row < whole.rows; ++row) {
+    for (int col = 0; col < whole.cols; ++col) {
+      // The pixels may differ by one: coordinates are interpolated from other nodes.
+      ASSERT_NEAR(joined.at(col, row), expected.at(col, row), 1) << col << ' ' << row;
+    }
+  }
+}
+
+TEST(Imagery, NodataIsUnobservedNeverNoRoad) {
+  const testing::TemporaryFolder folder;
+  const RasterSpec spec{
+      .width = 256, .height = 256, .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}}, .nodata = 0.0};
+  const std::string path =
+      write_raster(folder / "a.tif", spec, [](int, int col, int) { return col < 100 ? 0.0 : 180.0; });
+  const BlurDetector detector;
+  const auto source = open_imagery({path}, {}, kZone, 2.0, detector);
+  const CellArray cells = source->read(GridGeometry::covering(source->extent(), 2.0), 1);
+  for (int row = 0; row < cells.rows(); ++row) {
+    for (int col = 0; col < cells.cols(); ++col) ASSERT_EQ(is_observed(cells.at(col, row)), col >= 50) << col;
+  }
+}
+
+class RoadRaster : public ::testing::Test {
+ protected:
+  CellArray cells(GDALDataType type, double road) {
+    const RasterSpec spec{.type = type, .transform = {{400000.0, 1.0, 0.0, 4200064.0, 0.0, -1.0}}};
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [road](int, int col, int) { return col < 31 ? road : 0.0; });
+    const auto source = open_road_raster({path}, {}, kZone, 2.0);
+    EXPECT_EQ(source->summary().kind, "roads");
+    return source->read({2.0, {200000, -2100032}, 32, 32}, 1);
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(RoadRaster, MasksOfAnyRangeCarryTheCertaintyOfDrawnRoads) {
+  const Certainty certainty;
+  for (const auto& [type, road] : {std::pair{GDT_Byte, 255.0}, {GDT_Byte, 1.0}, {GDT_UInt16, 65535.0}}) {
+    const CellArray result = cells(type, road);
+    EXPECT_EQ(result.at(14, 5), cell_from_probability(certainty.on_road));
+    EXPECT_EQ(result.at(20, 5), cell_from_probability(certainty.elsewhere));
+    EXPECT_NEAR(probability(result.at(15, 5)), certainty.probability(0.5), 0.005);
+  }
+}
+
+TEST_F(RoadRaster, FloatsAreProbabilitiesAsTheyAre) {
+  const CellArray result = cells(GDT_Float32, 0.6);
+  EXPECT_NEAR(probability(result.at(14, 5)), 0.6, 0.004);
+  EXPECT_NEAR(probability(result.at(15, 5)), 0.3, 0.004);
+  EXPECT_EQ(result.at(20, 5), kNoRoad);
+}
+
+}  // namespace
+}  // namespace roadfix

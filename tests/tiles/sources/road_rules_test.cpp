@@ -1,0 +1,115 @@
+#include "tiles/sources/road_rules.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/osm_tags.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Optional;
+using ::testing::Pair;
+using Tags = std::map<std::string, std::string, std::less<>>;
+
+std::optional<double> width(const Tags& tags, const RoadRules& rules = {}, bool classified = true) {
+  const auto lookup = [&tags](std::string_view key) {
+    const auto found = tags.find(key);
+    return found != tags.end() ? found->second : std::string();
+  };
+  return rules.width_of(lookup, classified);
+}
+
+TEST(RoadRules, GiveEachClassAWidth) {
+  EXPECT_THAT(width({{"highway", "residential"}}), Optional(6.0));
+  EXPECT_THAT(width({{"highway", "motorway"}}), Optional(12.0));
+}
+
+TEST(RoadRules, LeaveOutWhatACameraAboveDoesNotSeeAsARoad) {
+  for (const Tags& tags : {Tags{{"highway", "footway"}},
+                           {{"highway", "steps"}},
+                           {{"highway", "proposed"}},
+                           {{"highway", "construction"}},
+                           {{"highway", "residential"}, {"tunnel", "yes"}},
+                           {{"highway", "service"}, {"tunnel", "building_passage"}},
+                           {{"highway", "service"}, {"covered", "yes"}},
+                           {{"highway", "pedestrian"}, {"indoor", "yes"}},
+                           {{"highway", "pedestrian"}, {"level", "-1"}},
+                           {{"highway", "residential"}, {"abandoned", "yes"}},
+                           {{"highway", "residential"}, {"location", "underground"}},
+                           {{"highway", "a class nobody knows"}},
+                           {{"waterway", "river"}}}) {
+    EXPECT_EQ(width(tags), std::nullopt) << tags.rbegin()->first << '=' << tags.rbegin()->second;
+  }
+}
+
+TEST(RoadRules, KeepARoadThatIsOnlyNotATunnel) {
+  EXPECT_THAT(width({{"highway", "residential"}, {"tunnel", "no"}}), Optional(6.0));
+  EXPECT_THAT(width({{"highway", "pedestrian"}, {"level", "0"}}), Optional(6.0));
+}
+
+TEST(RoadRules, BelieveTheFeatureItselfFirst) {
+  EXPECT_THAT(width({{"highway", "residential"}, {"width", "4.5 m"}}), Optional(4.5));
+  EXPECT_THAT(width({{"highway", "primary"}, {"lanes", "4"}}), Optional(14.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"lanes", "4"}, {"width", "11"}}), Optional(11.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"lanes", "many"}}), Optional(10.0));
+}
+
+TEST(RoadRules, TakeTheUsersAttributeAndWidthBeforeTheTable) {
+  RoadRules rules;
+  rules.set_width_m(3.0);
+  EXPECT_THAT(width({{"highway", "primary"}, {"lanes", "4"}}, rules), Optional(3.0));
+  rules.set_width_attribute("carriageway");
+  EXPECT_THAT(width({{"highway", "primary"}, {"carriageway", "8"}}, rules), Optional(8.0));
+}
+
+TEST(RoadRules, DrawEveryLineOfALayerWithoutClasses) {
+  EXPECT_THAT(width({}, {}, false), Optional(6.0));
+  EXPECT_EQ(width({{"tunnel", "yes"}}, {}, false), std::nullopt);
+}
+
+TEST(RoadRules, DrawExactlyTheSelectedClasses) {
+  RoadRules rules;
+  rules.select("footway,primary");
+  EXPECT_THAT(width({{"highway", "footway"}}, rules), Optional(2.0));
+  EXPECT_EQ(width({{"highway", "residential"}}, rules), std::nullopt);
+  EXPECT_THROW(rules.select("primary,autobahn"), InvalidInput);
+}
+
+TEST(RoadRules, AreReadFromATable) {
+  const RoadRules rules = RoadRules::parse("# mine\nboulevard 20 yes  # wide\n\nalley 2 no\n");
+  EXPECT_THAT(width({{"highway", "boulevard"}}, rules), Optional(20.0));
+  EXPECT_EQ(width({{"highway", "alley"}}, rules), std::nullopt);
+  for (const char* wrong : {"road six yes", "road 6 maybe", "road 6", "road -1 yes", "road 6 yes more"}) {
+    EXPECT_THROW(RoadRules::parse(wrong), InvalidInput) << wrong;
+  }
+}
+
+TEST(WidthText, IsMetresUnlessItSaysOtherwise) {
+  EXPECT_THAT(parse_width_m("7.5"), Optional(7.5));
+  EXPECT_THAT(parse_width_m("7,5 m"), Optional(7.5));
+  EXPECT_THAT(parse_width_m("20'"), Optional(::testing::DoubleNear(6.096, 1e-9)));
+  for (const char* wrong : {"", "narrow", "1.2.3", "0", "500", "-3", "5 km", "5;6"}) {
+    EXPECT_EQ(parse_width_m(wrong), std::nullopt) << wrong;
+  }
+}
+
+TEST(Hstore, GivesKeysAndValuesWithEscapesUndone) {
+  EXPECT_THAT(parse_hstore(R"("lanes"=>"2","name"=>"a \"quoted\" \\ one", "x" => "y")"),
+              ElementsAre(Pair("lanes", "2"), Pair("name", "a \"quoted\" \\ one"), Pair("x", "y")));
+  EXPECT_THAT(parse_hstore(R"("a"=>NULL,"b"=>"")"), ElementsAre(Pair("b", "")));
+}
+
+TEST(Hstore, KeepsWhatStandsBeforeTheDamage) {
+  EXPECT_THAT(parse_hstore(R"("a"=>"1","b"=>"cut o)"), ElementsAre(Pair("a", "1")));
+  EXPECT_THAT(parse_hstore("a=>1"), IsEmpty());
+  EXPECT_THAT(parse_hstore(""), IsEmpty());
+  EXPECT_THAT(parse_hstore(R"("a")"), IsEmpty());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,81 @@
+#include "tiles/sources/source_files.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "core/units/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/fingerprint.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::write_raster;
+
+constexpr const char* kLine =
+    R"({"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[39,38],[39.1,38]]}})";
+
+class SourceFilesTest : public ::testing::Test {
+ protected:
+  std::string image(const std::string& name, double value = 1.0) {
+    return write_raster(folder / name, {}, [value](int, int, int) { return value; });
+  }
+  template <typename Function>
+  static std::string code_of(Function function) {
+    try {
+      function();
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return "nothing thrown";
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(SourceFilesTest, RastersAreImageryUnlessCalledRoads) {
+  const std::string path = image("city.tif");
+  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kImagery);
+  EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
+  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).name, "city");
+}
+
+TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {
+  const std::string path = (folder / "lines.geojson").string();
+  std::ofstream(path) << kLine;
+  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
+}
+
+TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
+  const std::string b = image("b.tif");
+  const std::string a = image("a.tif");
+  std::ofstream(folder / "a.tif.aux.xml") << "<PAMDataset/>";
+  const SourceFiles files = find_source(folder.path().string() + "/", SourceMeaning::kRoads);
+  EXPECT_THAT(files.paths, ElementsAre(a, b));
+  EXPECT_EQ(files.name, folder.path().filename());
+  EXPECT_EQ(files.kind, SourceKind::kRoadRaster);
+}
+
+TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
+  EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "source-not-found");
+  EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");
+  std::ofstream(folder / "letter.txt") << "Dear reader";
+  EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string(), SourceMeaning::kAuto); }), "source-unreadable");
+  std::ofstream(folder / "empty.tif");
+  EXPECT_EQ(code_of([&] { find_source((folder / "empty.tif").string(), SourceMeaning::kAuto); }), "source-unreadable");
+}
+
+TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {
+  const std::string path = image("a.tif", 1.0);
+  const std::string before = fingerprint({path}, "x");
+  EXPECT_EQ(fingerprint({path}, "x"), before);
+  EXPECT_NE(fingerprint({path}, "y"), before);
+  image("a.tif", 2.0);
+  EXPECT_NE(fingerprint({path}, "x"), before);
+}
+
+}  // namespace
+}  // namespace roadfix

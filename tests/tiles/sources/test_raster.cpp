@@ -1,0 +1,64 @@
+#include "tests/tiles/sources/test_raster.hpp"
+
+#include <cpl_string.h>
+#include <ogr_spatialref.h>
+
+#include <stdexcept>
+
+#include "tiles/sources/gdal_session.hpp"
+
+namespace roadfix::testing {
+namespace {
+
+void write_band(GDALRasterBand& band, const std::function<double(int col, int row)>& value) {
+  const int width = band.GetXSize();
+  std::vector<double> line(static_cast<std::size_t>(width));
+  for (int row = 0; row < band.GetYSize(); ++row) {
+    for (int col = 0; col < width; ++col) line[static_cast<std::size_t>(col)] = value(col, row);
+    if (band.RasterIO(GF_Write, 0, row, width, 1, line.data(), width, 1, GDT_Float64, 0, 0, nullptr) != CE_None) {
+      throw std::runtime_error("test raster cannot be written");
+    }
+  }
+}
+
+}  // namespace
+
+std::string write_raster(const std::filesystem::path& path, const RasterSpec& spec, const PixelFunction& value,
+                         const std::function<bool(int col, int row)>& mask) {
+  require_gdal();
+  CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
+  CPLStringList options;
+  for (const std::string& option : spec.creation) options.AddString(option.c_str());
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const DatasetPtr dataset(
+      driver->Create(path.c_str(), spec.width, spec.height, spec.bands, spec.type, options.List()));
+  if (!dataset) throw std::runtime_error("test raster cannot be created: " + path.string());
+  if (spec.transform) {
+    std::array<double, 6> transform = *spec.transform;
+    dataset->SetGeoTransform(transform.data());
+  }
+  if (spec.epsg != 0) {
+    OGRSpatialReference reference;
+    reference.importFromEPSG(spec.epsg);
+    dataset->SetSpatialRef(&reference);
+  }
+  if (!spec.palette.empty()) {
+    GDALColorTable table;
+    for (std::size_t i = 0; i < spec.palette.size(); ++i) table.SetColorEntry(static_cast<int>(i), &spec.palette[i]);
+    dataset->GetRasterBand(1)->SetColorTable(&table);
+  }
+  for (int i = 1; i <= spec.bands; ++i) {
+    GDALRasterBand& band = *dataset->GetRasterBand(i);
+    if (!spec.meanings.empty()) band.SetColorInterpretation(spec.meanings[static_cast<std::size_t>(i - 1)]);
+    if (spec.nodata) band.SetNoDataValue(*spec.nodata);
+    write_band(band, [&](int col, int row) { return value(i, col, row); });
+  }
+  if (mask) {
+    dataset->CreateMaskBand(GMF_PER_DATASET);
+    write_band(*dataset->GetRasterBand(1)->GetMaskBand(),
+               [&](int col, int row) { return mask(col, row) ? 255.0 : 0.0; });
+  }
+  return path.string();
+}
+
+}  // namespace roadfix::testing

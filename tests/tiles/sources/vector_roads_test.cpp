@@ -1,0 +1,165 @@
+#include "tiles/sources/vector_roads.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "core/units/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tiles/sources/vector_file.hpp"
+
+namespace roadfix {
+namespace {
+
+const UtmZone kZone = *UtmZone::from_epsg(32637);
+constexpr GridPoint kCentre{400000.0, 4200000.0};
+
+std::string degrees(GridPoint p) {
+  const LatLon place = kZone.unproject(p);
+  return fmt::format("[{:.9f},{:.9f}]", place.lon_deg, place.lat_deg);
+}
+
+std::string feature(const std::string& properties, GridPoint from, GridPoint to) {
+  return fmt::format(
+      R"({{"type":"Feature","properties":{{{}}},"geometry":{{"type":"LineString","coordinates":[{},{}]}}}})",
+      properties, degrees(from), degrees(to));
+}
+
+GridPoint at(double east, double north) { return {kCentre.east_m + east, kCentre.north_m + north}; }
+
+class VectorRoads : public ::testing::Test {
+ protected:
+  std::string geojson(const std::vector<std::string>& features) {
+    std::ofstream file(folder / "roads.geojson");
+    file << R"({"type":"FeatureCollection","features":[)";
+    for (std::size_t i = 0; i < features.size(); ++i) file << (i > 0 ? "," : "") << features[i];
+    file << "]}";
+    return (folder / "roads.geojson").string();
+  }
+  static CellArray cells(const CellSource& source) { return source.read(kWindow, 1); }
+  template <typename Function>
+  static std::string code_of(Function function) {
+    try {
+      function();
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return "nothing thrown";
+  }
+  static constexpr GridGeometry kWindow{2.0, {199900, -2100100}, 200, 200};  // 200 m around the centre
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(VectorRoads, LieWhereTheyAreAsWideAsTheirClass) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 40), at(150, 40)),
+                                    feature(R"("highway":"footway")", at(-150, -40), at(150, -40)),
+                                    feature(R"("highway":"service","tunnel":"yes")", at(-150, -90), at(150, -90))});
+  const auto source = open_road_vectors({path}, {}, RoadRules(), kZone, 2.0);
+  EXPECT_EQ(source->summary().features, 1);
+  EXPECT_EQ(source->summary().left_out, 2);
+  const CellArray result = cells(*source);
+  const Certainty certainty;
+  for (int row = 0; row < result.rows(); ++row) {
+    const double north = kWindow.cell_center(0, row).north_m - kCentre.north_m;
+    const Cell cell = result.at(100, row);
+    if (std::abs(north) > 91.0) continue;  // beside the extent of the layer
+    if (north > 42.0 || north < -88.0) {
+      EXPECT_EQ(cell, north > 42.0 ? kUnobserved : cell) << north;
+    } else if (std::abs(north - 40.0) < 4.0) {
+      EXPECT_EQ(cell, cell_from_probability(certainty.on_road)) << north;
+    } else if (std::abs(north - 40.0) > 6.0) {
+      EXPECT_EQ(cell, cell_from_probability(certainty.elsewhere)) << north;
+    }
+  }
+}
+
+TEST_F(VectorRoads, GroundBesideTheExtentIsUnobserved) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
+  const CellArray own = cells(*open_road_vectors({path}, {}, RoadRules(), kZone, 2.0));
+  EXPECT_NEAR(static_cast<double>(own.observed_count()), 2500.0, 110.0);
+  const LatLon low = kZone.unproject(at(-100, -100));
+  const LatLon high = kZone.unproject(at(100, 100));
+  VectorOptions options;
+  options.extent = fmt::format("{},{},{},{}", low.lon_deg, low.lat_deg, high.lon_deg, high.lat_deg);
+  const CellArray stated = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  EXPECT_NEAR(static_cast<double>(stated.observed_count()), 10000.0, 300.0);
+}
+
+TEST_F(VectorRoads, AreTheSameHoweverTheGroundIsCutIntoBlocks) {
+  std::vector<std::string> features;
+  for (int i = 0; i < 30; ++i) {
+    features.push_back(feature(R"("highway":"residential")", at(-180 + 12 * i, -190), at(190 - 11 * i, 170 - 3 * i)));
+  }
+  const auto source = open_road_vectors({geojson(features)}, {}, RoadRules(), kZone, 2.0);
+  const CellArray whole = cells(*source);
+  CellArray joined(kWindow.cols, kWindow.rows);
+  for (int row = 0; row < kWindow.rows; row += 40) {
+    for (int col = 0; col < kWindow.cols; col += 50) {
+      paste(source->read({2.0, {kWindow.origin.col + col, kWindow.origin.row + row}, 50, 40}, 1), joined, col, row);
+    }
+  }
+  EXPECT_EQ(joined, whole);
+}
+
+TEST_F(VectorRoads, OpenStreetMapXmlIsReadWithAllItsTags) {
+  std::ofstream file(folder / "a.osm");
+  file << "<?xml version='1.0'?><osm version='0.6'>";
+  const auto node = [&](int id, GridPoint p) {
+    const LatLon place = kZone.unproject(p);
+    file << fmt::format("<node id='{}' version='1' lat='{:.8f}' lon='{:.8f}'/>", id, place.lat_deg, place.lon_deg);
+  };
+  for (int i = 0; i < 3; ++i) {
+    node(2 * i + 1, at(-150, 60.0 * i - 60));
+    node(2 * i + 2, at(150, 60.0 * i - 60));
+  }
+  const auto way = [&](int id, const std::string& tags) {
+    file << fmt::format(
+        "<way id='{}' version='1'><nd ref='{}'/><nd ref='{}'/><tag k='highway' v='residential'/>{}</way>", id,
+        2 * id - 1, 2 * id, tags);
+  };
+  way(1, "");
+  way(2, "<tag k='tunnel' v='yes'/>");
+  way(3, "<tag k='width' v='12'/>");
+  file << "</osm>";
+  file.close();
+  const RoadNetwork network = read_road_network({(folder / "a.osm").string()}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 2U);
+  EXPECT_EQ(network.left_out, 1);
+  EXPECT_EQ(network.lines[0].half_width_m, 3.0);
+  EXPECT_EQ(network.lines[1].half_width_m, 6.0);
+  EXPECT_NEAR(network.points[0].east_m, kCentre.east_m - 150.0, 0.01);
+}
+
+TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {
+  const std::string rivers = geojson({feature(R"("highway":"footway")", at(0, 0), at(9, 9))});
+  EXPECT_EQ(code_of([&] { open_road_vectors({rivers}, {}, RoadRules(), kZone, 2.0); }), "source-without-roads");
+  std::ofstream(folder / "bad.geojson") << R"({"type":"FeatureCollection","features":[{"type":)";
+  EXPECT_EQ(code_of([&] { read_road_network({(folder / "bad.geojson").string()}, {}, RoadRules(), kZone); }),
+            "source-unreadable");
+  VectorOptions options;
+  options.layer = "motorways";
+  EXPECT_EQ(code_of([&] { read_road_network({rivers}, options, RoadRules(), kZone); }), "layer-unknown");
+  options = {};
+  options.extent = "12,13,11,14";
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(0, 0), at(9, 9))});
+  EXPECT_EQ(code_of([&] { read_road_network({roads}, options, RoadRules(), kZone); }), "extent-unreadable");
+}
+
+TEST(VectorTileName, TellsZoomColumnAndRow) {
+  for (const char* path : {"a/12-1407-2471.mvt", "12-1407-2471.mvt", "tiles/12/1407/2471.pbf"}) {
+    const auto tile = vector_tile_of(path);
+    ASSERT_TRUE(tile) << path;
+    EXPECT_EQ(tile->zoom, 12);
+    EXPECT_EQ(tile->x, 1407);
+    EXPECT_EQ(tile->y, 2471);
+  }
+  for (const char* path : {"monaco.osm.pbf", "2-9-1.mvt", "12-1407.mvt", "99-1-1.mvt", "x12-1-1.mvt"}) {
+    EXPECT_FALSE(vector_tile_of(path)) << path;
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -57,7 +57,7 @@ class Field {
     return number;
   }
   std::string one_of(std::initializer_list<std::string_view> words) const {
-    const std::string word = text();
+    std::string word = text();
     if (std::ranges::find(words, word) == words.end())
       refuse(fmt::format("is '{}'; it must be one of: {}", word, fmt::join(words, ", ")));
     return word;

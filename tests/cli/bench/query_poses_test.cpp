@@ -29,7 +29,7 @@ TEST(DrawPose, IsUniformOverTheHeadings) {
   int east = 0;
   constexpr int kDraws = 2000;
   for (int i = 0; i < kDraws; ++i) east += draw_pose(sampling, random)->heading.degrees() < 180.0;
-  EXPECT_NEAR(east, kDraws / 2, 5 * 22);  // 5 sigma of a fair coin
+  EXPECT_NEAR(east, kDraws * 0.5, 5 * 22);  // 5 sigma of a fair coin
 }
 
 TEST(Without, TakesTheSharesOffTheNamedSides) {

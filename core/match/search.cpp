@@ -159,14 +159,17 @@ class Search {
                                     int coarse_bins_apart, std::size_t keep) const {
     std::ranges::stable_sort(poses, std::ranges::greater{}, &LatticePose::score);
     const int bins_apart = coarse_bins_apart * (level.bins.count() / coarse().bins.count());
+    const double apart_cells = apart_m / level.cell_m();
     std::vector<LatticePose> kept;
     std::array<std::size_t, 2> count{};
     for (const LatticePose& pose : poses) {
       std::size_t& same_side = count[within_region(level, pose) ? 0 : 1];
       if (pose.score <= 0.0 || same_side >= keep) continue;
       const bool known = std::ranges::any_of(kept, [&](const LatticePose& other) {
-        return level.bins.distance(pose.bin, other.bin) <= bins_apart &&
-               level.cell_m() * std::hypot(pose.cell.col - other.cell.col, pose.cell.row - other.cell.row) <= apart_m;
+        const double east = pose.cell.col - other.cell.col;
+        const double south = pose.cell.row - other.cell.row;
+        return east * east + south * south <= apart_cells * apart_cells &&
+               level.bins.distance(pose.bin, other.bin) <= bins_apart;
       });
       if (known) continue;
       kept.push_back(pose);

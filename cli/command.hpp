@@ -10,8 +10,10 @@ namespace roadfix::cli {
 
 void add_detect_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_fix_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
+void add_match_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 
 }  // namespace roadfix::cli

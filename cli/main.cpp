@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
   roadfix::cli::add_verify_command(app);
   roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);
+  roadfix::cli::add_match_command(app);
+  roadfix::cli::add_fix_command(app);
   try {
     app.parse(argc, argv);
     return 0;

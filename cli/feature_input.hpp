@@ -1,0 +1,39 @@
+// What `match` and `fix` take as input: a feature map as PNG, or a frame whose roads are detected first.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cli/command.hpp"
+#include "core/detect/make_detector.hpp"
+#include "core/grid/feature_map.hpp"
+
+namespace roadfix::cli {
+
+struct FeatureInputOptions {
+  std::string path;
+  double cell_m = 0.0;  ///< of a feature map; 0 = the input is a frame
+  double gsd_m = 0.0;   ///< of a frame seen straight from above; 0 = by the camera
+  double fov_deg = 0.0;
+  double agl_m = 0.0;
+  double roll_deg = 0.0;
+  double pitch_deg = 0.0;
+  bool black_unseen = false;
+  std::uint64_t seed = 1;
+  DetectorChoice detector;
+};
+
+struct FeatureInput {
+  FeatureMap features;
+  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
+};
+
+/// Adds the input file and its options; `options` must live as long as the command.
+void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
+
+/// Roads of a frame come in cells of `map_cell_m`. Throws InvalidInput when it is not clear what the input is.
+FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m);
+
+}  // namespace roadfix::cli

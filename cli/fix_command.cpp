@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/feature_input.hpp"
+#include "cli/terminal.hpp"
+#include "core/locate/fix.hpp"
+#include "server/api/fix_json.hpp"
+#include "tiles/view/map_file_view.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct Options {
+  std::string map;
+  FeatureInputOptions input;
+  double lat = 0.0;
+  double lon = 0.0;
+  double radius_m = 0.0;
+  std::vector<double> bbox;  ///< west, south, east, north
+  double heading_deg = 0.0;
+  double heading_range_deg = 180.0;
+  bool heading_known = false;
+  double time_limit_s = 0.0;
+  FixOptions fix;
+  bool as_json = false;
+};
+
+Prior prior_of(const Options& options) {
+  Prior prior;
+  if (options.radius_m > 0.0) prior.circle = GeoCircle{{options.lat, options.lon}, options.radius_m};
+  if (!options.bbox.empty()) {
+    prior.box = GeoBox{{options.bbox[1], options.bbox[0]}, {options.bbox[3], options.bbox[2]}};
+  }
+  if (options.heading_known) {
+    prior.heading = HeadingRange{Angle::degrees(options.heading_deg), Angle::degrees(options.heading_range_deg)};
+  }
+  return prior;
+}
+
+void print_mode(const FixMode& mode) {
+  fmt::print("  {:.6f} {:.6f}  heading {:5.1f} +- {:.1f} deg  1 sigma {:.1f} x {:.1f} m  weight {:.3f}  rho {:.3f}\n",
+             mode.pose.position.lat_deg, mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(),
+             mode.heading_sigma.degrees(), mode.sigma_m[0], mode.sigma_m[1], mode.weight, mode.rho);
+}
+
+void print_text(const Fix& fix) {
+  fmt::print("{}", api::to_string(fix.status));
+  if (fix.status == FixStatus::kFix) {
+    fmt::print("  probability {:.4f}\n", fix.probability);
+    print_mode(fix.modes.front());
+  } else {
+    fmt::print(" ({}): {}\n", fix.reason, fix.explanation);
+    if (!fix.modes.empty()) fmt::print("best places, not to be flown on:\n");
+    for (const FixMode& mode : fix.modes) print_mode(mode);
+  }
+  fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
+             fix.search_time.count());
+}
+
+void run_fix(const Options& options) {
+  const auto reader = std::make_shared<const MapReader>(options.map);
+  const MapView view = view_of(reader, std::filesystem::path(options.map).stem().string());
+  const FeatureInput input = read_feature_input(options.input, view.cell_m);
+  FixOptions fix_options = options.fix;
+  fix_options.stop = stop_on_signals();
+  fix_options.time_limit = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.time_limit_s));
+  const Fix fix = locate(view, input.features, prior_of(options), fix_options);
+  if (options.as_json) {
+    fmt::print("{}\n", api::to_json(fix, input.detect_time).dump(2));
+  } else {
+    print_text(fix);
+  }
+}
+
+}  // namespace
+
+void add_fix_command(CLI::App& app) {
+  auto* command = app.add_subcommand("fix", "Says where a feature map or a frame was seen");
+  command->footer("Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
+  const auto o = std::make_shared<Options>();
+  o->fix.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("map", o->map, "Map file (GeoPackage)")->required();
+  add_feature_input_options(*command, o->input);
+  auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");
+  auto* lon = command->add_option("--lon", o->lon, "Prior: longitude of the centre, degrees");
+  auto* radius = command->add_option("--radius,--radius-m", o->radius_m, "Prior: radius in metres");
+  radius->check(CLI::PositiveNumber)->needs(lat)->needs(lon);
+  lat->needs(lon)->needs(radius);
+  lon->needs(lat);
+  command->add_option("--bbox", o->bbox, "Prior: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
+  auto* heading = command->add_option("--heading", o->heading_deg, "Prior: true heading in degrees");
+  command->add_option("--heading-range", o->heading_range_deg, "Prior: heading within so many degrees of it")
+      ->check(CLI::Range(0.0, 180.0))
+      ->needs(heading);
+  heading->needs("--heading-range");
+  command->add_option("--confidence", o->fix.confidence, "Probability from which the answer is a fix")
+      ->capture_default_str();
+  command->add_option("--modes", o->fix.max_modes, "Places to report at most")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  command->add_option("--threads", o->fix.threads, "Threads of the search")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--time-limit", o->time_limit_s, "Give up after so many seconds")->check(CLI::PositiveNumber);
+  command->add_flag("--json", o->as_json, "The answer of the service as JSON");
+  command->callback([o, heading] {
+    o->heading_known = heading->count() > 0;
+    run_fix(*o);
+  });
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/feature_input.hpp"
+#include "cli/terminal.hpp"
+#include "core/locate/match_poses.hpp"
+#include "core/units/error.hpp"
+#include "server/api/fix_json.hpp"
+#include "tiles/view/map_file_view.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct Options {
+  std::string map;
+  FeatureInputOptions input;
+  std::vector<std::string> poses;
+  std::string poses_file;
+  double heading_step_deg = 0.0;
+  int threads = 1;
+  bool as_json = false;
+};
+
+/// "LAT,LON,HEADING"; `where` names the text in the message.
+GeoPose parse_pose(std::string_view text, const std::string& where) {
+  std::array<double, 3> values{};
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    while (at != end && *at == ' ') ++at;
+    const auto [stop, error] = std::from_chars(at, end, values[i]);
+    const bool last = i + 1 == values.size();
+    if (error != std::errc() || (last ? stop != end : (stop == end || *stop != ','))) {
+      throw InvalidInput(
+          "pose-unreadable",
+          fmt::format("{}: \"{}\" is no pose, write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
+    }
+    at = last ? stop : stop + 1;
+  }
+  return {{values[0], values[1]}, Angle::degrees(values[2])};
+}
+
+/// One pose a line; empty lines and a first line of column names are skipped.
+void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
+  std::ifstream in(path);
+  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty() || (number == 1 && line.starts_with("lat"))) continue;
+    poses.push_back(parse_pose(line, fmt::format("{} line {}", path, number)));
+  }
+}
+
+void print_text(const std::vector<GeoPose>& poses, const std::vector<MatchScore>& scores) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const GeoPose& pose = poses[i];
+    fmt::print("{:.6f} {:.6f} {:6.1f}  ", pose.position.lat_deg, pose.position.lon_deg, pose.heading.compass_degrees());
+    if (scores[i].rho) {
+      fmt::print("rho {:.4f}  P {:.4f}", *scores[i].rho, likelihood(*scores[i].rho));
+    } else {
+      fmt::print("rho undefined");
+    }
+    fmt::print("  observed cells {}\n", scores[i].observed_cells);
+  }
+}
+
+void run_match(const Options& options) {
+  std::vector<GeoPose> poses;
+  for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--pose"));
+  if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
+  if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
+  const auto reader = std::make_shared<const MapReader>(options.map);
+  const MapView view = view_of(reader, std::filesystem::path(options.map).stem().string());
+  const FeatureInput input = read_feature_input(options.input, view.cell_m);
+  MatchOptions match_options;
+  match_options.heading_step = Angle::degrees(options.heading_step_deg);
+  match_options.threads = options.threads;
+  match_options.stop = stop_on_signals();
+  const std::vector<MatchScore> scores = match(view, input.features, poses, match_options);
+  if (options.as_json) {
+    fmt::print("{}\n", nlohmann::json{{"matches", api::to_json(scores)}}.dump(2));
+  } else {
+    print_text(poses, scores);
+  }
+}
+
+}  // namespace
+
+void add_match_command(CLI::App& app) {
+  auto* command = app.add_subcommand("match", "Says how well a feature map or a frame fits the map at given poses");
+  command->footer("Example: roadfix match town.gpkg window.png --cell 2 --pose 57.70,11.97,45");
+  const auto o = std::make_shared<Options>();
+  o->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("map", o->map, "Map file (GeoPackage)")->required();
+  add_feature_input_options(*command, o->input);
+  command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");
+  command->add_option("--poses", o->poses_file, "CSV file with one such pose a line");
+  command
+      ->add_option("--heading-step", o->heading_step_deg,
+                   "Round headings to so many degrees and positions to cells: faster for many poses")
+      ->check(CLI::Range(0.0, 45.0));
+  command->add_option("--threads", o->threads, "Threads")->capture_default_str()->check(CLI::Range(1, 1024));
+  command->add_flag("--json", o->as_json, "Answer as JSON");
+  command->callback([o] { run_match(*o); });
+}
+
+}  // namespace roadfix::cli

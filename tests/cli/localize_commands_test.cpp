@@ -1,0 +1,114 @@
+// roadfix fix and match as a script meets them: exit codes, JSON on stdout, one line on stderr.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "core/detect/image_codec.hpp"
+#include "tests/support/map_file.hpp"
+#include "tests/support/street_map.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LocalizeCommands : public ::testing::Test {
+ protected:
+  LocalizeCommands() {
+    testing::write_map_file(map, town, 0.0);
+    std::mt19937_64 random(42);
+    const FeatureMap seen = testing::observed_at(town, truth, 160, 160, 2.0, {0.1, 0.1}, random);
+    const std::vector<std::uint8_t> png = encode_feature_map(seen.cells);
+    std::ofstream(window, std::ios::binary)
+        .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  }
+
+  struct Result {
+    int code = 0;
+    std::string out;
+    std::string err;
+  };
+
+  Result roadfix(const std::string& arguments) const {
+    const auto text_of = [](const std::filesystem::path& file) {
+      std::stringstream text;
+      text << std::ifstream(file).rdbuf();
+      return text.str();
+    };
+    const auto out = folder / "out";
+    const auto err = folder / "err";
+    const int status =
+        std::system((ROADFIX_PROGRAM " " + arguments + " >" + out.string() + " 2>" + err.string()).c_str());
+    return {WEXITSTATUS(status), text_of(out), text_of(err)};
+  }
+
+  std::string at(const LatLon& p) const {
+    return "--lat " + std::to_string(p.lat_deg) + " --lon " + std::to_string(p.lon_deg);
+  }
+
+  UtmZone zone = UtmZone::from_epsg(32634).value();
+  RoadGrid town = testing::street_map(41, {2.0, {300'100, -3'200'050}, 500, 450});
+  GridPose truth{{600'700.0, 6'399'600.0}, Angle::degrees(217.0)};
+  LatLon place = zone.unproject(truth.position);
+  double heading_deg = zone.true_from_grid(truth.heading, truth.position).compass_degrees();
+  testing::TemporaryFolder folder;
+  std::filesystem::path map = folder / "town.gpkg";
+  std::filesystem::path window = folder / "window.png";
+  std::string input = map.string() + " " + window.string() + " --cell 2 ";
+};
+
+TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
+  const Result whole = roadfix("fix --json " + input);
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  const auto answer = nlohmann::json::parse(whole.out);
+  ASSERT_EQ(answer["status"], "fix") << whole.out;
+  EXPECT_NEAR(answer["pose"]["lat"].get<double>(), place.lat_deg, 2e-5);
+  EXPECT_NEAR(answer["pose"]["lon"].get<double>(), place.lon_deg, 3e-5);
+  EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), heading_deg, 1.0);
+  EXPECT_EQ(answer["map"]["name"], "town");
+}
+
+TEST_F(LocalizeCommands, FixTakesAPrior) {
+  const Result near = roadfix("fix " + input + at(place) + " --radius 100 --heading 217 --heading-range 20");
+  EXPECT_EQ(near.code, 0) << near.err;
+  EXPECT_THAT(near.out, HasSubstr("fix  probability"));
+  const Result far = roadfix("fix " + input + "--lat 50 --lon 21 --radius 100");
+  EXPECT_EQ(far.code, 1);
+  EXPECT_THAT(far.err, HasSubstr("[prior-outside-map]"));
+  EXPECT_EQ(roadfix("fix " + input + "--lat 50").code, 2);
+  EXPECT_EQ(roadfix("fix " + input + "--bbox 1,2,3").code, 2);
+  const Result box = roadfix("fix " + input + "--bbox 20,50,21,51");
+  EXPECT_THAT(box.err, HasSubstr("prior-outside-map"));
+}
+
+TEST_F(LocalizeCommands, FixRefusesWhatItCannotRead) {
+  EXPECT_THAT(roadfix("fix " + map.string() + " " + window.string()).err, HasSubstr("[input-kind-missing]"));
+  EXPECT_THAT(roadfix("fix " + map.string() + " nowhere.png --cell 2").err, HasSubstr("[file-not-found]"));
+  EXPECT_THAT(roadfix("fix " + map.string() + " " + map.string() + " --cell 2").err, HasSubstr("[image-format]"));
+  EXPECT_EQ(roadfix("fix " + input + "--gsd 1").code, 2);
+}
+
+TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
+  std::ofstream(folder / "poses.csv") << "lat,lon,heading\n"
+                                      << place.lat_deg + 0.001 << ", " << place.lon_deg << ", 10\n\n";
+  const std::string pose =
+      std::to_string(place.lat_deg) + "," + std::to_string(place.lon_deg) + "," + std::to_string(heading_deg);
+  const Result result =
+      roadfix("match --json " + input + "--pose " + pose + " --poses " + (folder / "poses.csv").string());
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto matches = nlohmann::json::parse(result.out)["matches"];
+  ASSERT_EQ(matches.size(), 2U);
+  EXPECT_GT(matches[0]["rho"].get<double>(), 0.6);
+  EXPECT_LT(matches[1]["rho"].get<double>(), 0.4);
+  EXPECT_THAT(roadfix("match " + input + "--pose 57.7,12").err, HasSubstr("[pose-unreadable]"));
+  EXPECT_THAT(roadfix("match " + input).err, HasSubstr("[poses-missing]"));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -4,13 +4,17 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/detector_options.hpp"
 #include "core/detect/frame_image.hpp"
+#include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
@@ -27,16 +31,20 @@ struct DetectOptions {
   bool json = false;
 };
 
-/// Grey = probability, alpha = observed.
-cv::Mat picture_of(const CellArray& cells) {
-  cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4, cv::Scalar::all(0));
-  for (int row = 0; row < cells.rows(); ++row) {
-    for (int col = 0; col < cells.cols(); ++col) {
-      const Cell cell = cells.at(col, row);
-      if (is_observed(cell)) picture.at<cv::Vec4b>(row, col) = {cell, cell, cell, 255};
-    }
+constexpr std::int64_t kMaxPixels = 400'000'000;
+
+std::vector<std::uint8_t> bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path)) {
+    throw InvalidInput("image-missing", fmt::format("{} cannot be read", path));
   }
-  return picture;
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void write(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush()) throw IoFailure("image-unwritable", fmt::format("{} cannot be written", path));
 }
 
 double mean_probability(const CellArray& cells) {
@@ -49,19 +57,13 @@ double mean_probability(const CellArray& cells) {
 
 void run_detect(const DetectOptions& options) {
   const auto detector = make_detector(options.detector);
-  const cv::Mat decoded = cv::imread(options.image, cv::IMREAD_UNCHANGED);
-  if (decoded.empty()) {
-    throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", options.image));
-  }
-  const GroundImage frame =
-      frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen);
+  const auto bytes = bytes_of(options.image);
+  const GroundImage frame = frame_image(decode_image(bytes, kMaxPixels), options.gsd_m,
+                                        options.black_unseen ? Border::kBlackUnseen : Border::kSeen);
   const auto start = std::chrono::steady_clock::now();
   const CellArray cells = detector->detect(frame, options.cell_m, options.seed);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  if (!cv::imwrite(options.target, picture_of(cells))) {
-    throw IoFailure("image-unwritable",
-                    fmt::format("{} cannot be written; name a PNG in a folder that exists", options.target));
-  }
+  write(options.target, encode_feature_map(cells));
   const nlohmann::json answer{{"feature_map", options.target},
                               {"cell_m", options.cell_m},
                               {"cols", cells.cols()},
@@ -85,7 +87,7 @@ void add_detect_command(CLI::App& app) {
   auto* command = app.add_subcommand("detect", "Detects the roads of one frame: a feature map as PNG");
   command->footer("Example: roadfix detect frame.png roads.png --gsd 0.5");
   const auto options = std::make_shared<DetectOptions>();
-  command->add_option("image", options->image, "Frame: PNG, JPEG or TIFF, seen straight from above")->required();
+  command->add_option("image", options->image, "Frame: PNG or JPEG, seen straight from above")->required();
   command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
   command->add_option("--gsd", options->gsd_m, "Metres per pixel of the frame")->required()->check(CLI::PositiveNumber);
   command->add_option("--cell", options->cell_m, "Cell size in metres")

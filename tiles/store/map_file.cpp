@@ -163,6 +163,16 @@ void look_into(Connection& map) {
   explain_cut_off(map);
 }
 
+GridBox extent_of(Connection& map, const Statement& row) {
+  const GridBox box{{row.real(0), row.real(1)}, {row.real(2), row.real(3)}};
+  const GridBox lattice{{0.0, 0.0}, {kLatticeWidthM, kLatticeHeightM}};
+  if (!box.empty() && lattice.contains(box.min) && lattice.contains(box.max)) return box;
+  throw CorruptData("map-corrupt",
+                    fmt::format("{}: gpkg_contents gives an extent that no map can have. Restore the map "
+                                "from a copy",
+                                map.path().string()));
+}
+
 }  // namespace
 
 void create_map(const fs::path& path, const MapSettings& settings) {
@@ -229,7 +239,7 @@ MapInfo read_info(Connection& map) {
   Statement extent(map,
                    "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'road_probability' AND "
                    "min_x IS NOT NULL");
-  if (extent.step()) info.extent = {{extent.real(0), extent.real(1)}, {extent.real(2), extent.real(3)}};
+  if (extent.step()) info.extent = extent_of(map, extent);
   Statement tiles(map, "SELECT count(*) FROM road_probability WHERE zoom_level = ?1");
   tiles.with(zoom_of(info.settings.cell_m)).step();
   info.tiles = tiles.integer(0);

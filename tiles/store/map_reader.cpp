@@ -33,13 +33,11 @@ struct Channel {
 
 TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
   if (!on_lattice(tile, zoom)) return nullptr;
+  const sqlite::ResetAtEnd reset(channel.select);
   if (!channel.select.with(zoom, tile.col, tile_row(tile, zoom)).step()) return nullptr;
   try {
-    auto cells = std::make_shared<const CellArray>(decode_tile(channel.select.blob(0), TileDepth::kFused));
-    channel.select.reset();
-    return cells;
+    return std::make_shared<const CellArray>(decode_tile(channel.select.blob(0), TileDepth::kFused));
   } catch (const CorruptData& error) {
-    channel.select.reset();
     throw CorruptData(error.code(),
                       fmt::format("{}: tile zoom {} column {} row {} is damaged: {}. roadfix verify lists "
                                   "all damage",
@@ -153,10 +151,11 @@ std::vector<TileIndex> MapReader::tiles(int level) const {
   assert(level >= 0 && level < info().levels);
   const int zoom = state_->zoom(level);
   return state_->with_channel([&](Channel& channel) {
-    Statement select(*channel.map,
-                     "SELECT tile_column, tile_row FROM road_probability WHERE zoom_level = ?1 ORDER BY tile_row, "
-                     "tile_column");
-    select.with(zoom);
+    Statement select(
+        *channel.map,
+        "SELECT tile_column, tile_row FROM road_probability WHERE zoom_level = ?1 AND tile_column BETWEEN 0 "
+        "AND ?2 AND tile_row BETWEEN 0 AND ?3 ORDER BY tile_row, tile_column");
+    select.with(zoom, matrix_width(zoom) - 1, matrix_height(zoom) - 1);
     std::vector<TileIndex> tiles;
     while (select.step()) {
       tiles.push_back({static_cast<int>(select.integer(0)), index_row(static_cast<int>(select.integer(1)), zoom)});

@@ -135,11 +135,16 @@ class Verifier {
   }
 
   void check_evidence() {
+    // One query per tile: a single one would lock writers out until the last tile is read.
+    std::vector<std::int64_t> ids;
+    for (Statement all(map_, "SELECT id FROM roadfix_evidence"); all.step();) ids.push_back(all.integer(0));
     Statement evidence(map_,
                        "SELECT e.tile_data, s.name, e.tile_column, e.tile_row FROM roadfix_evidence e LEFT JOIN "
-                       "roadfix_sources s ON s.id = e.source_id");
-    while (evidence.step()) {
+                       "roadfix_sources s ON s.id = e.source_id WHERE e.id = ?1");
+    for (const std::int64_t id : ids) {
       step();
+      const sqlite::ResetAtEnd reset(evidence);
+      if (!evidence.with(id).step()) continue;  // a writer has removed it
       ++verdict_.evidence;
       try {
         decode_tile(evidence.blob(0), TileDepth::kEvidence);
@@ -162,7 +167,14 @@ class Verifier {
     std::vector<TileIndex> tiles;
     select.with(zoom);
     while (select.step()) {
-      tiles.push_back({static_cast<int>(select.integer(1)), index_row(static_cast<int>(select.integer(0)), zoom)});
+      const std::int64_t row = select.integer(0);
+      const std::int64_t col = select.integer(1);
+      if (row >= 0 && row < matrix_height(zoom) && col >= 0 && col < matrix_width(zoom)) {
+        tiles.push_back({static_cast<int>(col), index_row(static_cast<int>(row), zoom)});
+      } else {
+        report("tile-outside-lattice",
+               fmt::format("tile zoom {} column {} row {} lies outside the lattice. {}", zoom, col, row, kIngestAgain));
+      }
     }
     return tiles;
   }
@@ -185,6 +197,7 @@ class Verifier {
         step();
         ++verdict_.tiles;
       }
+      const sqlite::ResetAtEnd reset(pending);
       if (pending.with(zoom, row, index.col).step()) continue;
       const auto expected = expected_tile(zoom, index);
       if (!expected || *expected == stored.value_or(CellArray(kTileCells, kTileCells))) continue;

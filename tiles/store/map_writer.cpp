@@ -70,6 +70,7 @@ struct MapWriter::State {
   void remove(std::int64_t id);
   void mark_pending(std::int64_t id);
   void fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
+  std::pair<int, TileIndex> pending_tile(const Statement& row) const;
   std::int64_t fuse_some();
   void fuse(int zoom, TileIndex index);
   void set_extent();
@@ -165,6 +166,19 @@ void MapWriter::State::fuse(int zoom, TileIndex index) {
   tiles.put(zoom, index, cells ? *cells : CellArray(kTileCells, kTileCells));
 }
 
+std::pair<int, TileIndex> MapWriter::State::pending_tile(const Statement& row) const {
+  const std::int64_t zoom = row.integer(0);
+  if (zoom >= kCoarsestZoom && zoom <= tiles.finest_zoom()) {
+    const int level = static_cast<int>(zoom);
+    const std::int64_t index = row.integer(1) - matrix_height(level);
+    const TileIndex tile{static_cast<int>(row.integer(2)), static_cast<int>(index)};
+    if (tile.col == row.integer(2) && tile.row == index && on_lattice(tile, level)) return {level, tile};
+  }
+  throw CorruptData("map-corrupt", fmt::format("{}: roadfix_pending names a tile outside the lattice. Restore the map "
+                                               "from a copy",
+                                               map.path().string()));
+}
+
 /// Fuses the next tiles, finest level first, in one transaction. Returns how many it did.
 std::int64_t MapWriter::State::fuse_some() {
   Transaction transaction(map, Transaction::Kind::kWrite);
@@ -174,8 +188,7 @@ std::int64_t MapWriter::State::fuse_some() {
   std::vector<std::pair<int, TileIndex>> batch;
   next.with(kTilesPerTransaction);
   while (next.step()) {
-    const int zoom = static_cast<int>(next.integer(0));
-    batch.push_back({zoom, {static_cast<int>(next.integer(2)), index_row(static_cast<int>(next.integer(1)), zoom)}});
+    batch.push_back(pending_tile(next));
   }
   Statement fused(map, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
   for (const auto& [zoom, index] : batch) {

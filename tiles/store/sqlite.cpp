@@ -12,7 +12,7 @@
 namespace roadfix::sqlite {
 namespace {
 
-constexpr int kBusyTimeoutMs = 30'000;
+constexpr int kBusyTimeoutMs = 120'000;
 
 [[noreturn]] void fail(const std::filesystem::path& path, int code, const char* detail) {
   const std::string file = path.string();

@@ -21,7 +21,7 @@ enum class Access { kRead, kReadWrite, kCreate };
 
 class Connection {
  public:
-  /// Not to be used from two threads at once. Waits up to 30 s for locks of other processes, then throws Interrupted
+  /// Not to be used from two threads at once. Waits up to 2 min for locks of other processes, then throws Interrupted
   /// ("map-busy"). Other errors: CorruptData ("map-corrupt"), InvalidInput ("map-not-ours"), IoFailure; of these
   /// "map-needs-recovery" says that a killed writer left a journal that kRead may not roll back.
   Connection(const std::filesystem::path& path, Access access);
@@ -90,6 +90,18 @@ class Statement {
   };
   Connection* connection_;
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+};
+
+/// Resets a statement that is kept at the end of a block: one left in the middle of its rows holds a lock on the file.
+class ResetAtEnd {
+ public:
+  explicit ResetAtEnd(Statement& statement) : statement_(statement) {}
+  ~ResetAtEnd() { statement_.reset(); }
+  ResetAtEnd(const ResetAtEnd&) = delete;
+  ResetAtEnd& operator=(const ResetAtEnd&) = delete;
+
+ private:
+  Statement& statement_;
 };
 
 class Transaction {

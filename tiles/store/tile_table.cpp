@@ -64,6 +64,7 @@ TileTable::TileTable(sqlite::Connection& map, const MapSettings& settings)
       set_version_(map, "UPDATE roadfix_meta SET value = ?1 WHERE key = 'version'") {}
 
 std::optional<CellArray> TileTable::tile(int zoom, TileIndex index) {
+  const sqlite::ResetAtEnd reset(select_);
   if (!select_.with(zoom, index.col, tile_row(index, zoom)).step()) return std::nullopt;
   try {
     return decode_tile(select_.blob(0), TileDepth::kFused);
@@ -106,6 +107,7 @@ void TileTable::add_to_version(std::uint64_t difference) {
 
 std::optional<CellArray> TileTable::fused_evidence(TileIndex index) {
   std::vector<CellArray> sources;
+  const sqlite::ResetAtEnd reset(evidence_);
   evidence_.with(index.col, tile_row(index, finest_));
   while (evidence_.step()) {
     try {
@@ -141,11 +143,12 @@ GridBox TileTable::observed_extent() {
   // Only tiles on the rim of the tile rectangle can hold an outermost cell.
   sqlite::Statement rim(
       map_,
-      "WITH t AS (SELECT tile_column AS c, tile_row AS r FROM road_probability WHERE zoom_level = ?1), "
+      "WITH t AS (SELECT tile_column AS c, tile_row AS r FROM road_probability WHERE zoom_level = ?1 AND "
+      "tile_column BETWEEN 0 AND ?2 AND tile_row BETWEEN 0 AND ?3), "
       "b AS (SELECT min(c) AS west, max(c) AS east, min(r) AS north, max(r) AS south FROM t) "
       "SELECT c, r FROM t, b WHERE c IN (west, east) OR r IN (north, south)");
   ObservedCells observed;
-  rim.with(finest_);
+  rim.with(finest_, matrix_width(finest_) - 1, matrix_height(finest_) - 1);
   while (rim.step()) {
     const TileIndex index{static_cast<int>(rim.integer(0)), index_row(static_cast<int>(rim.integer(1)), finest_)};
     if (const auto cells = tile(finest_, index)) observed.add(index, *cells);

@@ -100,6 +100,11 @@ TEST_F(MapVerifier, FindsAWrongLatticeExtentAndVersion) {
   EXPECT_THAT(codes_after("UPDATE gpkg_tile_matrix SET pixel_x_size = 3"), ElementsAre("lattice-wrong"));
 }
 
+TEST_F(MapVerifier, FindsTilesOutsideTheLattice) {
+  EXPECT_THAT(codes_after("UPDATE road_probability SET tile_column = 4294967296 + 7 WHERE id = 1"),
+              Contains("tile-outside-lattice"));
+}
+
 TEST_F(MapVerifier, FindsAnInterruptedFusion) {
   EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (11, 12315, 848)"), ElementsAre("fusion-pending"));
 }

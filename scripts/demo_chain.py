@@ -135,7 +135,7 @@ def report(frame, answer):
     print(f"{frame.file.name[:16]:<16} {pose_text(frame.truth)} | {answer['status']:<9} {pose_text(pose)} | "
           + (f"{error:6.1f} m {turned:5.1f}°" if error is not None else f"{'-':>8} {'-':>6}")
           + (f" {probability:6.3f}" if probability is not None else f" {'-':>6}")
-          + f" {sum(answer.get('time_ms', {}).values()):4.0f} ms", flush=True)
+          + f" {sum(answer.get('time_ms', {}).values()):4.0f} ms  {answer.get('reason', '')}", flush=True)
     return error
 
 
@@ -204,6 +204,7 @@ def demo(arguments, work):
             return
         print(f"""
 Open in a browser or a GIS, until Ctrl-C:
+  {host}/                                     what is served
   {host}/v1/maps/demo                         the map, its extent and its sources
   {host}/v1/maps/demo/tilejson.json           the tiles for MapLibre, Leaflet, QGroundControl
   {host}/v1/maps/demo/tiles/{{z}}/{{x}}/{{y}}.png   the tiles for QGIS (XYZ connection)

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <set>
 #include <utility>
 
 #include "core/units/error.hpp"
 #include "tiles/store/map_file.hpp"
+#include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
 #include "tiles/store/tile_table.hpp"
@@ -48,6 +48,7 @@ struct MapWriter::State {
       : lock(path),
         map(open_or_create(path, settings)),
         tiles(map, settings),
+        sources(map, tiles.finest_zoom()),
         put_evidence(map,
                      "INSERT OR REPLACE INTO roadfix_evidence (source_id, tile_column, tile_row, tile_data) VALUES "
                      "(?1, ?2, ?3, ?4)"),
@@ -57,17 +58,6 @@ struct MapWriter::State {
                   "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
                   "RETURNING 1") {}
 
-  struct Ingested {
-    std::int64_t id = 0;
-    std::string fingerprint;
-  };
-  std::optional<Ingested> find(const std::string& name, bool in_force);
-  std::int64_t insert(const SourceRecord& record);
-  void describe(std::int64_t id, const SourceRecord& record);
-  void set_ledger(std::int64_t id, std::span<const TileIndex> blocks);
-  std::set<TileIndex> done_blocks(std::int64_t id);
-  void require_complete(std::int64_t id, const std::string& name);
-  void remove(std::int64_t id);
   void mark_pending(std::int64_t id);
   void fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
   std::pair<int, TileIndex> pending_tile(const Statement& row) const;
@@ -83,70 +73,11 @@ struct MapWriter::State {
   WriterLock lock;
   Connection map;
   TileTable tiles;
+  SourceTable sources;
   Statement put_evidence;
   Statement remove_evidence;
   Statement mark_done;
 };
-
-std::optional<MapWriter::State::Ingested> MapWriter::State::find(const std::string& name, bool in_force) {
-  Statement select(map, "SELECT id, fingerprint FROM roadfix_sources WHERE name = ?1 AND in_force = ?2");
-  if (!select.with(name, in_force).step()) return std::nullopt;
-  return Ingested{select.integer(0), select.text(1)};
-}
-
-std::int64_t MapWriter::State::insert(const SourceRecord& record) {
-  Statement(map,
-            "INSERT INTO roadfix_sources (name, kind, location, fingerprint, date, licence, attribution, method, "
-            "registration_sigma_m, in_force, ingested_at) VALUES (?1, '', '', ?2, '', '', '', '', 0, 0, '')")
-      .with(record.name, record.fingerprint)
-      .run();
-  return map.last_insert_id();
-}
-
-void MapWriter::State::describe(std::int64_t id, const SourceRecord& r) {
-  Statement(map,
-            "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
-            "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
-      .with(id, r.kind, r.location, r.date, r.licence, r.attribution, r.method, r.registration_sigma_m)
-      .run();
-}
-
-std::set<TileIndex> MapWriter::State::done_blocks(std::int64_t id) {
-  Statement select(map, "SELECT tile_column, tile_row FROM roadfix_blocks WHERE source_id = ?1 AND done = 1");
-  select.with(id);
-  std::set<TileIndex> done;
-  while (select.step()) {
-    done.insert(
-        {static_cast<int>(select.integer(0)), index_row(static_cast<int>(select.integer(1)), tiles.finest_zoom())});
-  }
-  return done;
-}
-
-/// The ledger holds exactly these blocks; what was done stays done.
-void MapWriter::State::set_ledger(std::int64_t id, std::span<const TileIndex> blocks) {
-  const std::set<TileIndex> done = done_blocks(id);
-  Statement(map, "DELETE FROM roadfix_blocks WHERE source_id = ?1").with(id).run();
-  Statement insert(map,
-                   "INSERT OR IGNORE INTO roadfix_blocks (source_id, tile_row, tile_column, done) VALUES (?1, ?2, "
-                   "?3, ?4)");
-  for (const TileIndex block : blocks) {
-    insert.with(id, tile_row(block, tiles.finest_zoom()), block.col, done.contains(block)).run();
-  }
-  Statement(map,
-            "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND NOT EXISTS (SELECT 1 FROM roadfix_blocks b WHERE "
-            "b.source_id = ?1 AND b.tile_row = roadfix_evidence.tile_row AND b.tile_column = "
-            "roadfix_evidence.tile_column)")
-      .with(id)
-      .run();
-}
-
-void MapWriter::State::remove(std::int64_t id) {
-  for (const char* sql :
-       {"DELETE FROM roadfix_evidence WHERE source_id = ?1", "DELETE FROM roadfix_blocks WHERE source_id = ?1",
-        "DELETE FROM roadfix_sources WHERE id = ?1"}) {
-    Statement(map, sql).with(id).run();
-  }
-}
 
 /// Every tile that the evidence of the source touches, with its overviews, waits to be fused anew.
 void MapWriter::State::mark_pending(std::int64_t id) {
@@ -228,14 +159,6 @@ void MapWriter::State::fuse_pending(const std::function<void(std::int64_t, std::
   }
 }
 
-void MapWriter::State::require_complete(std::int64_t id, const std::string& name) {
-  Statement open(map, "SELECT count(*) FROM roadfix_blocks WHERE source_id = ?1 AND done = 0");
-  open.with(id).step();
-  if (open.integer(0) == 0) return;
-  throw InvalidInput("source-incomplete", fmt::format("{}: source '{}' lacks {} blocks. Ingest it again to go on",
-                                                      map.path().string(), name, open.integer(0)));
-}
-
 MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& settings)
     : state_(std::make_unique<State>(path, settings)) {}
 MapWriter::~MapWriter() = default;
@@ -259,8 +182,8 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
                                    record.name, block.col, block.row));
   }
   Transaction transaction(s.map, Transaction::Kind::kWrite);
-  const auto in_force = s.find(record.name, true);
-  auto unfinished = s.find(record.name, false);
+  const auto in_force = s.sources.find(record.name, true);
+  auto unfinished = s.sources.find(record.name, false);
   const bool same = in_force && in_force->fingerprint == record.fingerprint;
   const bool resumes = unfinished && unfinished->fingerprint == record.fingerprint;
   if (!replace && !same && !resumes && (in_force || unfinished)) {
@@ -270,18 +193,18 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
                                    s.map.path().string(), record.name));
   }
   if (unfinished && !resumes) {
-    s.remove(unfinished->id);
+    s.sources.remove(unfinished->id);
     unfinished.reset();
   }
   std::vector<TileIndex> open;
   if (same) {
-    if (unfinished) s.remove(unfinished->id);
-    s.describe(in_force->id, record);
+    if (unfinished) s.sources.remove(unfinished->id);
+    s.sources.describe(in_force->id, record);
   } else {
-    const std::int64_t id = unfinished ? unfinished->id : s.insert(record);
-    s.describe(id, record);
-    s.set_ledger(id, blocks);
-    const auto done = s.done_blocks(id);
+    const std::int64_t id = unfinished ? unfinished->id : s.sources.insert(record);
+    s.sources.describe(id, record);
+    s.sources.set_ledger(id, blocks);
+    const auto done = s.sources.done_blocks(id);
     std::ranges::copy_if(blocks, std::back_inserter(open), [&](TileIndex block) { return !done.contains(block); });
   }
   transaction.commit();
@@ -295,7 +218,7 @@ void MapWriter::put_block(const std::string& source, TileIndex block, const Cell
   const auto png = observed ? encode_tile(cells, TileDepth::kEvidence) : std::vector<std::byte>();
   const int row = tile_row(block, s.tiles.finest_zoom());
   Transaction transaction(s.map, Transaction::Kind::kWrite);
-  const auto target = s.find(source, false);
+  const auto target = s.sources.find(source, false);
   const bool expected = target && s.mark_done.with(target->id, block.col, row).step();
   s.mark_done.reset();
   if (!expected) {
@@ -315,13 +238,13 @@ void MapWriter::finish_source(const std::string& source,
   State& s = *state_;
   {
     Transaction transaction(s.map, Transaction::Kind::kWrite);
-    const auto replaced = s.find(source, true);
-    if (const auto complete = s.find(source, false)) {
-      s.require_complete(complete->id, source);
+    const auto replaced = s.sources.find(source, true);
+    if (const auto complete = s.sources.find(source, false)) {
+      s.sources.require_complete(complete->id, source);
       s.mark_pending(complete->id);
       if (replaced) {
         s.mark_pending(replaced->id);
-        s.remove(replaced->id);
+        s.sources.remove(replaced->id);
       }
       Statement(s.map, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kNow))
           .with(complete->id)
@@ -341,10 +264,10 @@ void MapWriter::remove_source(const std::string& source) {
     Transaction transaction(s.map, Transaction::Kind::kWrite);
     bool any = false;
     for (const bool in_force : {false, true}) {
-      const auto found = s.find(source, in_force);
+      const auto found = s.sources.find(source, in_force);
       if (!found) continue;
       if (in_force) s.mark_pending(found->id);
-      s.remove(found->id);
+      s.sources.remove(found->id);
       any = true;
     }
     if (!any) {

@@ -1,0 +1,80 @@
+#include "tiles/store/source_table.hpp"
+
+#include <fmt/format.h>
+
+#include "core/units/error.hpp"
+#include "tiles/store/tile_matrix.hpp"
+
+namespace roadfix {
+
+using sqlite::Statement;
+
+SourceTable::SourceTable(sqlite::Connection& map, int finest_zoom) : map_(map), zoom_(finest_zoom) {}
+
+std::optional<SourceTable::Entry> SourceTable::find(const std::string& name, bool in_force) {
+  Statement select(map_, "SELECT id, fingerprint FROM roadfix_sources WHERE name = ?1 AND in_force = ?2");
+  if (!select.with(name, in_force).step()) return std::nullopt;
+  return Entry{select.integer(0), select.text(1)};
+}
+
+std::int64_t SourceTable::insert(const SourceRecord& record) {
+  Statement(map_,
+            "INSERT INTO roadfix_sources (name, kind, location, fingerprint, date, licence, attribution, method, "
+            "registration_sigma_m, in_force, ingested_at) VALUES (?1, '', '', ?2, '', '', '', '', 0, 0, '')")
+      .with(record.name, record.fingerprint)
+      .run();
+  return map_.last_insert_id();
+}
+
+void SourceTable::describe(std::int64_t id, const SourceRecord& r) {
+  Statement(map_,
+            "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
+            "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
+      .with(id, r.kind, r.location, r.date, r.licence, r.attribution, r.method, r.registration_sigma_m)
+      .run();
+}
+
+std::set<TileIndex> SourceTable::done_blocks(std::int64_t id) {
+  Statement select(map_, "SELECT tile_column, tile_row FROM roadfix_blocks WHERE source_id = ?1 AND done = 1");
+  select.with(id);
+  std::set<TileIndex> done;
+  while (select.step()) {
+    done.insert({static_cast<int>(select.integer(0)), index_row(static_cast<int>(select.integer(1)), zoom_)});
+  }
+  return done;
+}
+
+void SourceTable::set_ledger(std::int64_t id, std::span<const TileIndex> blocks) {
+  const std::set<TileIndex> done = done_blocks(id);
+  Statement(map_, "DELETE FROM roadfix_blocks WHERE source_id = ?1").with(id).run();
+  Statement insert(map_,
+                   "INSERT OR IGNORE INTO roadfix_blocks (source_id, tile_row, tile_column, done) VALUES (?1, ?2, "
+                   "?3, ?4)");
+  for (const TileIndex block : blocks) {
+    insert.with(id, tile_row(block, zoom_), block.col, done.contains(block)).run();
+  }
+  Statement(map_,
+            "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND NOT EXISTS (SELECT 1 FROM roadfix_blocks b WHERE "
+            "b.source_id = ?1 AND b.tile_row = roadfix_evidence.tile_row AND b.tile_column = "
+            "roadfix_evidence.tile_column)")
+      .with(id)
+      .run();
+}
+
+void SourceTable::remove(std::int64_t id) {
+  for (const char* sql :
+       {"DELETE FROM roadfix_evidence WHERE source_id = ?1", "DELETE FROM roadfix_blocks WHERE source_id = ?1",
+        "DELETE FROM roadfix_sources WHERE id = ?1"}) {
+    Statement(map_, sql).with(id).run();
+  }
+}
+
+void SourceTable::require_complete(std::int64_t id, const std::string& name) {
+  Statement open(map_, "SELECT count(*) FROM roadfix_blocks WHERE source_id = ?1 AND done = 0");
+  open.with(id).step();
+  if (open.integer(0) == 0) return;
+  throw InvalidInput("source-incomplete", fmt::format("{}: source '{}' lacks {} blocks. Ingest it again to go on",
+                                                      map_.path().string(), name, open.integer(0)));
+}
+
+}  // namespace roadfix

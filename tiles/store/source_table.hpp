@@ -1,0 +1,42 @@
+// The sources of a map file with their ledgers. Shared by the writer's steps; not for other modules.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+class SourceTable {
+ public:
+  SourceTable(sqlite::Connection& map, int finest_zoom);
+
+  struct Entry {
+    std::int64_t id = 0;
+    std::string fingerprint;
+  };
+  /// At most one source of a name is in force, and at most one is on its way to be.
+  std::optional<Entry> find(const std::string& name, bool in_force);
+  /// A source on its way, without provenance or blocks. Returns its id.
+  std::int64_t insert(const SourceRecord& record);
+  /// Sets the provenance.
+  void describe(std::int64_t id, const SourceRecord& record);
+  /// The ledger holds exactly these blocks; what was done stays done.
+  void set_ledger(std::int64_t id, std::span<const TileIndex> blocks);
+  std::set<TileIndex> done_blocks(std::int64_t id);
+  /// Throws InvalidInput ("source-incomplete").
+  void require_complete(std::int64_t id, const std::string& name);
+  /// Removes the source, its ledger and its evidence.
+  void remove(std::int64_t id);
+
+ private:
+  sqlite::Connection& map_;
+  int zoom_;
+};
+
+}  // namespace roadfix

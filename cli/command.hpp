@@ -8,6 +8,7 @@ namespace roadfix::cli {
 // A command parses its options in CLI11, does its work in the callback, writes its answer to stdout and its progress
 // through cli/terminal. It reports failure by throwing; main turns exceptions into one line on stderr and exit code 1.
 
+void add_bench_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fix_command(CLI::App& app);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -39,26 +40,19 @@ Keypoints detect(FeatureKind kind, const GroundImage& image) {
   return result;
 }
 
-std::vector<cv::DMatch> good_matches(FeatureKind kind, const cv::Mat& query, const cv::Mat& train) {
-  if (query.rows < 2 || train.rows < 2) return {};
-  std::vector<std::vector<cv::DMatch>> pairs;
-  if (kind == FeatureKind::kSift) {
-    cv::FlannBasedMatcher().knnMatch(query, train, pairs, 2);
-  } else {
-    cv::BFMatcher(cv::NORM_HAMMING).knnMatch(query, train, pairs, 2);
-  }
-  std::vector<cv::DMatch> good;
-  for (const auto& pair : pairs) {
-    if (pair.size() == 2 && pair[0].distance < kLoweRatio * pair[1].distance) good.push_back(pair[0]);
-  }
-  return good;
+cv::Ptr<cv::DescriptorMatcher> make_matcher(FeatureKind kind) {
+  if (kind == FeatureKind::kSift) return cv::makePtr<cv::FlannBasedMatcher>();
+  return cv::makePtr<cv::BFMatcher>(cv::NORM_HAMMING);
 }
 
 class FeatureMethod : public Method {
  public:
   FeatureMethod(FeatureKind kind, const std::vector<Orthoimage>& imagery, const UtmZone& zone)
-      : kind_(kind), zone_(zone), origin_(imagery.front().north_west) {
+      : kind_(kind), zone_(zone), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
     for (const Orthoimage& ortho : imagery) add(ortho);
+    if (map_.descriptors.rows < 2) return;
+    matcher_->add(std::vector<cv::Mat>{map_.descriptors});
+    matcher_->train();  // the index over the map is built once
   }
 
   Answer answer(const Query& query) const override {
@@ -84,11 +78,25 @@ class FeatureMethod : public Method {
     if (!found.descriptors.empty()) map_.descriptors.push_back(found.descriptors);
   }
 
+  std::vector<cv::DMatch> good_matches(const Keypoints& frame) const {
+    if (frame.descriptors.rows < 2 || map_.descriptors.rows < 2) return {};
+    std::vector<std::vector<cv::DMatch>> pairs;
+    {
+      const std::lock_guard lock(matching_);
+      matcher_->knnMatch(frame.descriptors, pairs, 2);
+    }
+    std::vector<cv::DMatch> good;
+    for (const auto& pair : pairs) {
+      if (pair.size() == 2 && pair[0].distance < kLoweRatio * pair[1].distance) good.push_back(pair[0]);
+    }
+    return good;
+  }
+
   void place(const GroundImage& picture, Answer& result) const {
     const Keypoints frame = detect(kind_, picture);
     std::vector<cv::Point2f> from;
     std::vector<cv::Point2f> to;
-    for (const cv::DMatch& match : good_matches(kind_, frame.descriptors, map_.descriptors)) {
+    for (const cv::DMatch& match : good_matches(frame)) {
       from.push_back(frame.points[static_cast<std::size_t>(match.queryIdx)]);
       to.push_back(map_.points[static_cast<std::size_t>(match.trainIdx)]);
     }
@@ -125,6 +133,8 @@ class FeatureMethod : public Method {
   UtmZone zone_;
   GridPoint origin_;
   Keypoints map_;
+  cv::Ptr<cv::DescriptorMatcher> matcher_;
+  mutable std::mutex matching_;  // OpenCV promises nothing about concurrent matching
 };
 
 }  // namespace

@@ -1,0 +1,22 @@
+// Truth of real frames: a CSV with a header line, columns file, lat, lon, heading_deg, gsd_m in any order, others
+// ignored.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "core/locate/fix.hpp"
+
+namespace roadfix::bench {
+
+struct FrameTruth {
+  std::filesystem::path file;  ///< relative to the CSV
+  GeoPose pose;                ///< of the frame's centre
+  double gsd_m = 1.0;
+};
+
+/// Throws InvalidInput ("frames-csv") naming line and column.
+std::vector<FrameTruth> parse_frames_csv(std::string_view text);
+
+}  // namespace roadfix::bench

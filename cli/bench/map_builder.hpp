@@ -1,0 +1,39 @@
+// The maps of a manifest, built with the ingest pipeline and kept in a cache folder: a second run finds them done.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "cli/bench/manifest.hpp"
+#include "core/detect/orthoimage.hpp"
+#include "core/detect/road_detector.hpp"
+#include "core/locate/map_view.hpp"
+
+namespace roadfix::bench {
+
+struct MapBuilding {
+  const RoadDetector* detector = nullptr;
+  double cell_m = 2.0;
+  std::uint64_t seed = 1;
+  int jobs = 1;
+  std::filesystem::path cache;
+  /// Called with the source's name before its blocks, then with (name, done, total).
+  std::function<void(const std::string& source, std::int64_t done, std::int64_t total)> progress;
+  std::stop_token stop;
+};
+
+/// The file's name tells the map's name, the detector, the seed and the cell size; a source that changed is replaced.
+/// Throws what sources, pipeline and store throw.
+MapView build_map(const ManifestMap& map, const MapBuilding& building);
+
+/// One raster on the plane of the zone at its own ground sample distance. Throws LimitExceeded ("imagery-too-large")
+/// beyond 400 megapixels.
+Orthoimage read_orthoimage(const std::filesystem::path& path, const UtmZone& zone);
+
+/// The rasters of the map's imagery sources.
+std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone);
+
+}  // namespace roadfix::bench

@@ -1,0 +1,141 @@
+#include "cli/bench/queries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+
+#include "cli/bench/frames_csv.hpp"
+#include "cli/bench/map_builder.hpp"
+#include "cli/bench/query_poses.hpp"
+#include "cli/bench/simulated_features.hpp"
+#include "core/detect/frame_image.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+/// The whole map at its finest level; benches run on maps of a city.
+RoadGrid whole(const MapView& map) { return map.read(GridGeometry::covering(map.extent, map.cell_m)); }
+
+Observed seen_by(const RoadGrid& grid) {
+  return [&grid](GridPoint point) {
+    const auto at = grid.geometry.position_of(point);
+    return is_observed(grid.cells.get(static_cast<int>(std::floor(at.col)), static_cast<int>(std::floor(at.row))));
+  };
+}
+
+Observed seen_by(const Orthoimage& ortho) {
+  return [&ortho](GridPoint point) {
+    const cv::Point pixel(static_cast<int>(std::floor((point.east_m - ortho.north_west.east_m) / ortho.image.gsd_m)),
+                          static_cast<int>(std::floor((ortho.north_west.north_m - point.north_m) / ortho.image.gsd_m)));
+    return cv::Rect({}, ortho.image.observed.size()).contains(pixel) && ortho.image.observed.at<uchar>(pixel) != 0;
+  };
+}
+
+Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& zone, Random& random) {
+  if (!set.prior_radius_m) return {};
+  // Uniform over the disc, so that the truth is anywhere in the circle that is told.
+  const double radius = *set.prior_radius_m * std::sqrt(uniform(random, 0.0, 1.0));
+  const double direction = uniform(random, 0.0, 2.0 * std::numbers::pi);
+  const GridPoint centre{truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
+  return {.circle = GeoCircle{zone.unproject(centre), *set.prior_radius_m}, .box = {}, .heading = {}};
+}
+
+GeoPose geo(const GridPose& pose, const UtmZone& zone) {
+  return {zone.unproject(pose.position), zone.true_from_grid(pose.heading, pose.position)};
+}
+
+GridPose draw(const PoseSampling& sampling, const QuerySet& set, Random& random) {
+  const auto pose = draw_pose(sampling, random);
+  if (pose) return *pose;
+  throw InvalidInput(
+      "no-place-for-query",
+      fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its observed part "
+                  "and the map '{}'",
+                  describe(set), set.footprint.width_m, set.footprint.height_m, set.map));
+}
+
+int number_of(int wanted, const QueryDrawing& drawing) {
+  return drawing.limit > 0 ? std::min(wanted, drawing.limit) : wanted;
+}
+
+std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+  const Orthoimage ortho = read_orthoimage(set.path, map.zone);
+  const RoadGrid grid = whole(map);
+  const Observed in_imagery = seen_by(ortho);
+  const Observed in_map = seen_by(grid);
+  const PoseSampling sampling{without(ortho.box(), set.exclude), set.footprint,
+                              [&](GridPoint p) { return in_imagery(p) && in_map(p); }};
+  std::vector<Query> queries;
+  for (int i = 0; i < number_of(set.count, drawing); ++i) {
+    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
+    const GridPose pose = draw(sampling, set, random);
+    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, geo(pose, map.zone), {}};
+    query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
+    query.prior = prior_around(pose.position, set, map.zone, random);
+    queries.push_back(std::move(query));
+  }
+  return queries;
+}
+
+std::vector<Query> simulated(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+  const RoadGrid grid = whole(map);
+  const PoseSampling sampling{map.extent, set.footprint, seen_by(grid)};
+  std::vector<Query> queries;
+  for (int i = 0; i < number_of(set.count, drawing); ++i) {
+    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
+    const GridPose pose = draw(sampling, set, random);
+    Query query{fmt::format("simulated/{:04}", i), {}, {}, geo(pose, map.zone), {}};
+    query.features = simulate_features(grid, pose, set.footprint, set.noise, random);
+    query.prior = prior_around(pose.position, set, map.zone, random);
+    queries.push_back(std::move(query));
+  }
+  return queries;
+}
+
+std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+  std::ifstream in(set.path, std::ios::binary);
+  if (!in) throw NotFound("frames-missing", fmt::format("{} cannot be opened", set.path.string()));
+  const auto frames = parse_frames_csv(std::string{std::istreambuf_iterator<char>(in), {}});
+  std::vector<Query> queries;
+  for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
+    const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
+    const cv::Mat decoded = cv::imread((set.path.parent_path() / frame.file).string(), cv::IMREAD_UNCHANGED);
+    if (decoded.empty())
+      throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
+    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
+    Query query{frame.file.string(), {}, {}, frame.pose, {}};
+    query.picture = frame_image(decoded, frame.gsd_m, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
+    query.prior = prior_around(map.zone.project(frame.pose.position), set, map.zone, random);
+    queries.push_back(std::move(query));
+  }
+  return queries;
+}
+
+}  // namespace
+
+std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+  switch (set.kind) {
+    case QuerySet::Kind::kImage:
+      return from_imagery(set, map, drawing);
+    case QuerySet::Kind::kFrames:
+      return real_frames(set, map, drawing);
+    case QuerySet::Kind::kSimulated:
+      return simulated(set, map, drawing);
+  }
+  return {};
+}
+
+std::string describe(const QuerySet& set) {
+  if (set.kind == QuerySet::Kind::kFrames) return set.path.filename().string();
+  const std::string what = set.kind == QuerySet::Kind::kSimulated ? "simulated" : set.path.filename().string();
+  return fmt::format("{} {}x{} m", what, set.footprint.width_m, set.footprint.height_m);
+}
+
+}  // namespace roadfix::bench

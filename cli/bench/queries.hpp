@@ -1,0 +1,25 @@
+// The queries of a set: frames cut from imagery, real frames with truth, or simulated feature maps.
+#pragma once
+
+#include <vector>
+
+#include "cli/bench/manifest.hpp"
+#include "cli/bench/query.hpp"
+#include "cli/bench/random.hpp"
+
+namespace roadfix::bench {
+
+struct QueryDrawing {
+  std::uint64_t seed = 1;
+  std::uint64_t set = 0;  ///< index of the set in the manifest
+  int limit = 0;          ///< at most so many; 0 = all
+};
+
+/// Throws InvalidInput "no-place-for-query" where no pose fits, "frames-csv" naming line and column, and what reading
+/// the imagery throws.
+std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const QueryDrawing& drawing);
+
+/// "post.jpg 400x400 m", "frames.csv", "simulated 400x400 m".
+std::string describe(const QuerySet& set);
+
+}  // namespace roadfix::bench

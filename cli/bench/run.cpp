@@ -1,0 +1,70 @@
+#include "cli/bench/run.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <memory>
+
+#include "cli/bench/feature_method.hpp"
+#include "cli/bench/queries.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+void stop_if_asked(const BenchOptions& options) {
+  if (options.maps.stop.stop_requested())
+    throw Interrupted("bench-stopped", "the bench was stopped; its maps are kept");
+}
+
+std::unique_ptr<Method> make_method(const std::string& name, const ManifestMap& manifest_map, const MapView& map,
+                                    const BenchOptions& options) {
+  if (name == "roads")
+    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix});
+  const auto imagery = read_imagery(manifest_map, map.zone);
+  if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
+  return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
+}
+
+std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries, const UtmZone& zone,
+                         const std::string& task, const BenchOptions& options) {
+  std::vector<Outcome> outcomes(queries.size());
+  std::atomic<std::int64_t> done = 0;
+  tbb::task_arena arena(options.jobs);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
+      stop_if_asked(options);
+      outcomes[i] = judged(queries[i].id, queries[i].truth, method.answer(queries[i]), zone);
+      options.progress(task, ++done, static_cast<std::int64_t>(queries.size()));
+    });
+  });
+  return outcomes;
+}
+
+}  // namespace
+
+std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
+  std::vector<SetResult> results;
+  for (const ManifestMap& manifest_map : manifest.maps) {
+    const MapView map = build_map(manifest_map, options.maps);
+    std::map<std::string, std::unique_ptr<Method>> methods;
+    for (const std::string& name : manifest.methods) methods[name] = make_method(name, manifest_map, map, options);
+    for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
+      const QuerySet& set = manifest.queries[i];
+      if (set.map != manifest_map.name) continue;
+      const auto queries = make_queries(set, map, {options.seed, i, options.limit});
+      for (const std::string& name : manifest.methods) {
+        if (!methods[name]) continue;
+        const std::string task = fmt::format("{} {}", name, describe(set));
+        results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, options)});
+      }
+    }
+  }
+  return results;
+}
+
+}  // namespace roadfix::bench

@@ -1,0 +1,24 @@
+// The whole bench: maps, queries, methods, in the order of the manifest.
+#pragma once
+
+#include <functional>
+
+#include "cli/bench/map_builder.hpp"
+#include "cli/bench/report.hpp"
+#include "cli/bench/roads_method.hpp"
+
+namespace roadfix::bench {
+
+struct BenchOptions {
+  std::uint64_t seed = 1;
+  int limit = 0;  ///< at most so many queries of each set; 0 = all
+  int jobs = 1;   ///< queries answered at a time; times of one query then include waiting for processors
+  MapBuilding maps;
+  FixOptions fix;
+  std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;
+};
+
+/// Throws Interrupted "bench-stopped" when maps.stop is requested.
+std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options);
+
+}  // namespace roadfix::bench

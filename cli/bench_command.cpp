@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "cli/bench/run.hpp"
+#include "cli/command.hpp"
+#include "cli/detector_options.hpp"
+#include "cli/terminal.hpp"
+#include "core/detect/make_detector.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct BenchArguments {
+  std::string manifest;
+  std::string json_file;
+  std::string cache;
+  DetectorChoice detector;
+  double cell_m = 2.0;
+  bench::BenchOptions options;
+};
+
+std::filesystem::path default_cache() {
+  const char* home = std::getenv("XDG_CACHE_HOME");
+  if (home != nullptr && *home != '\0') return std::filesystem::path(home) / "roadfix";
+  const char* user = std::getenv("HOME");
+  return user != nullptr ? std::filesystem::path(user) / ".cache" / "roadfix"
+                         : std::filesystem::temp_directory_path() / "roadfix";
+}
+
+/// One progress line for each task, in turn.
+class TaskProgress {
+ public:
+  TaskProgress(std::string unit) : unit_(std::move(unit)) {}
+  void update(const std::string& task, std::int64_t done, std::int64_t total) {
+    const std::lock_guard lock(mutex_);
+    if (task != task_) progress_.emplace(task_ = task, unit_);
+    progress_->update(done, total);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string unit_;
+  std::string task_;
+  std::optional<Progress> progress_;
+};
+
+nlohmann::json document(const BenchArguments& arguments, const std::string& detector,
+                        const std::vector<bench::SetResult>& results) {
+  nlohmann::json sets = nlohmann::json::array();
+  for (const auto& result : results) sets.push_back(to_json(result));
+  return {{"roadfix", ROADFIX_VERSION}, {"manifest", arguments.manifest}, {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m}, {"detector", detector},           {"results", sets}};
+}
+
+void write_json(const nlohmann::json& document, const std::string& file) {
+  std::ofstream out(file, std::ios::binary);
+  out << document.dump(1) << '\n';
+  out.close();
+  if (!out) throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
+}
+
+void run_bench(BenchArguments& arguments) {
+  const bench::Manifest manifest = bench::read_manifest(arguments.manifest);
+  const auto detector = make_detector(arguments.detector);
+  TaskProgress building("blocks");
+  TaskProgress asking("queries");
+  bench::BenchOptions& options = arguments.options;
+  options.maps = {
+      detector.get(),
+      arguments.cell_m,
+      options.seed,
+      options.jobs,
+      arguments.cache.empty() ? default_cache() : std::filesystem::path(arguments.cache),
+      [&](const std::string& name, std::int64_t done, std::int64_t total) { building.update(name, done, total); },
+      stop_on_signals()};
+  options.fix.stop = options.maps.stop;
+  options.progress = [&](const std::string& task, std::int64_t done, std::int64_t total) {
+    asking.update(task, done, total);
+  };
+  const auto results = bench::run(manifest, options);
+  fmt::print("detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
+             bench::to_table(results));
+  if (!arguments.json_file.empty()) write_json(document(arguments, detector->describe(), results), arguments.json_file);
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app) {
+  auto a = std::make_shared<BenchArguments>();
+  CLI::App* command =
+      app.add_subcommand("bench", "Measures accuracy over a manifest of maps and queries, beside SIFT and ORB");
+  command->footer("Example: roadfix bench city.bench.json --seed 1 --json out.json");
+  command->add_option("manifest", a->manifest, "JSON file, see docs/bench.md")->required();
+  command->add_option("--json", a->json_file, "Write figures and every query with truth, answer and error");
+  command->add_option("--seed", a->options.seed, "Of the query poses and the detector")->capture_default_str();
+  command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
+  command->add_option("--confidence", a->options.fix.confidence, "Probability that a fix must reach")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  a->options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("--jobs", a->options.jobs, "Blocks or queries in work at a time; 1 for honest times of a query")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--map-cache", a->cache, "Folder that keeps the maps; default: the user's cache folder");
+  add_detector_options(*command, a->detector);
+  command->callback([a] { run_bench(*a); });
+}
+
+}  // namespace roadfix::cli

@@ -19,6 +19,7 @@ void require_gdal() {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALAllRegister();
+    CPLSetErrorHandler(CPLQuietErrorHandler);  // nothing below main prints
     GDALSetCacheMax64(kCacheBytes);
     // A picture that ends early is damaged input, not a grey area.
     CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "TRUE");

@@ -17,6 +17,11 @@ namespace {
 constexpr double kImagerySigmaM = 2.0;
 constexpr double kRasterSigmaM = 3.0;
 
+/// Side of what is detected at a time, without the halo.
+constexpr int kMaxPixels = 2048;
+/// Pixels a side of a cell that rasters of roads are read with; what is finer is averaged on the way.
+constexpr double kFinestParts = 4.0;
+
 std::string settings_of(const RasterOptions& options) {
   std::string text = options.crs.empty() ? "" : fmt::format(" crs={}", options.crs);
   if (options.collar) {
@@ -49,19 +54,37 @@ class Imagery final : public CellSource {
 
   CellArray read(const GridGeometry& block, std::uint64_t seed) const override {
     assert(block.cell_m == cell_m_);
-    const auto halo = static_cast<int>(std::ceil(detector_.halo_m() / cell_m_));
-    const GridGeometry wide{
-        cell_m_, {block.origin.col - halo, block.origin.row - halo}, block.cols + 2 * halo, block.rows + 2 * halo};
-    CellArray result(block.cols, block.rows);
-    const GroundImage image = mosaic_.view(wide.box(), gsd_m_);
     const int pixels = static_cast<int>(std::lround(cell_m_ / gsd_m_));
-    const cv::Rect inner(halo * pixels, halo * pixels, block.cols * pixels, block.rows * pixels);
-    if (cv::countNonZero(image.observed(inner)) == 0) return result;
-    paste(detector_.detect(image, cell_m_, seed), result, -halo, -halo);
+    const int side = std::max(1, kMaxPixels / pixels);
+    CellArray result(block.cols, block.rows);
+    for (int row = 0; row < block.rows; row += side) {
+      for (int col = 0; col < block.cols; col += side) {
+        const GridGeometry part{cell_m_,
+                                {block.origin.col + col, block.origin.row + row},
+                                std::min(side, block.cols - col),
+                                std::min(side, block.rows - row)};
+        detect(part, pixels, seed++, result, {col, row});
+      }
+    }
     return result;
   }
 
  private:
+  void detect(const GridGeometry& part, int pixels, std::uint64_t seed, CellArray& result, cv::Point at) const {
+    const auto halo = static_cast<int>(std::ceil(detector_.halo_m() / cell_m_));
+    const GridGeometry wide{
+        cell_m_, {part.origin.col - halo, part.origin.row - halo}, part.cols + 2 * halo, part.rows + 2 * halo};
+    const GroundImage image = mosaic_.view(wide.box(), gsd_m_);
+    const cv::Rect inner(halo * pixels, halo * pixels, part.cols * pixels, part.rows * pixels);
+    if (cv::countNonZero(image.observed(inner)) == 0) return;
+    const CellArray seen = detector_.detect(image, cell_m_, seed);
+    for (int row = 0; row < part.rows; ++row) {
+      const auto from =
+          seen.row(row + halo).subspan(static_cast<std::size_t>(halo), static_cast<std::size_t>(part.cols));
+      std::ranges::copy(from, result.row(at.y + row).begin() + at.x);
+    }
+  }
+
   Mosaic mosaic_;
   const RoadDetector& detector_;
   double cell_m_;
@@ -74,7 +97,7 @@ class RoadRaster final : public CellSource {
   RoadRaster(const std::vector<std::string>& paths, const RasterOptions& options, UtmZone zone, double cell_m)
       : mosaic_(paths, options, ValueRule::kShare, zone),
         cell_m_(cell_m),
-        gsd_m_(detection_gsd_m(cell_m, mosaic_.gsd_m(), mosaic_.gsd_m())) {
+        gsd_m_(std::max(detection_gsd_m(cell_m, mosaic_.gsd_m(), mosaic_.gsd_m()), cell_m / kFinestParts)) {
     summary_.kind = "roads";
     const Certainty certainty = certainty_of_values();
     summary_.method =

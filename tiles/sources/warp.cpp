@@ -16,15 +16,17 @@ constexpr int kHalfWeight = 128;
 class PixelCoordinates {
  public:
   PixelCoordinates(const Placement& placement, cv::Point2d corner, double gsd_m, cv::Size size)
-      : cols_((size.width - 1) / kNodeStepPx + 2), nodes_(nodes(corner, gsd_m, size)) {
+      : step_(std::clamp(std::max(size.width, size.height), 1, kNodeStepPx)),
+        cols_((size.width - 1) / step_ + 2),
+        nodes_(nodes(corner, gsd_m, size)) {
     placement.to_pixels(nodes_);
   }
 
   cv::Point2d at(int col, int row) const {
-    const int i = col / kNodeStepPx;
-    const int j = row / kNodeStepPx;
-    const double u = static_cast<double>(col % kNodeStepPx) / kNodeStepPx;
-    const double v = static_cast<double>(row % kNodeStepPx) / kNodeStepPx;
+    const int i = col / step_;
+    const int j = row / step_;
+    const double u = static_cast<double>(col % step_) / step_;
+    const double v = static_cast<double>(row % step_) / step_;
     const cv::Point2d north = node(i, j) * (1.0 - u) + node(i + 1, j) * u;
     const cv::Point2d south = node(i, j + 1) * (1.0 - u) + node(i + 1, j + 1) * u;
     return north * (1.0 - v) + south * v;
@@ -33,11 +35,11 @@ class PixelCoordinates {
 
  private:
   std::vector<cv::Point2d> nodes(cv::Point2d corner, double gsd_m, cv::Size size) const {
-    const int rows = (size.height - 1) / kNodeStepPx + 2;
+    const int rows = (size.height - 1) / step_ + 2;
     std::vector<cv::Point2d> result;
     for (int j = 0; j < rows; ++j) {
       for (int i = 0; i < cols_; ++i) {
-        result.emplace_back(corner.x + (i * kNodeStepPx + 0.5) * gsd_m, corner.y - (j * kNodeStepPx + 0.5) * gsd_m);
+        result.emplace_back(corner.x + (i * step_ + 0.5) * gsd_m, corner.y - (j * step_ + 0.5) * gsd_m);
       }
     }
     return result;
@@ -46,6 +48,7 @@ class PixelCoordinates {
     return nodes_[static_cast<std::size_t>(j) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(i)];
   }
 
+  int step_;
   int cols_;
   std::vector<cv::Point2d> nodes_;
 };
@@ -142,7 +145,7 @@ void warp_piece(const PlacedRaster& raster, cv::Point2d corner, int reduction, d
 void warp_into(const PlacedRaster& raster, const GridBox& box, GroundImage& image) {
   const double ratio = image.gsd_m / raster.placement.gsd_m();
   const int reduction = 1 << std::clamp(static_cast<int>(std::lround(std::log2(ratio))), 0, 10);
-  const int piece = std::max(kNodeStepPx, kSourcePiecePx / reduction);
+  const int piece = std::max(1, kSourcePiecePx / reduction);
   const cv::Rect whole({0, 0}, image.pixels.size());
   for (int row = 0; row < whole.height; row += piece) {
     for (int col = 0; col < whole.width; col += piece) {

@@ -1,0 +1,212 @@
+// roadfix ingest as a whole: killed anywhere, fed with damaged files, given an image much larger than memory.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sqlite3.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/e2e/child_process.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::ChildResult;
+using testing::RasterSpec;
+using testing::run_child;
+using testing::write_raster;
+using namespace std::chrono_literals;
+
+class IngestCommand : public ::testing::Test {
+ protected:
+  ChildResult ingest(std::vector<std::string> arguments, std::chrono::microseconds kill_after = {},
+                     int signal = 9) const {
+    arguments.insert(arguments.begin(), "ingest");
+    return run_child(ROADFIX_PROGRAM, arguments, folder.path(), kill_after, signal);
+  }
+  std::string map(const std::string& name) const { return folder / name; }
+
+  /// Bytes of every tile of the map.
+  static std::map<std::tuple<int, int, int>, std::string> tiles(const std::string& path) {
+    sqlite3* file = nullptr;
+    sqlite3_stmt* select = nullptr;
+    std::map<std::tuple<int, int, int>, std::string> result;
+    EXPECT_EQ(sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READONLY, nullptr), SQLITE_OK);
+    EXPECT_EQ(sqlite3_prepare_v2(file, "SELECT zoom_level, tile_column, tile_row, tile_data FROM road_probability", -1,
+                                 &select, nullptr),
+              SQLITE_OK);
+    while (sqlite3_step(select) == SQLITE_ROW) {
+      const auto* bytes = static_cast<const char*>(sqlite3_column_blob(select, 3));
+      const auto size = static_cast<std::size_t>(sqlite3_column_bytes(select, 3));
+      result[{sqlite3_column_int(select, 0), sqlite3_column_int(select, 1), sqlite3_column_int(select, 2)}] =
+          std::string(bytes, size);
+    }
+    sqlite3_finalize(select);
+    sqlite3_close(file);
+    return result;
+  }
+
+  /// A picture of noise with a grid of bright streets.
+  std::string picture(int side, double gsd_m) const {
+    RasterSpec spec{.width = side, .height = side, .bands = 3, .creation = {"TILED=YES"}};
+    spec.transform = {400000.0, gsd_m, 0.0, 4200000.0, 0.0, -gsd_m};
+    return write_raster(folder / "city.tif", spec, [](int, int col, int row) {
+      const std::uint32_t noise =
+          (static_cast<std::uint32_t>(col) * 2654435761U ^ static_cast<std::uint32_t>(row) * 40503U) >> 20U;
+      return (col % 150 < 12 || row % 190 < 12) ? 180.0 + noise % 8U : 60.0 + noise % 64U;
+    });
+  }
+
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(IngestCommand, KilledAtManyPointsItEndsWithTheSameTiles) {
+  const std::vector<std::string> source{picture(3000, 1.0), "--detector", "tree", "--seed", "3",
+                                        "--jobs",           "2",          "--map"};
+  const auto with_map = [&](const std::string& path) {
+    std::vector<std::string> arguments = source;
+    arguments.push_back(path);
+    return arguments;
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const ChildResult whole = ingest(with_map(map("whole.gpkg")));
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  const auto duration = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
+  const auto expected = tiles(map("whole.gpkg"));
+  ASSERT_GT(expected.size(), 36U);
+
+  std::mt19937_64 random(11);
+  int kills = 0;
+  for (int attempt = 0; attempt < 60; ++attempt) {
+    // From the first moments (creating the file) to about a fifth of the whole run.
+    const std::chrono::microseconds delay(
+        1000 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(duration.count() / 5)));
+    const ChildResult part = ingest(with_map(map("parts.gpkg")), delay);
+    if (!part.killed) {
+      ASSERT_EQ(part.code, 0) << part.err;
+      break;
+    }
+    ++kills;
+  }
+  EXPECT_GT(kills, 4);
+  const ChildResult last = ingest(with_map(map("parts.gpkg")));
+  ASSERT_EQ(last.code, 0) << last.err;
+  EXPECT_EQ(tiles(map("parts.gpkg")), expected) << "after " << kills << " kills";
+}
+
+TEST_F(IngestCommand, CtrlCStopsCleanlyAndSaysHowToGoOn) {
+  const std::string image = picture(4000, 1.0);
+  const std::vector<std::string> arguments{image, "--detector", "tree", "--map", map("a.gpkg")};
+  const ChildResult stopped = ingest(arguments, 1500ms, SIGINT);
+  EXPECT_FALSE(stopped.killed);
+  if (stopped.code == 0) GTEST_SKIP() << "it was done before the signal came";
+  EXPECT_EQ(stopped.code, 1);
+  EXPECT_THAT(stopped.err, ::testing::HasSubstr("again"));
+  EXPECT_EQ(ingest(arguments).code, 0);
+}
+
+TEST_F(IngestCommand, BadInputGetsOneLineACodeAndNoMap) {
+  const std::string good = picture(300, 1.0);
+  std::ofstream(folder / "zero.tif");
+  std::ofstream(folder / "header.tif") << "II*and then no TIFF at all";
+  write_raster(folder / "nowhere.tif", {.epsg = 0, .transform = std::nullopt}, [](int, int, int) { return 1.0; });
+  RasterSpec metres_as_degrees;
+  metres_as_degrees.epsg = 4326;
+  write_raster(folder / "wrong.tif", metres_as_degrees, [](int, int, int) { return 1.0; });
+  const std::map<std::string, std::string> cases{{"zero.tif", "source-unreadable"},
+                                                 {"header.tif", "source-unreadable"},
+                                                 {"none.tif", "source-not-found"},
+                                                 {"nowhere.tif", "image-without-georeference"},
+                                                 {"wrong.tif", "crs-not-transformable"}};
+  for (const auto& [file, code] : cases) {
+    const ChildResult result = ingest({folder / file, "--detector", "tree", "--map", map("bad.gpkg")});
+    EXPECT_EQ(result.code, 1) << file;
+    EXPECT_THAT(result.err, ::testing::HasSubstr("[" + code + "]")) << file;
+    EXPECT_THAT(result.err, ::testing::HasSubstr(file));
+    EXPECT_FALSE(std::filesystem::exists(map("bad.gpkg"))) << file;
+  }
+  EXPECT_EQ(ingest({good, "--cell", "3", "--detector", "tree", "--map", map("bad.gpkg")}).code, 1);
+  EXPECT_EQ(ingest({good}).code, 2);
+  EXPECT_EQ(ingest({good, "--map", map("bad.gpkg"), "--jobs", "0"}).code, 2);
+}
+
+TEST_F(IngestCommand, ATruncatedImageKeepsItsSourceIncompleteUntilTheFileIsWhole) {
+  const std::string image = picture(2000, 1.0);
+  std::filesystem::copy_file(image, folder / "whole.tif");
+  const auto time = std::filesystem::last_write_time(image);
+  std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
+  const ChildResult result = ingest({image, "--as", "roads", "--map", map("a.gpkg")});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err,
+              ::testing::AllOf(::testing::HasSubstr("[image-unreadable-block]"), ::testing::HasSubstr("city.tif")));
+  std::filesystem::copy_file(folder / "whole.tif", image, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::last_write_time(image, time);
+  const ChildResult again = ingest({image, "--as", "roads", "--replace", "--map", map("a.gpkg")});
+  EXPECT_EQ(again.code, 0) << again.err;
+  const ChildResult undisturbed = ingest({image, "--as", "roads", "--map", map("b.gpkg")});
+  EXPECT_EQ(undisturbed.code, 0) << undisturbed.err;
+  EXPECT_EQ(tiles(map("a.gpkg")), tiles(map("b.gpkg")));
+}
+
+TEST_F(IngestCommand, ADryRunPrintsThePlanAndWritesNothing) {
+  const ChildResult result = ingest({picture(600, 0.5), "--detector", "tree", "--dry-run", "--map", map("a.gpkg")});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::HasSubstr("EPSG:32637"));
+  EXPECT_FALSE(std::filesystem::exists(map("a.gpkg")));
+}
+
+/// 60,000 x 60,000 px made of one tile, again and again.
+std::string huge_mosaic(const std::filesystem::path& folder, double gsd_m) {
+  constexpr int kTile = 2000;
+  constexpr int kTiles = 30;
+  RasterSpec spec{
+      .width = kTile, .height = kTile, .bands = 3, .creation = {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=1"}};
+  write_raster(folder / "tile.tif", spec, [](int band, int col, int row) {
+    return col % 200 < 20 || row % 250 < 20 ? 200.0 : 40.0 + 10.0 * band;
+  });
+  const std::string path = folder / "huge.vrt";
+  std::ofstream vrt(path);
+  vrt << fmt::format(
+      "<VRTDataset rasterXSize=\"{0}\" rasterYSize=\"{0}\"><SRS>EPSG:32637</SRS>"
+      "<GeoTransform>400000, {1}, 0, 4200000, 0, -{1}</GeoTransform>",
+      kTile * kTiles, gsd_m);
+  for (int band = 1; band <= 3; ++band) {
+    vrt << fmt::format("<VRTRasterBand dataType=\"Byte\" band=\"{}\">", band);
+    for (int i = 0; i < kTiles * kTiles; ++i) {
+      vrt << fmt::format(
+          "<SimpleSource><SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename><SourceBand>{0}</SourceBand>"
+          "<SourceProperties RasterXSize=\"{1}\" RasterYSize=\"{1}\" DataType=\"Byte\" BlockXSize=\"256\" "
+          "BlockYSize=\"256\"/><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{1}\" ySize=\"{1}\"/>"
+          "<DstRect xOff=\"{2}\" yOff=\"{3}\" xSize=\"{1}\" ySize=\"{1}\"/></SimpleSource>",
+          band, kTile, i % kTiles * kTile, i / kTiles * kTile);
+    }
+    vrt << "</VRTRasterBand>";
+  }
+  vrt << "</VRTDataset>";
+  return path;
+}
+
+using HugeImage = IngestCommand;
+
+TEST_F(HugeImage, PassesInLessThanTwoGigabytes) {
+  const std::string path = huge_mosaic(folder.path(), 0.125);  // 7.5 km: fine pixels, so that detection stays short
+  const ChildResult result =
+      ingest({path, "--detector", "tree", "--cell", "8", "--jobs", "2", "--json", "--map", map("a.gpkg")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  RecordProperty("peak_memory_mib", static_cast<int>(result.peak_memory_kib / 1024));
+  fmt::print("peak memory {} MiB; {}\n", result.peak_memory_kib / 1024, result.out);
+  EXPECT_LT(result.peak_memory_kib, 2L << 20);
+}
+
+}  // namespace
+}  // namespace roadfix

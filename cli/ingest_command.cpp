@@ -153,14 +153,18 @@ void print_report(nlohmann::json json, const IngestReport& report, double block_
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
-  json["megapixels_per_s"] = report.reading_s > 0.0 ? fresh * block_mp / report.reading_s : 0.0;
+  const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
+  const bool lines = json.contains("features");
+  const double amount = lines ? share * json["features"].get<double>() : fresh * block_mp;
+  const double rate = report.reading_s > 0.0 ? amount / report.reading_s : 0.0;
+  json[lines ? "features_per_s" : "megapixels_per_s"] = rate;
   if (as_json) {
     fmt::print("{}\n", json.dump());
     return;
   }
-  fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} MP/s), {:.1f} s fusing\n",
-             json["source"].get<std::string>(), report.blocks, report.blocks_before, report.reading_s,
-             json["megapixels_per_s"].get<double>(), report.fusing_s);
+  fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} {}/s), {:.1f} s fusing\n",
+             json["source"].get<std::string>(), report.blocks, report.blocks_before, report.reading_s, rate,
+             lines ? "features" : "MP", report.fusing_s);
 }
 
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
@@ -179,7 +183,10 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const double block_mp = block_px * block_px / 1e6;
   IngestReport report;
   {
-    Progress reading(record.name, "MP", block_mp);
+    const bool lines = summary.native_gsd_m == 0.0;
+    const double lines_per_block =
+        static_cast<double>(summary.features) / static_cast<double>(std::max<std::int64_t>(1, blocks));
+    Progress reading(record.name, lines ? "features" : "MP", lines ? lines_per_block : block_mp);
     Progress fusing("fusing", "tiles");
     const IngestProgress progress{[&](std::int64_t done, std::int64_t total) { reading.update(done, total); },
                                   [&](std::int64_t done, std::int64_t total) { fusing.update(done, total); }};

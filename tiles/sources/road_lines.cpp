@@ -85,8 +85,24 @@ bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
 
 struct LayerReader {
   TransformationPtr to_plane;
+  RoadRules rules;
   bool classified = false;
+  bool has_lines = false;
 };
+
+/// The attribute that the user named, or the one of OpenStreetMap or of Geofabrik's extracts.
+LayerReader reader_of(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules) {
+  LayerReader reader{std::move(to_plane), rules, false, false};
+  const auto has = [&layer](const std::string& attribute) {
+    return layer.GetLayerDefn()->GetFieldIndex(attribute.c_str()) >= 0;
+  };
+  constexpr const char* kGeofabrik = "fclass";
+  if (!has(rules.class_attribute()) && rules.class_attribute() == RoadRules().class_attribute() && has(kGeofabrik)) {
+    reader.rules.set_class_attribute(kGeofabrik);
+  }
+  reader.classified = has(reader.rules.class_attribute());
+  return reader;
+}
 
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
               RoadNetwork& network) {
@@ -96,22 +112,24 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   for (OGRLayer* layer : file.layers()) {
     const OGRSpatialReference crs = file.crs_of(*layer);
     if (network.crs.empty()) network.crs = crs_name(crs);
-    const bool classified = layer->GetLayerDefn()->GetFieldIndex(rules.class_attribute().c_str()) >= 0;
-    readers.emplace(layer, LayerReader{transformation(crs, plane, path), classified});
+    readers.emplace(layer, reader_of(*layer, transformation(crs, plane, path), rules));
   }
   file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-    const auto reader = readers.find(&layer);
-    if (reader == readers.end()) return;
+    const auto found = readers.find(&layer);
     const OGRGeometry* geometry = feature.GetGeometryRef();
+    if (found == readers.end() || geometry == nullptr) return;
+    LayerReader& reader = found->second;
+    reader.has_lines = reader.has_lines || geometry->getDimension() == 1;
     FeatureTags tags(feature);
-    const std::optional<double> width =
-        geometry != nullptr ? rules.width_of(std::ref(tags), reader->second.classified) : std::nullopt;
-    if (!width || !add_geometry(*geometry, *reader->second.to_plane, *width, network)) ++network.left_out;
+    const std::optional<double> width = reader.rules.width_of(std::ref(tags), reader.classified);
+    if (!width || !add_geometry(*geometry, *reader.to_plane, *width, network)) ++network.left_out;
   });
   if (!options.extent.empty()) return;
   for (OGRLayer* layer : file.layers()) {
+    const LayerReader& reader = readers.at(layer);
+    if (!reader.has_lines && !vector_tile_of(path)) continue;  // shops say nothing about roads
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
-    if (box) network.covered.push_back(box_on_plane(*box, *readers.at(layer).to_plane, path));
+    if (box) network.covered.push_back(box_on_plane(*box, *reader.to_plane, path));
   }
 }
 

@@ -133,6 +133,14 @@ TEST_F(VectorRoads, OpenStreetMapXmlIsReadWithAllItsTags) {
   EXPECT_NEAR(network.points[0].east_m, kCentre.east_m - 150.0, 0.01);
 }
 
+TEST_F(VectorRoads, ClassesOfGeofabriksExtractsAreKnown) {
+  const std::string path = geojson({feature(R"("fclass":"primary")", at(-150, 40), at(150, 40)),
+                                    feature(R"("fclass":"footway")", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 1U);
+  EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+}
+
 TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {
   const std::string rivers = geojson({feature(R"("highway":"footway")", at(0, 0), at(9, 9))});
   EXPECT_EQ(code_of([&] { open_road_vectors({rivers}, {}, RoadRules(), kZone, 2.0); }), "source-without-roads");

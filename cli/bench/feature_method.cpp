@@ -7,6 +7,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 namespace roadfix::bench {
 namespace {
@@ -49,9 +50,11 @@ class FeatureMethod : public Method {
  public:
   FeatureMethod(FeatureKind kind, const std::vector<Orthoimage>& imagery, const UtmZone& zone)
       : kind_(kind), zone_(zone), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
-    for (const Orthoimage& ortho : imagery) add(ortho);
+    const std::span all(imagery);
+    for (std::size_t i = 0; i < all.size(); ++i) add(all[i], all.first(i));
     if (map_.descriptors.rows < 2) return;
     matcher_->add(std::vector<cv::Mat>{map_.descriptors});
+    cv::setRNGSeed(1);  // the index splits at random
     matcher_->train();  // the index over the map is built once
   }
 
@@ -68,14 +71,18 @@ class FeatureMethod : public Method {
   }
 
  private:
-  void add(const Orthoimage& ortho) {
+  /// Where images overlap the first one counts, as in a map: a point known twice would fail the ratio test.
+  void add(const Orthoimage& ortho, std::span<const Orthoimage> before) {
     const Keypoints found = detect(kind_, ortho.image);
-    for (const cv::Point2f point : found.points) {
-      const double east = ortho.north_west.east_m + (static_cast<double>(point.x) + 0.5) * ortho.image.gsd_m;
-      const double north = ortho.north_west.north_m - (static_cast<double>(point.y) + 0.5) * ortho.image.gsd_m;
-      map_.points.emplace_back(static_cast<float>(east - origin_.east_m), static_cast<float>(origin_.north_m - north));
+    for (int i = 0; i < found.descriptors.rows; ++i) {
+      const cv::Point2d point = found.points[static_cast<std::size_t>(i)];
+      const GridPoint place{ortho.north_west.east_m + (point.x + 0.5) * ortho.image.gsd_m,
+                            ortho.north_west.north_m - (point.y + 0.5) * ortho.image.gsd_m};
+      if (std::ranges::any_of(before, [&](const Orthoimage& other) { return sees(other, place); })) continue;
+      map_.points.emplace_back(static_cast<float>(place.east_m - origin_.east_m),
+                               static_cast<float>(origin_.north_m - place.north_m));
+      map_.descriptors.push_back(found.descriptors.row(i));
     }
-    if (!found.descriptors.empty()) map_.descriptors.push_back(found.descriptors);
   }
 
   std::vector<cv::DMatch> good_matches(const Keypoints& frame) const {

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <memory>
-#include <string_view>
-#include <utility>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "core/detect/network_description.hpp"
 #include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
@@ -22,47 +26,55 @@ SourceRequest request_of(const ManifestSource& source) {
   return request;
 }
 
-/// FNV-1a: the cache's names must be the same in every run and build.
-std::uint64_t digest(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
-}
-
-std::filesystem::path file_of(const ManifestMap& map, const MapBuilding& building) {
-  const std::string settings = fmt::format("{} {} {}", building.detector->describe(), building.cell_m, building.seed);
-  return building.cache / fmt::format("{}-{:016x}.gpkg", map.name, digest(settings));
-}
-
-void ingest_source(const ManifestSource& manifest_source, const MapSettings& settings, MapWriter& writer,
-                   const MapBuilding& building) {
-  const SourceRequest request = request_of(manifest_source);
-  const auto source = open_source(request, settings, building.detector);
-  const SourceSummary summary = source->summary();
+struct OpenedSource {
+  std::unique_ptr<CellSource> cells;
   SourceRecord record;
-  record.name = request.files.name;
-  record.kind = summary.kind;
-  record.location = request.files.location;
-  record.fingerprint = fmt::format("{}-seed{}", summary.fingerprint, building.seed);
-  record.method = summary.method;
-  record.registration_sigma_m = summary.registration_sigma_m;
-  const IngestProgress progress{
-      [&](std::int64_t done, std::int64_t total) { building.progress(record.name, done, total); }, {}};
-  ingest(*source, record, settings, writer, {building.jobs, building.seed, true}, progress, building.stop);
+};
+
+OpenedSource open(const SourceRequest& request, int number, const MapSettings& settings, const MapBuilding& building) {
+  OpenedSource source;
+  source.cells = open_source(request, settings, building.detector);
+  const SourceSummary summary = source.cells->summary();
+  // Numbered, since files of several folders may share a stem.
+  source.record.name = fmt::format("{} {}", number, request.files.name);
+  source.record.kind = summary.kind;
+  source.record.location = request.files.location;
+  source.record.fingerprint = fmt::format("{}-seed{}", summary.fingerprint, building.seed);
+  source.record.method = summary.method;
+  source.record.registration_sigma_m = summary.registration_sigma_m;
+  return source;
+}
+
+/// Tells content and settings of all sources apart: two manifests may call different maps the same.
+std::filesystem::path file_of(const ManifestMap& map, const MapSettings& settings,
+                              std::span<const OpenedSource> sources, const MapBuilding& building) {
+  std::string identity = fmt::format("{} {}", settings.zone.epsg(), settings.cell_m);
+  for (const OpenedSource& source : sources) identity += "\n" + source.record.name + " " + source.record.fingerprint;
+  std::string name = map.name;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  const auto* bytes = reinterpret_cast<const unsigned char*>(identity.data());
+  return building.cache / fmt::format("{}-{}.gpkg", name, fnv1a64({bytes, identity.size()}));
 }
 
 }  // namespace
 
 MapView build_map(const ManifestMap& map, const MapBuilding& building) {
   std::filesystem::create_directories(building.cache);
-  const std::filesystem::path file = file_of(map, building);
+  const MapSettings settings{UtmZone::containing(centre_of_source(request_of(map.sources.front()))), building.cell_m};
+  std::vector<OpenedSource> sources;
+  for (const ManifestSource& source : map.sources) {
+    sources.push_back(open(request_of(source), static_cast<int>(sources.size()) + 1, settings, building));
+  }
+  const std::filesystem::path file = file_of(map, settings, sources, building);
   {
-    auto settings = MapWriter::settings_of(file);
-    if (!settings) {
-      settings.emplace(UtmZone::containing(centre_of_source(request_of(map.sources.front()))), building.cell_m);
+    MapWriter writer(file, settings);
+    for (const OpenedSource& source : sources) {
+      const IngestProgress progress{
+          [&](std::int64_t done, std::int64_t total) { building.progress(source.record.name, done, total); }, {}};
+      ingest(*source.cells, source.record, settings, writer, {building.jobs, building.seed, false}, progress,
+             building.stop);
     }
-    MapWriter writer(file, *settings);
-    for (const ManifestSource& source : map.sources) ingest_source(source, *settings, writer, building);
   }
   return view_of(std::make_shared<const MapReader>(file), map.name);
 }

@@ -25,8 +25,8 @@ struct MapBuilding {
   std::stop_token stop;
 };
 
-/// The file's name tells the map's name, the detector, the seed and the cell size; a source that changed is replaced.
-/// Throws what sources, pipeline and store throw.
+/// The file's name tells sources, their content, the detector and its settings, cell size and seed apart (not versions
+/// of this program). Throws what sources, pipeline and store throw.
 MapView build_map(const ManifestMap& map, const MapBuilding& building);
 
 /// One raster on the plane of the zone at its own ground sample distance. Throws LimitExceeded ("imagery-too-large")

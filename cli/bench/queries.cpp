@@ -31,11 +31,7 @@ Observed seen_by(const RoadGrid& grid) {
 }
 
 Observed seen_by(const Orthoimage& ortho) {
-  return [&ortho](GridPoint point) {
-    const cv::Point pixel(static_cast<int>(std::floor((point.east_m - ortho.north_west.east_m) / ortho.image.gsd_m)),
-                          static_cast<int>(std::floor((ortho.north_west.north_m - point.north_m) / ortho.image.gsd_m)));
-    return cv::Rect({}, ortho.image.observed.size()).contains(pixel) && ortho.image.observed.at<uchar>(pixel) != 0;
-  };
+  return [&ortho](GridPoint point) { return sees(ortho, point); };
 }
 
 Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& zone, Random& random) {
@@ -86,7 +82,7 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
 
 std::vector<Query> simulated(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
   const RoadGrid grid = whole(map);
-  const PoseSampling sampling{map.extent, set.footprint, seen_by(grid)};
+  const PoseSampling sampling{without(map.extent, set.exclude), set.footprint, seen_by(grid)};
   std::vector<Query> queries;
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "core/detect/frame.hpp"
+
 namespace roadfix::bench {
 namespace {
 
@@ -13,9 +15,8 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
     const FeatureMap features =
-        query.features
-            ? *query.features
-            : FeatureMap::centred(detector_.detect(*query.picture, options_.cell_m, options_.seed), options_.cell_m);
+        query.features ? *query.features
+                       : detect_features(detector_, rectified(*query.picture), options_.cell_m, options_.seed);
     const Fix fix = locate(map_, features, query.prior, options_.fix);
     Answer answer{fix.status, fix.reason, {}, fix.probability, 0.0};
     if (!fix.modes.empty()) answer.best = fix.modes.front().pose;

@@ -10,6 +10,14 @@ GridBox Orthoimage::box() const {
           {north_west.east_m + image.pixels.cols * image.gsd_m, north_west.north_m}};
 }
 
+bool sees(const Orthoimage& imagery, GridPoint point) {
+  const cv::Mat& observed = imagery.image.observed;
+  const double col = std::floor((point.east_m - imagery.north_west.east_m) / imagery.image.gsd_m);
+  const double row = std::floor((imagery.north_west.north_m - point.north_m) / imagery.image.gsd_m);
+  return col >= 0 && row >= 0 && col < observed.cols && row < observed.rows &&
+         observed.at<uchar>(static_cast<int>(row), static_cast<int>(col)) != 0;
+}
+
 std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pose) {
   const double c = cos(pose.heading);
   const double s = sin(pose.heading);

@@ -16,6 +16,9 @@ struct Orthoimage {
   GridBox box() const;
 };
 
+/// Whether the imagery holds an observed pixel there.
+bool sees(const Orthoimage& imagery, GridPoint point);
+
 /// A rectangle on the ground in the body frame: width across, height along the direction of travel.
 struct Footprint {
   double width_m = 0.0;

@@ -35,6 +35,17 @@ TEST(OrthoimageCutOut, FlyingEastTheForwardEdgeIsEast) {
   EXPECT_EQ(cut.pixels.at<cv::Vec3b>(7, 0), cv::Vec3b(16, 16, 0));  // back left = north-west
 }
 
+TEST(Orthoimage, SeesItsObservedPixelsAndNothingBeyond) {
+  Orthoimage ortho = coordinates(40, 40);
+  ortho.image.observed.at<uchar>(3, 2) = 0;
+  EXPECT_TRUE(sees(ortho, {1000.1, 1999.9}));
+  EXPECT_TRUE(sees(ortho, {1019.9, 1980.1}));
+  EXPECT_FALSE(sees(ortho, {1001.2, 1998.3}));  // pixel (2, 3)
+  EXPECT_FALSE(sees(ortho, {999.9, 1999.9}));
+  EXPECT_FALSE(sees(ortho, {1020.1, 1999.9}));
+  EXPECT_FALSE(sees(ortho, {1e300, -1e300}));
+}
+
 TEST(OrthoimageCutOut, BeyondTheImageryNothingIsObserved) {
   const Orthoimage ortho = coordinates(40, 40);
   const GroundImage cut = cut_out(ortho, {{1000.0, 2000.0}, Angle()}, {8.0, 8.0}, 0.5);

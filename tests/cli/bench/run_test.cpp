@@ -1,0 +1,156 @@
+// The bench as a whole over a drawn town whose detector makes no mistakes: everything must be found.
+#include "cli/bench/run.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stop_token>
+
+#include "core/units/error.hpp"
+#include "tests/support/street_map.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr int kCells = 350;
+constexpr double kGsdM = 1.0;
+
+/// Bright is road.
+class BrightnessDetector : public RoadDetector {
+ public:
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+    const cv::Mat observed = observed_cells(image, cell_m);
+    cv::Mat grey;
+    cv::extractChannel(image.pixels, grey, 0);
+    cv::resize(grey, grey, observed.size(), 0, 0, cv::INTER_AREA);
+    CellArray cells(observed.cols, observed.rows);
+    for (int row = 0; row < cells.rows(); ++row) {
+      for (int col = 0; col < cells.cols(); ++col) {
+        if (observed.at<uchar>(row, col) != 0) cells.at(col, row) = grey.at<uchar>(row, col) > 160 ? kRoad : kNoRoad;
+      }
+    }
+    return cells;
+  }
+  double preferred_gsd_m() const override { return kGsdM; }
+  double halo_m() const override { return 0.0; }
+  std::string describe() const override { return "brightness"; }
+};
+
+/// Half a square kilometre of streets at 1 m, in UTM 34 north, as a picture with world file.
+class BenchRun : public ::testing::Test {
+ protected:
+  BenchRun() {
+    const RoadGrid town = testing::street_map(5, {2.0, {200'000, -2'000'000}, kCells, kCells});
+    cv::Mat picture(2 * kCells, 2 * kCells, CV_8UC3);
+    cv::randu(picture, 0, 140);
+    cv::GaussianBlur(picture, picture, {}, 1.5);
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        if (town.cells.at(x / 2, y / 2) == kRoad) picture.at<cv::Vec3b>(y, x) = {230, 230, 230};
+      }
+    }
+    cv::imwrite(folder / "town.png", picture);
+    std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n3999999.5\n";
+    std::ofstream(folder / "town.png.aux.xml") << "<PAMDataset><SRS>EPSG:32634</SRS></PAMDataset>";
+    cv::imwrite(folder / "frame.png", picture(cv::Rect(200, 300, 300, 300)));
+    // The frame's centre, (400350, 3999550) on the plane of the zone, north up on the grid.
+    const UtmZone zone = UtmZone::from_epsg(32634).value();
+    const LatLon centre = zone.unproject({400350.0, 3999550.0});
+    std::ofstream(folder / "frames.csv") << "file,lat,lon,heading_deg,gsd_m\nframe.png,"
+                                         << std::to_string(centre.lat_deg) << ',' << std::to_string(centre.lon_deg)
+                                         << ',' << zone.true_from_grid({}, {400350.0, 3999550.0}).degrees() << ",1\n";
+    options.jobs = 2;
+    options.maps = {&detector, 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
+    options.progress = [](const std::string&, std::int64_t, std::int64_t) {};
+  }
+
+  std::vector<SetResult> run(const std::string& queries, const std::string& methods) const {
+    const std::string text = R"({"maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}]}],
+        "queries": [)" + queries +
+                             R"(], "methods": [)" + methods + "]}";
+    return bench::run(parse_manifest(text, folder.path()), options);
+  }
+
+  testing::TemporaryFolder folder;
+  BrightnessDetector detector;
+  BenchOptions options;
+};
+
+constexpr const char* kImageQueries = R"({"map": "town", "image": "town.png", "count": 3, "footprint_m": [300, 240]})";
+
+TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
+  for (const SetResult& result : run(kImageQueries, R"("roads", "sift", "orb")")) {
+    const Figures f = figures(result.outcomes);
+    EXPECT_EQ(f.n, 3) << result.method;
+    EXPECT_EQ(f.recall_5, 1.0) << result.method;
+    EXPECT_EQ(f.false_fixes, 0) << result.method;
+    for (const Outcome& outcome : result.outcomes) EXPECT_LT(*outcome.heading_error_deg, 1.0) << result.method;
+  }
+}
+
+TEST_F(BenchRun, PlacesSimulatedFeatureMapsAndRealFrames) {
+  const auto results = run(R"({"map": "town", "image": null, "count": 3, "footprint_m": [300, 300],
+                               "noise": {"erase": 0.1, "invent": 0.1}, "prior": {"radius_m": 300}},
+                              {"map": "town", "frames": "frames.csv"})",
+                           R"("roads")");
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].outcomes.size(), 3u);
+  EXPECT_EQ(figures(results[0].outcomes).recall_5, 1.0);
+  EXPECT_EQ(results[1].outcomes.at(0).id, "frame.png");
+  EXPECT_LT(*results[1].outcomes.at(0).error_m, 3.0);
+  EXPECT_LT(*results[1].outcomes.at(0).heading_error_deg, 1.0);
+}
+
+TEST_F(BenchRun, GivesTheSameAnswersWithAnotherNumberOfJobsAndAFoundMap) {
+  const auto first = run(kImageQueries, R"("roads", "sift")");
+  options.jobs = 1;
+  options.limit = 2;
+  const auto second = run(kImageQueries, R"("roads", "sift")");
+  for (std::size_t method = 0; method < 2; ++method) {
+    ASSERT_EQ(second[method].outcomes.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(first[method].outcomes[i].error_m, second[method].outcomes[i].error_m) << first[method].method;
+      EXPECT_EQ(first[method].outcomes[i].answer.probability, second[method].outcomes[i].answer.probability);
+    }
+  }
+}
+
+TEST_F(BenchRun, RefusesAFootprintThatFitsNowhere) {
+  EXPECT_THAT(
+      [&] { run(R"({"map": "town", "image": "town.png", "count": 1, "footprint_m": [2000, 100]})", "\"sift\""); },
+      ThrowsMessage<InvalidInput>(HasSubstr("2000 x 100 m")));
+}
+
+TEST_F(BenchRun, KeepsMapsOfTheSameNameApart) {
+  const auto other = folder / "other";
+  std::filesystem::create_directory(other);
+  for (const char* file : {"town.png", "town.pgw", "town.png.aux.xml"}) {
+    std::filesystem::copy_file(folder / file, other / file);
+  }
+  cv::imwrite(other / "town.png", cv::Mat(700, 700, CV_8UC3, cv::Scalar::all(10)));
+  const MapBuilding& building = options.maps;
+  const MapView here = build_map({"town", {{folder / "town.png", "imagery"}}}, building);
+  const MapView there = build_map({"town", {{other / "town.png", "imagery"}}}, building);
+  const MapView both =
+      build_map({"town", {{folder / "town.png", "imagery"}, {other / "town.png", "imagery"}}}, building);
+  EXPECT_NE(here.version, there.version);
+  EXPECT_NE(here.version, both.version);
+  EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", "imagery"}}}, building).version);
+}
+
+TEST_F(BenchRun, StopsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+  options.maps.stop = stop.get_token();
+  EXPECT_THROW(run(kImageQueries, "\"roads\""), Interrupted);
+}
+
+}  // namespace
+}  // namespace roadfix::bench

@@ -70,7 +70,8 @@ def service(roadfix, maps, port, log):
     command = [str(roadfix), "serve", "--maps", str(maps), "--port", str(port)]
     print("$", shlex.join(command), flush=True)
     with open(log, "wb") as output:
-        process = subprocess.Popen(command, stdout=output, stderr=output, stdin=subprocess.DEVNULL)
+        # A session of its own: Ctrl-C reaches this script, which then asks the service to stop, once.
+        process = subprocess.Popen(command, stdout=output, stderr=output, stdin=subprocess.DEVNULL, start_new_session=True)
     try:
         wait_until_ready(process, f"http://127.0.0.1:{port}/readyz", log)
         yield process

@@ -72,6 +72,15 @@ TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
   EXPECT_EQ(refusal({"tree", model(), 1, {}}), "model-without-network");
 }
 
+TEST_F(MakeDetector, TheShippedWeightsFitTheirDescription) {
+  if (!default_model()) GTEST_SKIP() << "models/roadnet.onnx is not there";
+  const auto detector = make_detector({.name = "neural"});
+  EXPECT_NE(detector->describe().find("neural roadnet"), std::string::npos);
+  const GroundImage image{cv::Mat(120, 90, CV_8UC3, cv::Scalar::all(90)), cv::Mat(120, 90, CV_8UC1, cv::Scalar(255)),
+                          1.0};
+  EXPECT_EQ(detector->detect(image, 2.0, 1).observed_count(), 60U * 45U);
+}
+
 TEST_F(MakeDetector, RefusesANameThatIsNoDetector) { EXPECT_EQ(refusal({"sift", {}, 1, {}}), "unknown-detector"); }
 
 }  // namespace

@@ -74,7 +74,9 @@ TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
 
 TEST_F(MakeDetector, TheShippedWeightsFitTheirDescription) {
   if (!default_model()) GTEST_SKIP() << "models/roadnet.onnx is not there";
-  const auto detector = make_detector({.name = "neural"});
+  DetectorChoice choice;
+  choice.name = "neural";
+  const auto detector = make_detector(choice);
   EXPECT_NE(detector->describe().find("neural roadnet"), std::string::npos);
   const GroundImage image{cv::Mat(120, 90, CV_8UC3, cv::Scalar::all(90)), cv::Mat(120, 90, CV_8UC1, cv::Scalar(255)),
                           1.0};

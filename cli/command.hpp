@@ -16,5 +16,6 @@ void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
 void add_match_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
+void add_world_command(CLI::App& app);
 
 }  // namespace roadfix::cli

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_export_command(app);
   roadfix::cli::add_match_command(app);
   roadfix::cli::add_fix_command(app);
+  roadfix::cli::add_world_command(app);
   try {
     app.parse(argc, argv);
     return 0;

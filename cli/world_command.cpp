@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/terminal.hpp"
+#include "core/units/error.hpp"
+#include "tiles/world/world.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct Options {
+  world::WorldSettings settings;
+  std::string folder;
+  std::vector<double> size_km{2.0, 2.0};
+  std::vector<double> center;
+};
+
+void render(const Options& options) {
+  world::WorldSettings settings = options.settings;
+  settings.width_m = options.size_km[0] * 1000.0;
+  settings.height_m = options.size_km[1] * 1000.0;
+  if (!options.center.empty()) settings.center = LatLon{options.center[0], options.center[1]};
+  const std::stop_token stop = stop_on_signals();
+  const world::WorldReport report = [&] {
+    Progress progress("world", "MP", world::kTilePx * world::kTilePx / 1e6);
+    return world::render_world(
+        settings, options.folder, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+  }();
+  fmt::print(
+      "{}: pre.tif and post.tif, {} x {} pixels of {:g} m in EPSG:{}\n"
+      "{:.1f} km of roads, {} buildings of which {} collapsed, {} frames (seed {})\n",
+      options.folder, report.placement.cols, report.placement.rows, report.placement.gsd_m,
+      report.placement.zone.epsg(), report.road_km, report.buildings, report.collapsed, report.frames, settings.seed);
+}
+
+}  // namespace
+
+void add_world_command(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("world", "Renders a town before and after an earthquake, with the truth about its roads");
+  command->footer(
+      "Examples: roadfix world town\n"
+      "          roadfix world goteborg --roads highways.geojson --center 57.70,11.97 --size-km 2x1.5\n"
+      "Writes pre.tif, post.tif, roads.geojson, world.json and frames/ with frames.csv.");
+  const auto options = std::make_shared<Options>();
+  world::WorldSettings& settings = options->settings;
+  command->add_option("folder,--out", options->folder, "Folder to write, made where it is missing")->required();
+  command->add_option("--seed", settings.seed, "The same seed gives the same files")->capture_default_str();
+  command->add_option("--size-km", options->size_km, "Width and height in km, for example 2x2")
+      ->delimiter('x')
+      ->expected(2)
+      ->type_name("WxH");
+  command->add_option("--gsd", settings.gsd_m, "Metres per pixel")->capture_default_str();
+  command->add_option("--center", options->center, "Middle of the pictures in degrees")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("LAT,LON");
+  command->add_option("--roads", settings.roads, "Render these roads (a file that OGR reads) instead of invented ones")
+      ->type_name("FILE");
+  command->add_option("--collapsed", settings.collapsed_share, "Share of the buildings that fall")
+      ->capture_default_str();
+  command->add_option("--frames", settings.frames, "Frames to cut out of post.tif")->capture_default_str();
+  command->add_option("--footprint-m", settings.footprint_m, "Side of the ground that a frame shows")
+      ->capture_default_str();
+  command->callback([options] { render(*options); });
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,34 @@
+// Sun, air, season and camera of the day on which a picture is taken.
+#pragma once
+
+#include <cmath>
+
+#include "core/units/angle.hpp"
+#include "tiles/world/plan.hpp"
+
+namespace roadfix::world {
+
+struct Conditions {
+  Angle sun_azimuth;    ///< clockwise from grid north, where the sun stands
+  Angle sun_elevation;  ///< above the horizon
+  PlanPoint lean;       ///< where tops of things appear: metres on the plan for each metre of height
+  double dust = 0.0;    ///< share of dust on streets and roofs
+  double haze = 0.0;    ///< share of scattered light, more where buildings fell
+  double winter = 0.0;  ///< 0 summer, 1 brown grass and bare trees
+  double contrast = 1.0;
+  Colour gain{1.0, 1.0, 1.0};
+  double blur_px = 0.6;
+  double noise = 2.0;  ///< of the sensor, grey levels
+  int noise_stream = 1;
+
+  /// Unit vector on the plan from the sun onwards, the way shadows fall.
+  PlanPoint shadow_direction() const { return {-std::sin(sun_azimuth.radians()), std::cos(sun_azimuth.radians())}; }
+  /// Length of the shadow of a thing one metre high.
+  double shadow_length() const { return 1.0 / std::tan(sun_elevation.radians()); }
+};
+
+/// A clear summer morning; a hazy winter day with a low sun and a camera that looks from the side.
+Conditions summer_before();
+Conditions winter_after();
+
+}  // namespace roadfix::world

@@ -1,0 +1,31 @@
+// Writes a picture tile by tile as a georeferenced GeoTIFF: compressed, tiled, three bands of 8 bits.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "tiles/sources/gdal_session.hpp"
+#include "tiles/world/settings.hpp"
+
+namespace roadfix::world {
+
+/// The file appears under its name when finish() returns; without it nothing is left behind.
+class PictureFile {
+ public:
+  /// Throws IoFailure "world-unwritable", as the others do.
+  PictureFile(std::string path, const Placement& placement);
+  ~PictureFile();
+  PictureFile(const PictureFile&) = delete;
+  PictureFile& operator=(const PictureFile&) = delete;
+
+  /// Red, green, blue; `corner` is the tile's place in the picture.
+  void write(cv::Point corner, const cv::Mat3b& pixels);
+  void finish();
+
+ private:
+  std::string path_;
+  std::string partial_;
+  DatasetPtr dataset_;
+};
+
+}  // namespace roadfix::world

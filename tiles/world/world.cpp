@@ -1,0 +1,160 @@
+#include "tiles/world/world.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/road_lines.hpp"
+#include "tiles/world/conditions.hpp"
+#include "tiles/world/development.hpp"
+#include "tiles/world/disaster.hpp"
+#include "tiles/world/frames.hpp"
+#include "tiles/world/furnishing.hpp"
+#include "tiles/world/painter.hpp"
+#include "tiles/world/picture_file.hpp"
+#include "tiles/world/real_streets.hpp"
+#include "tiles/world/road_truth.hpp"
+#include "tiles/world/street_network.hpp"
+
+namespace roadfix::world {
+namespace {
+
+/// Streams of random numbers, one for each part of a world.
+enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisaster, kFrames };
+
+LatLon center_of(const WorldSettings& settings) {
+  if (settings.center) return *settings.center;
+  return settings.roads.empty() ? kDefaultCenter : centre_of_roads(settings.roads, {});
+}
+
+Plan plan_before(const WorldSettings& settings, const Placement& placement) {
+  Plan plan;
+  plan.width_m = placement.cols * placement.gsd_m;
+  plan.height_m = placement.rows * placement.gsd_m;
+  if (settings.roads.empty()) {
+    Random random(settings.seed, kStreets);
+    invent_streets(plan, random);
+  } else {
+    plan.streets = read_streets(settings.roads, placement);
+  }
+  return plan;
+}
+
+void fill_in(Plan& plan, Site& site, std::uint64_t seed) {
+  Random building(seed, kBuildings);
+  develop(plan, site, building);
+  Random tree(seed, kTrees);
+  plant(plan, site, tree);
+  Random car(seed, kTraffic);
+  plan.boxes = traffic(plan, car);
+}
+
+class Photographer {
+ public:
+  Photographer(const Placement& placement, std::uint64_t seed, const WorldProgress& progress, std::stop_token stop)
+      : placement_(placement), texture_(seed), progress_(progress), stop_(std::move(stop)) {}
+
+  void photograph(const Plan& plan, const Conditions& conditions, const std::string& path) {
+    PictureFile file(path, placement_);
+    for (int row = 0; row < placement_.rows; row += kTilePx) {
+      for (int col = 0; col < placement_.cols; col += kTilePx) {
+        if (stop_.stop_requested()) {
+          throw Interrupted("interrupted", "stopped; nothing unfinished was left. Start the same command again");
+        }
+        const cv::Rect tile = cv::Rect(col, row, kTilePx, kTilePx) & cv::Rect(0, 0, placement_.cols, placement_.rows);
+        file.write(tile.tl(), paint_tile(plan, conditions, texture_, tile, placement_.gsd_m));
+        if (progress_) progress_(++done_, 2 * tiles());
+      }
+    }
+    file.finish();
+  }
+
+ private:
+  std::int64_t tiles() const {
+    const auto across = [](int pixels) { return std::int64_t{(pixels + kTilePx - 1) / kTilePx}; };
+    return across(placement_.cols) * across(placement_.rows);
+  }
+
+  const Placement& placement_;
+  Texture texture_;
+  const WorldProgress& progress_;
+  std::stop_token stop_;
+  std::int64_t done_ = 0;
+};
+
+void write_report(const WorldReport& report, const WorldSettings& settings, const std::string& path) {
+  const LatLon center = report.placement.zone.unproject(
+      report.placement.point_of(report.placement.cols / 2.0, report.placement.rows / 2.0));
+  const nlohmann::ordered_json json{
+      {"seed", settings.seed},
+      {"size_m", {report.placement.cols * settings.gsd_m, report.placement.rows * settings.gsd_m}},
+      {"gsd_m", settings.gsd_m},
+      {"center", {{"lat", center.lat_deg}, {"lon", center.lon_deg}}},
+      {"epsg", report.placement.zone.epsg()},
+      {"roads_from", settings.roads.empty() ? "invented" : std::filesystem::path(settings.roads).filename().string()},
+      {"road_lines", report.road_lines},
+      {"road_km", report.road_km},
+      {"blocks", report.blocks},
+      {"buildings", report.buildings},
+      {"collapsed", report.collapsed},
+      {"trees", report.trees},
+      {"frames", report.frames},
+      {"footprint_m", settings.footprint_m}};
+  std::ofstream out(path);
+  out << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path));
+}
+
+WorldReport report_of(const Plan& before, const Plan& after, const Placement& placement, int road_lines) {
+  WorldReport report{.placement = placement, .road_lines = road_lines};
+  for (const Street& street : before.streets) {
+    for (const Polyline& line : clipped(street.line, before.width_m, before.height_m)) {
+      report.road_km += length_m(line) / 1000.0;
+    }
+  }
+  report.blocks = static_cast<int>(before.blocks.size());
+  report.buildings = static_cast<int>(before.buildings.size());
+  report.collapsed = static_cast<int>(after.debris.size());
+  report.trees = static_cast<int>(before.trees.size());
+  return report;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw IoFailure("world-unwritable",
+                    fmt::format("{}: no folder can be made there ({})", folder.string(), error.message()));
+  }
+}
+
+}  // namespace
+
+WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
+                         const WorldProgress& progress, std::stop_token stop) {
+  check(settings);
+  const Placement placement = place(settings, center_of(settings));
+  Plan before = plan_before(settings, placement);
+  Site site(before);
+  fill_in(before, site, settings.seed);
+  Random shock(settings.seed, kDisaster);
+  const Plan after = after_earthquake(before, site, settings.collapsed_share, shock);
+
+  make_folder(folder);
+  Photographer photographer(placement, settings.seed, progress, std::move(stop));
+  photographer.photograph(before, summer_before(), (folder / "pre.tif").string());
+  photographer.photograph(after, winter_after(), (folder / "post.tif").string());
+  const int lines = write_road_truth((folder / "roads.geojson").string(), before.streets, placement);
+  Random pose(settings.seed, kFrames);
+  const auto poses = draw_poses(settings, placement, pose);
+  write_frames((folder / "post.tif").string(), (folder / "frames").string(), settings, placement, poses);
+  WorldReport report = report_of(before, after, placement, lines);
+  report.frames = settings.frames;
+  write_report(report, settings, (folder / "world.json").string());
+  return report;
+}
+
+}  // namespace roadfix::world

@@ -1,0 +1,38 @@
+// A rendered world: a town before and after an earthquake with the truth about its roads and about frames of it. It
+// gives demo and tests a ground truth; it is no substitute for real imagery.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+
+#include "core/units/planar.hpp"
+#include "tiles/world/plan.hpp"
+#include "tiles/world/settings.hpp"
+
+namespace roadfix::world {
+
+/// What was written, for world.json and for people.
+struct WorldReport {
+  Placement placement;
+  int road_lines = 0;
+  double road_km = 0.0;
+  int blocks = 0;
+  int buildings = 0;
+  int collapsed = 0;
+  int trees = 0;
+  int frames = 0;
+};
+
+using WorldProgress = std::function<void(std::int64_t tiles_done, std::int64_t tiles)>;
+
+/// Pixels of one step of progress.
+inline constexpr int kTilePx = 1024;
+
+/// Writes pre.tif, post.tif, roads.geojson, world.json and frames/ into the folder, which is made where it is missing.
+/// The same settings give the same bytes. Throws InvalidInput for settings that cannot be met, IoFailure, Interrupted.
+WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
+                         const WorldProgress& progress, std::stop_token stop);
+
+}  // namespace roadfix::world

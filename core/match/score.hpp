@@ -5,9 +5,9 @@
 
 namespace roadfix {
 
-/// Variance of the cells below which a footprint, or the map under it, holds too little road to be compared: about one
-/// cell of road in a thousand.
-inline constexpr double kLeastSpread = 1e-3;
+/// Variance of the cells below which a footprint, or the map under it, holds too little contrast to be compared: one
+/// cell of certain road in ten thousand, or probabilities that differ by 1 %.
+inline constexpr double kLeastSpread = 1e-4;
 
 /// r * sqrt(n / full_cells); 0 where less than `least_cells` were observed in both or one of them holds too little
 /// road.

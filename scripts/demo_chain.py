@@ -133,10 +133,14 @@ def report(frame, answer):
     error = distance_m(frame.truth, pose) if frame.truth and pose else None
     turned = abs((pose[2] - frame.truth[2] + 180) % 360 - 180) if error is not None else None
     probability = answer.get("probability")
+    note = answer.get("reason", "")
+    if pose is None and frame.truth and answer.get("modes"):
+        guess = answer["modes"][0]["pose"]
+        note += f"; the best guess is {distance_m(frame.truth, (guess['lat'], guess['lon'])):.1f} m off"
     print(f"{frame.file.name[:16]:<16} {pose_text(frame.truth)} | {answer['status']:<9} {pose_text(pose)} | "
           + (f"{error:6.1f} m {turned:5.1f}°" if error is not None else f"{'-':>8} {'-':>6}")
           + (f" {probability:6.3f}" if probability is not None else f" {'-':>6}")
-          + f" {sum(answer.get('time_ms', {}).values()):4.0f} ms  {answer.get('reason', '')}", flush=True)
+          + f" {sum(answer.get('time_ms', {}).values()):4.0f} ms  {note}", flush=True)
     return error
 
 

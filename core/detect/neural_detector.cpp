@@ -64,7 +64,7 @@ class NeuralRoadDetector::NetPool {
     if (blob.dims != 4 || blob.size[0] != 1 || blob.size[1] != 1 || blob.type() != CV_32FC1) {
       CV_Error(cv::Error::StsUnmatchedSizes, "the output is not 1 x 1 x rows x columns");
     }
-    const cv::Mat result = cv::Mat(blob.size[2], blob.size[3], CV_32FC1, const_cast<float*>(blob.ptr<float>())).clone();
+    cv::Mat result = cv::Mat(blob.size[2], blob.size[3], CV_32FC1, const_cast<float*>(blob.ptr<float>())).clone();
     const std::scoped_lock lock(mutex_);
     idle_.push_back(net);
     return result;
@@ -157,7 +157,7 @@ double NeuralRoadDetector::preferred_gsd_m() const { return network_.gsd_m; }
 
 double NeuralRoadDetector::halo_m() const {
   const int window = network_.local_contrast ? network_.local_contrast->window_px : 0;
-  return std::max(network_.overlap_px, window) / 2 * network_.gsd_m;
+  return 0.5 * std::max(network_.overlap_px, window) * network_.gsd_m;
 }
 
 std::string NeuralRoadDetector::describe() const {

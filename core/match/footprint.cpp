@@ -31,7 +31,7 @@ Footprint::Footprint(const FeatureMap& north_up) {
       mask_[first_block + i / kAlignment].cells[i % kAlignment] = 255;
       ++observed_cells_;
       sum_ += cell;
-      sum_of_squares_ += cell * cell;
+      sum_of_squares_ += std::int64_t{cell} * cell;
     }
     const int last_col = first_col + static_cast<int>(length) - 1;
     reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});

@@ -60,7 +60,7 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
   const auto read = [&](std::size_t i) {
     return Block{todo[i], source.read(tile_geometry(todo[i], cell_m), block_seed(options.seed, todo[i]))};
   };
-  const auto write = [&](Block block) {
+  const auto write = [&](const Block& block) {
     writer.put_block(name, block.index, block.cells);
     observed += static_cast<std::int64_t>(block.cells.observed_count());
     if (progress.blocks) progress.blocks(++done, total);

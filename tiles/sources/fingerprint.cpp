@@ -60,8 +60,7 @@ std::vector<std::string> with_side_files(const std::string& path) {
   for (char** entry = list; entry != nullptr && *entry != nullptr; ++entry) files.emplace_back(*entry);
   CSLDestroy(list);
   std::ranges::sort(files);
-  const auto same = std::ranges::unique(files);
-  files.erase(same.begin(), same.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 

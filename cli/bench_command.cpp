@@ -25,10 +25,24 @@ struct BenchArguments {
   std::string manifest;
   std::string json_file;
   std::string cache;
+  std::string methods;
   DetectorChoice detector;
   double cell_m = 2.0;
   bench::BenchOptions options;
 };
+
+/// The manifest with only those of its methods that were asked for.
+bench::Manifest manifest_of(const BenchArguments& arguments) {
+  bench::Manifest manifest = bench::read_manifest(arguments.manifest);
+  if (arguments.methods.empty()) return manifest;
+  std::erase_if(manifest.methods, [&](const std::string& method) {
+    return ("," + arguments.methods + ",").find("," + method + ",") == std::string::npos;
+  });
+  if (manifest.methods.empty()) {
+    throw InvalidInput("method-unknown", fmt::format("--methods {}: the manifest has none of them", arguments.methods));
+  }
+  return manifest;
+}
 
 std::filesystem::path default_cache() {
   const char* home = std::getenv("XDG_CACHE_HOME");
@@ -71,7 +85,7 @@ void write_json(const nlohmann::json& document, const std::string& file) {
 }
 
 void run_bench(BenchArguments& arguments) {
-  const bench::Manifest manifest = bench::read_manifest(arguments.manifest);
+  const bench::Manifest manifest = manifest_of(arguments);
   const auto detector = make_detector(arguments.detector);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
@@ -106,6 +120,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--seed", a->options.seed, "Of the query poses and the detector")->capture_default_str();
   command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
   command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
   command->add_option("--confidence", a->options.fix.confidence, "Probability that a fix must reach")
       ->capture_default_str()

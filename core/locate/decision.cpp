@@ -17,6 +17,12 @@ constexpr std::size_t kFewestRivals = 12;
 constexpr double kSampleM2 = 15.0 * 15.0;
 constexpr double kBeyondChance = 12.0;
 
+/// Fisher's z: differences between correlations near 1 mean more than the same near 0.
+double fisher(double score) {
+  constexpr double kPerfect = 0.9999;
+  return std::atanh(std::clamp(score, -kPerfect, kPerfect));
+}
+
 double deviations(const SearchMode& mode, double cell_m) {
   const double samples = static_cast<double>(mode.observed_cells) * cell_m * cell_m / kSampleM2;
   return mode.pearson * std::sqrt(samples);
@@ -44,13 +50,14 @@ std::vector<double> shares(const SearchResult& found) {
 double expected_by_chance(double best_score, const ScoreBackground& background) {
   const std::vector<double>& rivals = background.rivals;
   if (rivals.size() < kFewestRivals) return std::numeric_limits<double>::infinity();
-  const double lowest = rivals.back();
+  const double lowest = fisher(rivals.back());
   const auto count = static_cast<double>(rivals.size() - 1);
   double mean_excess = 0.0;
-  for (const double score : rivals) mean_excess += (score - lowest) / count;
-  if (mean_excess <= 0.0 || best_score <= lowest) return std::numeric_limits<double>::infinity();
+  for (const double score : rivals) mean_excess += (fisher(score) - lowest) / count;
+  const double excess = fisher(best_score) - lowest;
+  if (mean_excess <= 0.0 || excess <= 0.0) return std::numeric_limits<double>::infinity();
   // The mean excess is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
-  const double tail = std::pow(1.0 + (best_score - lowest) / (mean_excess * count), -count);
+  const double tail = std::pow(1.0 + excess / (mean_excess * count), -count);
   return background.region_share * count * tail;
 }
 

@@ -1,9 +1,10 @@
 // Is the best place the true one? From the scores of a search to a status and a probability.
 //
-// Two doubts are told apart. (1) Chance: among so many places some fit well although the UAV is at none of them. The
-// scores of the distinct places beside the best one tell how fast such maxima thin out (exponential tail above the
-// lowest of them); from that follows how many at least as good as the best one chance would give. (2) Several places
-// that fit: the posterior over the modes from their tempered log-likelihood (ScoreBackground).
+// Two doubts are told apart.
+// (1) Chance: among so many places some fit well although the UAV is at none of them. The scores of the distinct places
+//     beside the best one tell how fast such maxima thin out (an exponential tail of their Fisher z above the lowest of
+//     them); from that follows how many at least as good as the best one chance would give.
+// (2) Several places that fit: the posterior over the modes from their tempered log-likelihood (ScoreBackground).
 //
 // Assumed, not yet learned from data: the exponential tail, a factor kChanceSafety on the expected number, the temper
 // of the likelihood. All lean to the side of no fix.

@@ -271,7 +271,9 @@ double SearchRegion::area_km2() const {
 
 double ScoreBackground::log_likelihood(double score) const {
   if (sd <= 0.0 || score <= 0.0) return 0.0;
-  return kTemper * 0.5 * (score / sd) * (score / sd);
+  constexpr double kPerfect = 0.9999;
+  const double shared = std::min(score, kPerfect);
+  return -kTemper * 0.5 * std::log1p(-shared * shared) / (sd * sd);
 }
 
 SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,

@@ -72,9 +72,9 @@ struct ScoreBackground {
   /// Share of the places that `rivals` came from which lies within the region, in (0, 1].
   double region_share = 1.0;
 
-  /// Log-likelihood of a pose against chance, up to a constant. Scores are normal with this sd by chance, which makes
-  /// it (score / sd)^2 / 2; kTemper says how far that is trusted, since the errors of neighbouring cells are not
-  /// independent.
+  /// Log-likelihood ratio of a pose against chance: -(n / 2) log(1 - r^2), as if map and feature map were jointly
+  /// normal and 1 / sd^2 the number of independent samples. kTemper says how far that is trusted, since the errors of
+  /// neighbouring cells are not independent.
   double log_likelihood(double score) const;
   /// Assumed, not yet learned from data.
   static constexpr double kTemper = 0.25;

@@ -1,0 +1,74 @@
+#include "core/locate/decision.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+/// A best place of `score` among rivals that thin out from `second` to `lowest`.
+SearchResult found(double score, double second, double lowest) {
+  SearchResult result;
+  result.cell_m = 2.0;
+  result.background.sd = 0.05;
+  result.background.poses = 1'000'000;
+  constexpr int kRivals = 80;
+  for (int i = 0; i < kRivals; ++i) {
+    // Order statistics of an exponential tail.
+    const double share = std::log((i + 1.0) / kRivals) / std::log(1.0 / kRivals);
+    result.background.rivals.push_back(lowest + (second - lowest) * share);
+  }
+  result.background.rivals_within = result.background.rivals;
+  SearchMode best;
+  best.score = best.pearson = score;
+  best.observed_cells = 40'000;
+  SearchMode next = best;
+  next.score = next.pearson = second;
+  result.modes = {best, next};
+  return result;
+}
+
+TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
+  const Decision decision = decide(found(0.8, 0.35, 0.2), 0.99);
+  EXPECT_EQ(decision.status, FixStatus::kFix);
+  EXPECT_GE(decision.probability, 0.99);
+  EXPECT_TRUE(decision.reason.empty());
+  EXPECT_GT(decision.weights[0], decision.weights[1]);
+}
+
+TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
+  const Decision decision = decide(found(0.38, 0.35, 0.2), 0.99);
+  EXPECT_EQ(decision.status, FixStatus::kNoFix);
+  EXPECT_EQ(decision.reason, "not-above-chance");
+  EXPECT_LT(decision.probability, 0.1);
+}
+
+TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
+  const Decision decision = decide(found(0.85, 0.84, 0.7), 0.99);
+  EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
+  EXPECT_EQ(decision.reason, "several-places-fit");
+}
+
+TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {
+  SearchResult few = found(0.4, 0.1, 0.05);
+  few.background.rivals.resize(5);
+  EXPECT_EQ(decide(few, 0.5).status, FixStatus::kNoFix);
+  EXPECT_TRUE(std::isinf(expected_by_chance(0.4, few.background)));
+}
+
+TEST(Decision, ASmallerRegionLeavesChanceLessRoom) {
+  SearchResult small = found(0.5, 0.35, 0.2);
+  const double whole = expected_by_chance(0.5, small.background);
+  small.background.region_share = 0.01;
+  EXPECT_NEAR(expected_by_chance(0.5, small.background), 0.01 * whole, 1e-12);
+}
+
+TEST(Decision, WithoutAnyModeTheMapIsTooEmpty) {
+  const Decision decision = decide({}, 0.99);
+  EXPECT_EQ(decision.status, FixStatus::kNoFix);
+  EXPECT_EQ(decision.reason, "map-too-empty");
+}
+
+}  // namespace
+}  // namespace roadfix

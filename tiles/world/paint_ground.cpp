@@ -110,7 +110,7 @@ void paint_lots(Canvas& canvas, const Plan& plan, double winter) {
 
 }  // namespace
 
-void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions, const Texture&) {
+void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions) {
   canvas.fill(Polyline{{-200, -200},
                        {plan.width_m + 200, -200},
                        {plan.width_m + 200, plan.height_m + 200},

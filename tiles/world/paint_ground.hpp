@@ -4,11 +4,10 @@
 #include "tiles/world/canvas.hpp"
 #include "tiles/world/conditions.hpp"
 #include "tiles/world/plan.hpp"
-#include "tiles/world/texture.hpp"
 
 namespace roadfix::world {
 
-void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions, const Texture& texture);
+void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions);
 void paint_trees(Canvas& canvas, const Plan& plan, const Conditions& conditions);
 void paint_debris(Canvas& canvas, const Plan& plan);
 

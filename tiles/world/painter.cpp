@@ -26,7 +26,7 @@ cv::Mat3b paint_tile(const Plan& plan, const Conditions& conditions, const Textu
   const int margin = margin_px(conditions, gsd_m);
   const cv::Rect pixels(tile.x - margin, tile.y - margin, tile.width + 2 * margin, tile.height + 2 * margin);
   Canvas canvas(pixels, gsd_m);
-  paint_ground(canvas, plan, conditions, texture);
+  paint_ground(canvas, plan, conditions);
   paint_streets(canvas, plan, conditions);
   paint_boxes(canvas, plan);
   paint_debris(canvas, plan);

@@ -7,14 +7,14 @@
 namespace roadfix::world::palette {
 
 inline const Colour kSoil{176, 150, 120};
-inline const Colour kRedSoil{172, 122, 86};
+inline const Colour kRedSoil{168, 127, 98};
 inline const Colour kGravel{178, 166, 148};
 inline const Colour kConcrete{190, 178, 160};
 inline const Colour kDryGrass{146, 134, 98};
 inline const Colour kGarden{84, 92, 62};
-inline const Colour kLawn{66, 90, 56};
-inline const Colour kCrop{96, 108, 66};
-inline const Colour kStubble{188, 168, 124};
+inline const Colour kLawn{66, 84, 60};
+inline const Colour kCrop{100, 107, 76};
+inline const Colour kStubble{184, 168, 136};
 inline const Colour kAsphalt{146, 137, 127};
 inline const Colour kSidewalk{178, 167, 152};
 inline const Colour kMarking{205, 200, 190};

@@ -1,0 +1,68 @@
+#include "server/http/access_log.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::http {
+namespace {
+
+/// Bytes that are not printable ASCII are written as \u00XX: a log line is always valid JSON and never two lines.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result.push_back('\\');
+      result.push_back(c);
+    } else if (byte < 0x20 || byte >= 0x7f) {
+      result += fmt::format("\\u{:04x}", byte);
+    } else {
+      result.push_back(c);
+    }
+  }
+  result.push_back('"');
+  return result;
+}
+
+std::shared_ptr<spdlog::logger> open(const std::string& target) {
+  if (target.empty()) return nullptr;
+  try {
+    std::shared_ptr<spdlog::sinks::sink> sink;
+    if (target == "-") {
+      sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    } else {
+      sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(target);
+    }
+    auto logger = std::make_shared<spdlog::logger>("access", sink);
+    logger->set_pattern("%v");
+    logger->flush_on(spdlog::level::info);
+    return logger;
+  } catch (const spdlog::spdlog_ex& error) {
+    throw IoFailure("access-log", fmt::format("the access log {} cannot be written: {}", target, error.what()));
+  }
+}
+
+}  // namespace
+
+std::string json_line(const AccessRecord& r) {
+  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(r.time.time_since_epoch());
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_epoch);
+  return fmt::format(
+      R"({{"time":"{:%Y-%m-%dT%H:%M:%S}.{:03}Z","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}}})",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::time_point(whole))),
+      (since_epoch - whole).count(), quoted(r.id), quoted(r.client), quoted(r.method), quoted(r.target),
+      quoted(r.route), r.status, r.bytes, r.ms);
+}
+
+AccessLog::AccessLog(const std::string& target) : logger_(open(target)) {}
+
+void AccessLog::write(const AccessRecord& record) {
+  if (logger_) logger_->info("{}", json_line(record));
+}
+
+}  // namespace roadfix::http

@@ -1,0 +1,140 @@
+#include "server/http/connection.hpp"
+
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace roadfix::http {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLinger = 500ms;
+
+bool poll_for(int socket, short events, milliseconds time) {
+  pollfd entry{socket, events, 0};
+  const auto timeout = static_cast<int>(std::clamp<milliseconds>(time, 0ms, 1h).count());
+  int ready = 0;
+  do {
+    ready = ::poll(&entry, 1, timeout);
+  } while (ready < 0 && errno == EINTR);
+  return ready > 0;
+}
+
+void numeric_address(const sockaddr_storage& address, socklen_t size, std::string& ip, int& port) {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> service{};
+  if (getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(), service.data(),
+                  service.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return;
+  }
+  ip = host.data();
+  port = std::atoi(service.data());
+}
+
+}  // namespace
+
+Connection::Connection(int socket, const ConnectionLimits& limits) : socket_(socket), limits_(limits) {}
+
+Connection::~Connection() {
+  ::shutdown(socket_, SHUT_RDWR);
+  ::close(socket_);
+}
+
+bool Connection::wait(milliseconds time) {
+  if (begin_ < end_) return true;
+  if (!poll_for(socket_, POLLIN, time)) return false;
+  deadline_ = Clock::now() + limits_.head;
+  return fill();
+}
+
+void Connection::begin_head() {
+  in_head_ = true;
+  head_bytes_ = 0;
+  failure_ = Failure::kNone;
+  deadline_ = Clock::now() + limits_.head;
+}
+
+void Connection::begin_body() {
+  in_head_ = false;
+  deadline_ = Clock::now() + limits_.body;
+}
+
+void Connection::linger() {
+  ::shutdown(socket_, SHUT_WR);
+  const auto until = Clock::now() + kLinger;
+  while (Clock::now() < until &&
+         poll_for(socket_, POLLIN, std::chrono::duration_cast<milliseconds>(until - Clock::now()))) {
+    if (::recv(socket_, buffer_.data(), buffer_.size(), 0) <= 0) return;
+  }
+}
+
+bool Connection::is_readable() const { return begin_ < end_ || poll_for(socket_, POLLIN, 0ms); }
+
+bool Connection::is_writable() const { return poll_for(socket_, POLLOUT, limits_.write); }
+
+bool Connection::fill() {
+  const auto left = std::chrono::duration_cast<milliseconds>(deadline_ - Clock::now());
+  if (left <= 0ms || !poll_for(socket_, POLLIN, left)) {
+    failure_ = Failure::kTimeout;
+    return false;
+  }
+  const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
+  if (n <= 0) {
+    at_end_ = true;
+    failure_ = Failure::kCutOff;
+    return false;
+  }
+  begin_ = 0;
+  end_ = static_cast<std::size_t>(n);
+  return true;
+}
+
+ssize_t Connection::read(char* data, std::size_t size) {
+  if (begin_ == end_ && !fill()) return at_end_ ? 0 : -1;
+  const std::size_t n = std::min(size, end_ - begin_);
+  if (in_head_ && (head_bytes_ += n) > limits_.head_bytes) {
+    failure_ = Failure::kHeadTooLarge;
+    return -1;
+  }
+  std::memcpy(data, buffer_.data() + begin_, n);
+  begin_ += n;
+  return static_cast<ssize_t>(n);
+}
+
+ssize_t Connection::write(const char* data, std::size_t size) {
+  std::size_t sent = 0;
+  while (sent < size) {
+    const ssize_t n = ::send(socket_, data + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n > 0) {
+      sent += static_cast<std::size_t>(n);
+    } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      if (!is_writable()) return -1;
+    } else if (errno != EINTR) {
+      return -1;
+    }
+  }
+  return static_cast<ssize_t>(size);
+}
+
+void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getpeername(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    numeric_address(address, size, ip, port);
+}
+
+void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    numeric_address(address, size, ip, port);
+}
+
+}  // namespace roadfix::http

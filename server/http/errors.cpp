@@ -1,0 +1,20 @@
+#include "server/http/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace roadfix::http {
+
+MethodNotAllowed::MethodNotAllowed(const std::string& method, std::string allowed)
+    : InvalidInput("method-not-allowed", fmt::format("{} is not possible here; allowed: {}", method, allowed)),
+      allowed_(std::move(allowed)) {}
+
+InvalidField::InvalidField(std::string code, std::string field, const std::string& message,
+                           std::optional<std::size_t> byte)
+    : InvalidInput(std::move(code), message), field_(std::move(field)), byte_(byte) {}
+
+Busy::Busy(const std::string& message, std::chrono::seconds retry_after)
+    : Interrupted("server-busy", message), retry_after_(retry_after) {}
+
+}  // namespace roadfix::http

@@ -1,0 +1,42 @@
+// One request and its answer while they pass through cpp-httplib, and the translation between its types and ours.
+#pragma once
+
+#include <httplib.h>
+
+#include <string>
+
+#include "server/http/connection.hpp"
+#include "server/http/message.hpp"
+#include "server/http/router.hpp"
+
+namespace roadfix::http {
+
+struct Exchange {
+  explicit Exchange(Connection& stream) : connection(&stream) {}
+
+  Connection* connection;
+  Request request;
+  Target target;
+  RouteMatch match;
+  std::string content_type;
+  Clock::time_point started = Clock::now();
+  bool head_read = false;
+  bool must_close = false;  ///< bytes of the request were left unread
+  bool logged = false;
+};
+
+/// Called with the head of the request before cpp-httplib acts on it. Takes from it what it would act on in a way we
+/// do not want: multipart parsing without limits, byte ranges of generated answers, slow Brotli.
+void take_over(httplib::Request& head, Exchange& exchange);
+
+/// Method, headers, id and client; not yet target, body and route.
+Request translated(const httplib::Request& head, const Exchange& exchange);
+
+/// Throws InvalidInput ("length-required", "bad-content-length", "unsupported-content-encoding") or LimitExceeded
+/// ("body-too-large") by what the head says.
+void check_body_headers(const Request& request, std::size_t max_bytes);
+bool announces_body(const Request& request);
+
+void fill(httplib::Response& out, Response response);
+
+}  // namespace roadfix::http

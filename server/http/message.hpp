@@ -1,0 +1,42 @@
+// What handlers see of HTTP: a request that was read whole, and the answer to it. Free of any HTTP library.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace roadfix::http {
+
+using Clock = std::chrono::steady_clock;
+
+/// In the order of the request, percent-decoded; a name may occur twice.
+using Parameters = std::vector<std::pair<std::string, std::string>>;
+
+struct Request {
+  std::string method;
+  std::string path;                                    ///< as sent, without the query
+  std::map<std::string, std::string> path_parameters;  ///< decoded, by the names in the route
+  Parameters query;
+  std::map<std::string, std::string> headers;  ///< lower-case names; repeated ones joined with ", "
+  std::string body;                            ///< unpacked if it was sent with gzip
+  std::string id;                              ///< of the client (X-Request-Id) or made up; echoed
+  std::string client;                          ///< address of the peer
+  Clock::time_point deadline = Clock::time_point::max();
+
+  /// Empty where the header is absent.
+  const std::string& header(const std::string& lower_case_name) const;
+  /// Media type of the body in lower case, without parameters ("image/png").
+  std::string media_type() const;
+};
+
+struct Response {
+  int status = 200;
+  std::string content_type;
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers = {};
+};
+
+}  // namespace roadfix::http

@@ -1,0 +1,44 @@
+// The table of routes: a path is matched segment by segment, so that no request costs more than its length.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/http/message.hpp"
+#include "server/http/url.hpp"
+
+namespace roadfix::http {
+
+struct Route {
+  std::string method;                   ///< GET (which answers HEAD too) or POST
+  std::string path;                     ///< "/v1/maps/{map}/tiles/{z}/{x}/{y}.png"
+  std::vector<std::string> parameters;  ///< every query parameter that the route knows; others are refused
+  bool heavy = false;                   ///< waits its turn: only so many of these run at a time
+  std::function<Response(const Request&)> handler;
+};
+
+struct RouteMatch {
+  const Route* route = nullptr;
+  std::map<std::string, std::string> path_parameters;
+};
+
+class Router {
+ public:
+  void add(Route route);
+  const std::vector<Route>& routes() const { return routes_; }
+
+  /// Throws NotFound ("route-not-found") or MethodNotAllowed.
+  RouteMatch find(const std::string& method, const std::vector<std::string>& segments) const;
+  /// Methods of a path, for Allow and CORS ("GET, HEAD, OPTIONS"); empty where no route has the path.
+  std::string allowed_methods(const std::vector<std::string>& segments) const;
+
+ private:
+  std::vector<Route> routes_;
+  std::vector<std::vector<std::string>> patterns_;
+};
+
+/// Throws InvalidField for a name that the route does not know and for one that is given twice.
+void check_parameter_names(const Route& route, const Parameters& query);
+
+}  // namespace roadfix::http

@@ -1,0 +1,317 @@
+#include "server/http/server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <thread>
+
+#include "core/units/error.hpp"
+#include "server/http/access_log.hpp"
+#include "server/http/connection.hpp"
+#include "server/http/errors.hpp"
+#include "server/http/exchange.hpp"
+#include "server/http/worker_pool.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using namespace std::chrono_literals;
+using HandlerResponse = httplib::Server::HandlerResponse;
+
+constexpr int kListenBacklog = 512;
+constexpr auto kIdlePoll = 50ms;
+/// A connection keeps its thread for so many requests even when others wait for one.
+constexpr int kTurnRequests = 32;
+constexpr auto kFirstByteGrace = 1s;
+
+/// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
+thread_local Exchange* t_exchange = nullptr;
+
+/// Counts up for as long as it lives.
+class Counted {
+ public:
+  explicit Counted(std::atomic<int>& counter) : counter_(counter) { ++counter_; }
+  ~Counted() { --counter_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+
+ private:
+  std::atomic<int>& counter_;
+};
+
+}  // namespace
+
+class Server::Impl : public httplib::Server {
+ public:
+  Impl(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics);
+
+  int start();
+  void stop_and_join();
+
+ private:
+  bool process_and_close_socket(socket_t socket) override;
+  bool wait_for_request(Connection& connection, bool first) const;
+  void refuse_connection(Connection& connection) const;
+
+  HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
+  void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
+  void read_body(Exchange& exchange, const httplib::ContentReader& reader) const;
+  Response answered(Exchange& exchange);
+  void reply(Exchange& exchange, httplib::Response& out, Response response) const;
+  HandlerResponse complete_error(httplib::Response& out);
+  void finished(const httplib::Request& head, const httplib::Response& out);
+
+  const ServerSettings settings_;
+  const Router router_;
+  const ErrorResponse on_error_;
+  Metrics& metrics_;
+  Admission admission_;
+  AccessLog access_log_;
+  std::atomic<bool> stopping_ = false;
+  std::atomic<WorkerPool*> pool_ = nullptr;
+  std::jthread listener_;
+};
+
+Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics)
+    : settings_(std::move(settings)),
+      router_(std::move(router)),
+      on_error_(std::move(on_error)),
+      metrics_(metrics),
+      admission_(settings_.heavy_running, settings_.heavy_waiting),
+      access_log_(settings_.access_log) {
+  metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
+  metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",
+                 [this] { return admission_.waiting(); });
+  set_tcp_nodelay(true);
+  // The connection loop below is ours; these are what the Keep-Alive header says.
+  set_keep_alive_max_count(static_cast<std::size_t>(settings_.keep_alive_requests));
+  set_keep_alive_timeout(std::chrono::duration_cast<std::chrono::seconds>(settings_.idle_time).count());
+  // Not the library's default: SO_REUSEPORT lets a second service take the same port unnoticed.
+  set_socket_options([](socket_t socket) {
+    const int on = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  });
+  new_task_queue = [this] {
+    pool_ = new WorkerPool(static_cast<std::size_t>(settings_.threads),
+                           static_cast<std::size_t>(settings_.max_waiting_connections));
+    return pool_.load();
+  };
+  set_pre_routing_handler([this](const auto& head, auto& out) { return before_body(head, out); });
+  Post(R"([\s\S]*)", [this](const auto& head, auto& out, const auto& reader) { with_body(head, out, reader); });
+  set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
+  set_logger([this](const auto& head, const auto& out) { finished(head, out); });
+}
+
+int Server::Impl::start() {
+  const int port = settings_.port == 0 ? bind_to_any_port(settings_.host)
+                                       : (bind_to_port(settings_.host, settings_.port) ? settings_.port : -1);
+  if (port < 0) {
+    throw IoFailure("address-not-available",
+                    fmt::format("{} port {} cannot be listened on: in use, not allowed, or no address of this machine",
+                                settings_.host, settings_.port));
+  }
+  ::listen(svr_sock_, kListenBacklog);
+  listener_ = std::jthread([this] { listen_after_bind(); });
+  while (!is_running()) std::this_thread::sleep_for(1ms);
+  return port;
+}
+
+void Server::Impl::stop_and_join() {
+  stopping_ = true;
+  if (!listener_.joinable()) return;
+  stop();
+  listener_.join();
+}
+
+bool Server::Impl::process_and_close_socket(socket_t socket) {
+  const Counted open(metrics_.connections);
+  Connection connection(socket, {settings_.idle_time, settings_.head_time, settings_.body_time, settings_.write_time,
+                                 settings_.head_bytes});
+  if (WorkerPool::overflow()) {
+    refuse_connection(connection);
+    return false;
+  }
+  for (int served = 1; wait_for_request(connection, served == 1); ++served) {
+    connection.begin_head();
+    Exchange exchange(connection);
+    t_exchange = &exchange;
+    const bool last = stopping_ || served >= settings_.keep_alive_requests ||
+                      (served >= kTurnRequests && pool_.load()->waiting() > 0);
+    bool closed_by_client = false;
+    const bool written =
+        process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
+    t_exchange = nullptr;
+    if (exchange.must_close || !exchange.head_read) connection.linger();
+    if (!written || last || closed_by_client || exchange.must_close || !exchange.head_read) break;
+  }
+  return true;
+}
+
+bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
+  const auto begin = Clock::now();
+  while (!stopping_) {
+    if (connection.wait(kIdlePoll)) return true;
+    const auto idle = Clock::now() - begin;
+    const bool others_wait = pool_.load()->waiting() > 0 && (!first || idle > kFirstByteGrace);
+    if (connection.at_end() || idle > settings_.idle_time || others_wait) return false;
+  }
+  return connection.wait(0ms);
+}
+
+void Server::Impl::refuse_connection(Connection& connection) const {
+  const Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)));
+  const std::string text = fmt::format(
+      "HTTP/1.1 {} Service Unavailable\r\nContent-Type: {}\r\nRetry-After: 1\r\nConnection: close\r\n"
+      "Content-Length: {}\r\n\r\n{}",
+      response.status, response.content_type, response.body.size(), response.body);
+  connection.write(text.data(), text.size());
+}
+
+HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib::Response& out) {
+  Exchange& exchange = *t_exchange;
+  exchange.request = translated(head, exchange);
+  Request& request = exchange.request;
+  exchange.must_close = announces_body(request) || (head.method != "GET" && head.method != "HEAD" &&
+                                                    head.method != "OPTIONS" && head.method != "POST");
+  try {
+    if (head.target.size() > settings_.target_bytes) {
+      throw LimitExceeded("url-too-long",
+                          fmt::format("the request target is longer than {} bytes", settings_.target_bytes));
+    }
+    exchange.target = parse_target(head.target);
+    request.path = exchange.target.path;
+    request.query = exchange.target.query;
+    if (request.method == "OPTIONS") {
+      const std::string allowed = router_.allowed_methods(exchange.target.segments);
+      if (allowed.empty()) router_.find(request.method, exchange.target.segments);
+      reply(exchange, out,
+            {204,
+             {},
+             {},
+             {{"Allow", allowed},
+              {"Access-Control-Allow-Methods", allowed},
+              {"Access-Control-Allow-Headers", "Content-Type, X-Request-Id"}}});
+      return HandlerResponse::Handled;
+    }
+    exchange.match = router_.find(request.method, exchange.target.segments);
+    request.path_parameters = exchange.match.path_parameters;
+    check_parameter_names(*exchange.match.route, request.query);
+    if (request.method == "POST") {
+      check_body_headers(request, settings_.body_bytes);
+      exchange.must_close = false;
+      return HandlerResponse::Unhandled;
+    }
+  } catch (...) {
+    reply(exchange, out, on_error_(std::current_exception()));
+    return HandlerResponse::Handled;
+  }
+  reply(exchange, out, answered(exchange));
+  return HandlerResponse::Handled;
+}
+
+void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
+  Exchange& exchange = *t_exchange;
+  try {
+    read_body(exchange, reader);
+  } catch (...) {
+    exchange.must_close = true;
+    reply(exchange, out, on_error_(std::current_exception()));
+    return;
+  }
+  reply(exchange, out, answered(exchange));
+}
+
+void Server::Impl::read_body(Exchange& exchange, const httplib::ContentReader& reader) const {
+  std::string& body = exchange.request.body;
+  bool too_large = false;
+  const bool whole = reader([&](const char* data, std::size_t size) {
+    too_large = body.size() + size > settings_.body_bytes;
+    if (!too_large) body.append(data, size);
+    return !too_large;
+  });
+  if (whole) return;
+  if (too_large) {
+    throw LimitExceeded("body-too-large",
+                        fmt::format("the body is larger than the limit of {} bytes", settings_.body_bytes));
+  }
+  switch (exchange.connection->failure()) {
+    case Connection::Failure::kTimeout:
+      throw Interrupted("request-timeout", "the rest of the body did not come in time");
+    case Connection::Failure::kCutOff:
+      throw InvalidInput("body-cut-off",
+                         fmt::format("the body ended after {} bytes, before its announced end", body.size()));
+    default:
+      throw InvalidInput("bad-body-encoding", "the body's chunks or its gzip stream are damaged");
+  }
+}
+
+Response Server::Impl::answered(Exchange& exchange) {
+  const Counted in_flight(metrics_.in_flight);
+  try {
+    const Route& route = *exchange.match.route;
+    exchange.request.deadline = Clock::now() + settings_.request_time;
+    if (!route.heavy) return route.handler(exchange.request);
+    const Admission::Ticket ticket = admission_.enter(exchange.request.deadline);
+    return route.handler(exchange.request);
+  } catch (...) {
+    return on_error_(std::current_exception());
+  }
+}
+
+void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
+  response.headers.emplace_back("X-Request-Id", exchange.request.id);
+  if (!settings_.cors_origin.empty()) {
+    response.headers.emplace_back("Access-Control-Allow-Origin", settings_.cors_origin);
+    if (settings_.cors_origin != "*") response.headers.emplace_back("Vary", "Origin");
+  }
+  if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
+  if (exchange.must_close) response.headers.emplace_back("Connection", "close");
+  fill(out, std::move(response));
+}
+
+/// What cpp-httplib answers by itself (a broken request line or header) gets the body that all errors have.
+HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
+  if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
+  Exchange& exchange = *t_exchange;
+  if (exchange.request.id.empty()) exchange.request = translated({}, exchange);
+  exchange.must_close = true;
+  std::exception_ptr error;
+  switch (exchange.connection->failure()) {
+    case Connection::Failure::kHeadTooLarge:
+      error = std::make_exception_ptr(LimitExceeded(
+          "head-too-large", fmt::format("request line and headers exceed {} bytes", settings_.head_bytes)));
+      break;
+    case Connection::Failure::kTimeout:
+      error = std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
+      break;
+    default:
+      error = std::make_exception_ptr(InvalidInput("bad-request", "the head of the request is not HTTP/1.1"));
+  }
+  reply(exchange, out, on_error_(error));
+  return HandlerResponse::Handled;
+}
+
+void Server::Impl::finished(const httplib::Request& head, const httplib::Response& out) {
+  Exchange& exchange = *t_exchange;
+  if (std::exchange(exchange.logged, true)) return;
+  const auto time = Clock::now() - exchange.started;
+  const std::string route = exchange.match.route != nullptr ? exchange.match.route->path : "";
+  metrics_.count(exchange.match.route != nullptr ? head.method : "-", route.empty() ? "-" : route, out.status, time,
+                 out.body.size());
+  access_log_.write({std::chrono::system_clock::now(), exchange.request.id, exchange.request.client, head.method,
+                     head.target, route, out.status, out.body.size(),
+                     std::chrono::duration<double, std::milli>(time).count()});
+}
+
+Server::Server(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics)
+    : impl_(std::make_unique<Impl>(std::move(settings), std::move(router), std::move(on_error), metrics)) {}
+
+Server::~Server() { stop(); }
+
+int Server::start() { return impl_->start(); }
+
+void Server::stop() { impl_->stop_and_join(); }
+
+}  // namespace roadfix::http

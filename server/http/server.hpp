@@ -1,0 +1,58 @@
+// The HTTP/1.1 service: sockets, limits, routing, compression, request ids, access log. Handlers run in its threads.
+#pragma once
+
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/http/admission.hpp"
+#include "server/http/message.hpp"
+#include "server/http/metrics.hpp"
+#include "server/http/router.hpp"
+
+namespace roadfix::http {
+
+struct ServerSettings {
+  std::string host = "127.0.0.1";
+  int port = 8080;                    ///< 0 = any free one
+  int threads = 64;                   ///< connections served at the same time
+  int max_waiting_connections = 256;  ///< beyond them new ones are answered 503
+  int keep_alive_requests = 10'000;   ///< per connection
+  std::chrono::milliseconds idle_time{15'000};
+  std::chrono::milliseconds head_time{10'000};
+  std::chrono::milliseconds body_time{60'000};
+  std::chrono::milliseconds write_time{30'000};
+  std::chrono::milliseconds request_time{30'000};  ///< from the end of the body to the answer: Request::deadline
+  std::size_t head_bytes = 64 << 10;
+  std::size_t target_bytes = 4096;
+  std::size_t body_bytes = std::size_t{64} << 20;  ///< after unpacking
+  int heavy_running = 2;
+  int heavy_waiting = 32;
+  std::string cors_origin = {};  ///< value of Access-Control-Allow-Origin; empty = no CORS
+  std::string access_log = {};   ///< see AccessLog
+};
+
+/// Renders whatever a handler or the protocol threw.
+using ErrorResponse = std::function<Response(std::exception_ptr)>;
+
+class Server {
+ public:
+  /// `metrics` must outlive the server.
+  Server(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Listens from now on; returns the port. Throws IoFailure ("address-not-available").
+  int start();
+  /// Accepts nothing more, answers the requests that have begun, closes.
+  void stop();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadfix::http

@@ -1,0 +1,80 @@
+#include "server/http/url.hpp"
+
+#include <fmt/format.h>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::http {
+namespace {
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+[[noreturn]] void refuse(std::size_t byte, std::string_view what) {
+  throw InvalidInput("bad-url", fmt::format("byte {} of the request target: {}", byte, what));
+}
+
+std::vector<std::string> segments_of(std::string_view path) {
+  if (path.empty() || path.front() != '/') refuse(0, "a path starts with '/'");
+  std::vector<std::string> segments;
+  std::size_t begin = 1;
+  while (begin <= path.size()) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    segments.push_back(percent_decoded(path.substr(begin, end - begin), false, begin));
+    if (segments.back().find('\0') != std::string::npos) refuse(begin, "a path holds no NUL");
+    begin = end + 1;
+  }
+  return segments;
+}
+
+Parameters parameters_of(std::string_view query, std::size_t offset) {
+  Parameters parameters;
+  std::size_t begin = 0;
+  while (begin < query.size()) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view pair = query.substr(begin, end - begin);
+    if (!pair.empty()) {
+      const std::size_t equals = std::min(pair.find('='), pair.size());
+      const std::string_view value = equals < pair.size() ? pair.substr(equals + 1) : std::string_view{};
+      parameters.emplace_back(percent_decoded(pair.substr(0, equals), true, offset + begin),
+                              percent_decoded(value, true, offset + begin + equals + 1));
+    }
+    begin = end + 1;
+  }
+  return parameters;
+}
+
+}  // namespace
+
+std::string percent_decoded(std::string_view text, bool form, std::size_t offset) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%') {
+      const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+      const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
+      if (low < 0) refuse(offset + i, "'%' must be followed by two hexadecimal digits");
+      decoded.push_back(static_cast<char>(high * 16 + low));
+      i += 2;
+    } else {
+      decoded.push_back(form && text[i] == '+' ? ' ' : text[i]);
+    }
+  }
+  return decoded;
+}
+
+Target parse_target(std::string_view target) {
+  target = target.substr(0, target.find('#'));
+  const std::size_t question = std::min(target.find('?'), target.size());
+  Target parsed;
+  parsed.path = target.substr(0, question);
+  parsed.segments = segments_of(target.substr(0, question));
+  if (question < target.size()) parsed.query = parameters_of(target.substr(question + 1), question + 1);
+  return parsed;
+}
+
+}  // namespace roadfix::http

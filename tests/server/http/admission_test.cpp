@@ -1,0 +1,78 @@
+#include "server/http/admission.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "server/http/errors.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+void wait_for(const auto& condition) {
+  for (int i = 0; i < 5000 && !condition(); ++i) std::this_thread::sleep_for(1ms);
+}
+
+TEST(Admission, RefusesWhatComesWhenTheQueueIsFull) {
+  Admission admission(1, 0);
+  const auto ticket = admission.enter(Clock::now() + 1s);
+  EXPECT_THROW(admission.enter(Clock::now() + 1s), Busy);
+}
+
+TEST(Admission, GivesUpAtTheDeadlineAndLeavesNoPlaceBehind) {
+  Admission admission(1, 4);
+  {
+    const auto ticket = admission.enter(Clock::now() + 1s);
+    EXPECT_THROW(admission.enter(Clock::now() + 5ms), Busy);
+    EXPECT_EQ(admission.waiting(), 0);
+  }
+  EXPECT_NO_THROW(admission.enter(Clock::now() + 1s));
+}
+
+TEST(Admission, LetsThemInInTheOrderTheyCame) {
+  Admission admission(1, 8);
+  std::vector<int> order;
+  std::vector<std::jthread> threads;
+  {
+    const auto first = admission.enter(Clock::now() + 10s);
+    for (int i = 0; i < 5; ++i) {
+      threads.emplace_back([&, i] {
+        const auto ticket = admission.enter(Clock::now() + 10s);
+        order.push_back(i);  // one at a time: that is what the ticket is for
+      });
+      wait_for([&] { return admission.waiting() == i + 1; });
+    }
+  }
+  threads.clear();
+  EXPECT_EQ(order, (std::vector{0, 1, 2, 3, 4}));
+}
+
+TEST(Admission, NeverLetsMoreInThanItMay) {
+  Admission admission(3, 100);
+  std::atomic<int> inside = 0;
+  std::atomic<int> most = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 24; ++i) {
+      threads.emplace_back([&] {
+        const auto ticket = admission.enter(Clock::now() + 10s);
+        const int now = ++inside;
+        int seen = most;
+        while (now > seen && !most.compare_exchange_weak(seen, now)) {
+        }
+        std::this_thread::sleep_for(1ms);
+        --inside;
+      });
+    }
+  }
+  EXPECT_EQ(most, 3);
+  EXPECT_EQ(admission.running(), 0);
+}
+
+}  // namespace
+}  // namespace roadfix::http

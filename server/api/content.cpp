@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "server/api/base64.hpp"
+#include "server/api/feature_request.hpp"
+#include "server/api/json_body.hpp"
+#include "server/api/multipart.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+/// A pose is three numbers in an object: four values, and something for the rest of the request.
+JsonLimits json_limits(const Limits& limits) {
+  return {limits.json_depth, static_cast<std::size_t>(limits.poses) * 4 + 1000};
+}
+
+std::vector<std::uint8_t> bytes_of_base64(const std::string& name, const std::string& text) {
+  Base64Result result = base64_decoded(text);
+  if (result.bad_byte) {
+    throw InvalidField("bad-base64", name,
+                       fmt::format("'{}' is not base64: character {} does not belong there", name, *result.bad_byte),
+                       result.bad_byte);
+  }
+  return std::move(result.bytes);
+}
+
+void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {
+  content.fields.add(parse_json(text, json_limits(limits)), known);
+  if (content.fields.has("image")) content.image = bytes_of_base64("image", content.fields.text("image"));
+}
+
+void add_part(Content& content, const Part& part, const std::vector<std::string>& known, const Limits& limits) {
+  if (part.name == "request") {
+    add_json(content, part.content, known, limits);
+  } else if (part.name == "image") {
+    if (!content.image.empty()) throw InvalidField("duplicate-parameter", "image", "'image' is given twice");
+    content.image.assign(part.content.begin(), part.content.end());
+  } else if (std::ranges::find(known, part.name) != known.end()) {
+    content.fields.add_text(part.name, std::string(part.content));
+  } else {
+    throw InvalidField("unknown-field", part.name,
+                       fmt::format("the form's part '{}' is none of 'image', 'request' and the fields of this request",
+                                   part.name.substr(0, 40)));
+  }
+}
+
+}  // namespace
+
+Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits) {
+  Content content{Fields(request.query), {}};
+  const std::string type = request.media_type();
+  if (type == "image/png" || type == "image/jpeg") {
+    content.image.assign(request.body.begin(), request.body.end());
+  } else if (type == "application/json") {
+    add_json(content, request.body, known, limits);
+  } else if (type == "multipart/form-data") {
+    for (const Part& part : parse_multipart(request.header("content-type"), request.body)) {
+      add_part(content, part, known, limits);
+    }
+  } else {
+    throw InvalidInput(
+        "unsupported-media-type",
+        fmt::format("Content-Type is '{}'; send image/png, image/jpeg, application/json or multipart/form-data",
+                    type.substr(0, 60)));
+  }
+  return content;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,166 @@
+#include "server/api/feature_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detect/frame.hpp"
+#include "core/detect/frame_image.hpp"
+#include "core/detect/image_codec.hpp"
+#include "core/units/error.hpp"
+#include "server/api/base64.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+
+constexpr Range kGsd{0.0, 100.0, true};
+constexpr Range kFeatureCell{0.0, 1000.0, true};
+/// As for `roadfix fix`: farther ground is seen too flat to tell a road.
+constexpr double kFarthestGroundM = 3000.0;
+
+constexpr std::string_view kKinds[] = {"feature_map", "frame"};
+constexpr std::string_view kBorders[] = {"seen", "black"};
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+void require_picture(const Content& content) {
+  if (content.image.empty()) {
+    throw InvalidField("missing-parameter", "image",
+                       "there is no picture: send it as the body, as the form's part 'image', or as base64 in 'image'");
+  }
+}
+
+/// Cells as GET .../window gives them: base64, row by row, 0..254 and 255 = unobserved.
+CellArray cells_of_json(const Fields& fields, const Limits& limits) {
+  constexpr int kMaxSide = 1 << 24;
+  const int cols = fields.integer("cols", 1, kMaxSide);
+  const int rows = fields.integer("rows", 1, kMaxSide);
+  if (std::int64_t{cols} * rows > limits.cells) {
+    throw LimitExceeded("too-many-cells", fmt::format("{} x {} cells are more than {}", cols, rows, limits.cells));
+  }
+  const Base64Result decoded = base64_decoded(fields.text("cells"));
+  if (decoded.bad_byte) {
+    throw InvalidField("bad-base64", "cells",
+                       fmt::format("'cells' is not base64: character {} does not belong there", *decoded.bad_byte),
+                       decoded.bad_byte);
+  }
+  CellArray cells(cols, rows);
+  if (decoded.bytes.size() != cells.cells().size()) {
+    throw InvalidField("bad-parameter", "cells",
+                       fmt::format("'cells' holds {} bytes, {} x {} cells need {}", decoded.bytes.size(), cols, rows,
+                                   cells.cells().size()));
+  }
+  std::ranges::copy(decoded.bytes, cells.cells().begin());
+  return cells;
+}
+
+FeatureMap given_map(const Content& content, const Limits& limits) {
+  const Fields& fields = content.fields;
+  const double cell_m = fields.number("cell_m", kFeatureCell);
+  if (fields.has("cells") && !content.image.empty()) {
+    throw InvalidField("duplicate-parameter", "cells", "give either a picture or 'cells', not both");
+  }
+  if (!fields.has("cells")) require_picture(content);
+  FeatureMap map = FeatureMap::centred(
+      fields.has("cells") ? cells_of_json(fields, limits) : decode_feature_map(content.image, limits.cells), cell_m);
+  constexpr Range kPosition{-1e6, 1e6};
+  map.nadir.col = fields.optional_number("nadir_col", kPosition).value_or(map.nadir.col);
+  map.nadir.row = fields.optional_number("nadir_row", kPosition).value_or(map.nadir.row);
+  return map;
+}
+
+FrameCamera camera_of(const Fields& fields) {
+  FrameCamera camera;
+  if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
+    camera.horizontal_fov = Angle::degrees(*fov);
+  camera.focal_px = fields.optional_number("focal_px", kPositive);
+  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
+    throw InvalidField("missing-parameter", "fov_deg",
+                       "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px");
+  }
+  camera.agl_m = fields.number("agl_m", {0.0, 20'000.0, true});
+  camera.roll = Angle::degrees(fields.optional_number("roll_deg", {-90.0, 90.0}).value_or(0.0));
+  camera.pitch = Angle::degrees(fields.optional_number("pitch_deg", {-90.0, 90.0}).value_or(0.0));
+  return camera;
+}
+
+void require_straight_down(const Fields& fields) {
+  for (const char* name : {"fov_deg", "focal_px", "agl_m", "roll_deg", "pitch_deg"}) {
+    if (fields.has(name)) {
+      throw InvalidField(
+          "bad-parameter", name,
+          fmt::format("'{}' does not go with gsd_m, which says that the frame is a metric picture from straight above",
+                      name));
+    }
+  }
+}
+
+GroundView view_of(const Content& content, const RoadDetector& detector, const Limits& limits) {
+  require_picture(content);
+  const Fields& fields = content.fields;
+  const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
+  const GroundImage frame = frame_image(decode_image(content.image, limits.pixels),
+                                        fields.optional_number("gsd_m", kGsd).value_or(1.0), border);
+  if (fields.has("gsd_m")) {
+    require_straight_down(fields);
+    return rectified(frame);
+  }
+  const FrameCamera camera = camera_of(fields);
+  const double gsd_m = std::max(nominal_gsd_m(camera, frame.pixels.size()), 0.5 * detector.preferred_gsd_m());
+  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(limits.pixels));
+}
+
+}  // namespace
+
+const std::vector<std::string>& frame_fields() {
+  static const std::vector<std::string> kFields{"gsd_m",     "fov_deg",    "focal_px", "agl_m", "roll_deg",
+                                                "pitch_deg", "unobserved", "cell_m",   "seed"};
+  return kFields;
+}
+
+const std::vector<std::string>& feature_fields() {
+  static const std::vector<std::string> kFields = joined({"kind", "nadir_col", "nadir_row"}, frame_fields());
+  return kFields;
+}
+
+const std::vector<std::string>& picture_members() {
+  static const std::vector<std::string> kMembers{"image", "cells", "cols",      "rows",        "pose",
+                                                 "map",   "epsg",  "footprint", "geotransform"};
+  return kMembers;
+}
+
+Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
+                     const Limits& limits) {
+  if (content.fields.word("kind", kKinds) == "frame") return detected(content, detector, default_cell_m, limits);
+  for (const std::string& name : frame_fields()) {
+    if (name != "cell_m" && content.fields.has(name)) {
+      throw InvalidField(
+          "bad-parameter", name,
+          fmt::format("'{}' describes a frame; add kind=frame, or leave it out for a feature map", name));
+    }
+  }
+  return {given_map(content, limits), std::nullopt};
+}
+
+Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits) {
+  const double cell_m = content.fields.optional_number("cell_m", {0.1, 100.0}).value_or(default_cell_m);
+  const int seed = content.fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1);
+  const GroundView view = view_of(content, detector, limits);
+  const double cells = static_cast<double>(view.image.pixels.total()) * std::pow(view.image.gsd_m / cell_m, 2.0);
+  if (cells > static_cast<double>(limits.cells)) {
+    throw LimitExceeded("too-many-cells", fmt::format("the frame would have {:.0f} cells of {} m, more than {}", cells,
+                                                      cell_m, limits.cells));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed));
+  return {std::move(map), std::chrono::steady_clock::now() - start};
+}
+
+}  // namespace roadfix::api

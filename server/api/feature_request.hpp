@@ -1,0 +1,45 @@
+// What a client posts to be matched or detected: a feature map or a frame, with the values that describe it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/detect/road_detector.hpp"
+#include "core/grid/feature_map.hpp"
+#include "server/api/fields.hpp"
+#include "server/api/limits.hpp"
+#include "server/http/message.hpp"
+
+namespace roadfix::api {
+
+/// The request's fields and the bytes of its picture, wherever they were: in the query and a bare image body, in a JSON
+/// body (the picture as base64 in "image"), or in the parts of a form ("image", and "request" for JSON).
+struct Content {
+  Fields fields;
+  std::vector<std::uint8_t> image;
+};
+
+/// `known` are the members a JSON body or form may have. Throws InvalidField, LimitExceeded, or InvalidInput
+/// ("unsupported-media-type").
+Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits);
+
+/// Names that may be in the query of a request with a feature map or frame.
+const std::vector<std::string>& feature_fields();
+/// Those of a frame alone.
+const std::vector<std::string>& frame_fields();
+/// Members of a JSON body beside these: the picture, or the cells of a window as GET .../window gives them.
+const std::vector<std::string>& picture_members();
+
+struct Features {
+  FeatureMap map;
+  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
+};
+
+/// The feature map, detected if it is a frame. `default_cell_m` is the cell size for frames that name none.
+Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits);
+Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits);
+
+}  // namespace roadfix::api

@@ -1,0 +1,167 @@
+#include "server/api/fields.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+[[noreturn]] void missing(const std::string& name) {
+  throw InvalidField("missing-parameter", name, fmt::format("'{}' is missing", name));
+}
+
+std::string shown(const json& value) {
+  std::string text =
+      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > 40) text = text.substr(0, 40) + "...";
+  return text;
+}
+
+void require_in(const Range& range, const std::string& name, double value) {
+  const bool below = range.min_is_open ? value <= range.min : value < range.min;
+  if (!below && value <= range.max) return;
+  const bool unbounded = range.max == std::numeric_limits<double>::max();
+  throw InvalidField(
+      "parameter-out-of-range", name,
+      fmt::format("'{}' is {}; it must be {} {}{}", name, value, range.min_is_open ? "above" : "at least", range.min,
+                  unbounded ? "" : fmt::format(" and at most {}", range.max)));
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+Fields::Fields(const http::Parameters& query) {
+  for (const auto& [name, value] : query) add_text(name, value);
+}
+
+void Fields::add_text(const std::string& name, std::string text) {
+  if (!values_.try_emplace(name, Value{std::move(text), true}).second) {
+    throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
+  }
+}
+
+void Fields::add(const json& object, std::span<const std::string> known) {
+  if (!object.is_object()) throw InvalidField("bad-json", "body", "the JSON body must be an object");
+  for (const auto& [name, value] : object.items()) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InvalidField(
+          "unknown-field", name,
+          fmt::format("'{}' is no field of this request; it takes: {}", shown(name), fmt::join(known, ", ")));
+    }
+    if (value.is_null()) continue;
+    if (!values_.try_emplace(name, Value{value, false}).second) {
+      throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
+    }
+  }
+}
+
+const Fields::Value* Fields::find(const std::string& name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? nullptr : &found->second;
+}
+
+double Fields::to_number(const std::string& name, const json& value) const {
+  if (value.is_number()) return value.get<double>();
+  throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a number, not '{}'", name, shown(value)));
+}
+
+std::optional<double> Fields::optional_number(const std::string& name, const Range& range) const {
+  const Value* value = find(name);
+  if (value == nullptr) return std::nullopt;
+  std::optional<double> number;
+  if (value->from_text) {
+    number = parse_number(value->json.get_ref<const std::string&>());
+    if (!number) {
+      throw InvalidField("bad-parameter", name,
+                         fmt::format("'{}' must be a finite number, not '{}'", name, shown(value->json)));
+    }
+  } else {
+    number = to_number(name, value->json);
+  }
+  require_in(range, name, *number);
+  return number;
+}
+
+double Fields::number(const std::string& name, const Range& range) const {
+  const auto value = optional_number(name, range);
+  if (!value) missing(name);
+  return *value;
+}
+
+std::optional<int> Fields::optional_integer(const std::string& name, int min, int max) const {
+  const auto value = optional_number(name, {static_cast<double>(min), static_cast<double>(max)});
+  if (!value) return std::nullopt;
+  if (*value != std::floor(*value)) {
+    throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a whole number, not {}", name, *value));
+  }
+  return static_cast<int>(*value);
+}
+
+int Fields::integer(const std::string& name, int min, int max) const {
+  const auto value = optional_integer(name, min, max);
+  if (!value) missing(name);
+  return *value;
+}
+
+std::string Fields::text(const std::string& name) const {
+  const Value* value = find(name);
+  if (value == nullptr) missing(name);
+  if (!value->json.is_string()) throw InvalidField("bad-parameter", name, fmt::format("'{}' must be text", name));
+  return value->json.get<std::string>();
+}
+
+std::string Fields::word(const std::string& name, std::span<const std::string_view> words) const {
+  if (!has(name)) return std::string(words.front());
+  const std::string value = text(name);
+  if (std::ranges::find(words, value) == words.end()) {
+    throw InvalidField("bad-parameter", name,
+                       fmt::format("'{}' is '{}'; it must be one of: {}", name, shown(value), fmt::join(words, ", ")));
+  }
+  return value;
+}
+
+std::optional<std::vector<double>> Fields::optional_numbers(const std::string& name, std::size_t count) const {
+  const Value* value = find(name);
+  if (value == nullptr) return std::nullopt;
+  std::vector<double> numbers;
+  if (value->from_text) {
+    std::string_view rest = value->json.get_ref<const std::string&>();
+    for (bool more = true; more && numbers.size() <= count;) {
+      const std::size_t comma = rest.find(',');
+      const auto number = parse_number(rest.substr(0, comma));
+      if (!number) break;
+      numbers.push_back(*number);
+      more = comma != std::string_view::npos;
+      if (more) rest.remove_prefix(comma + 1);
+    }
+  } else if (value->json.is_array() && value->json.size() == count) {
+    for (const json& element : value->json) numbers.push_back(to_number(name, element));
+  }
+  if (numbers.size() != count) {
+    throw InvalidField("bad-parameter", name,
+                       fmt::format("'{}' must be {} numbers, not '{}'", name, count, shown(value->json)));
+  }
+  return numbers;
+}
+
+const json* Fields::member(const std::string& name) const {
+  const Value* value = find(name);
+  return value == nullptr || value->from_text ? nullptr : &value->json;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,70 @@
+// The named values of a request, from its query, a JSON body or the parts of a form, read as typed values. Every
+// complaint names the field.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http/message.hpp"
+
+namespace roadfix::api {
+
+/// Closed, open where it says so; NaN and infinity are in no range.
+struct Range {
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+  bool min_is_open = false;
+};
+
+inline constexpr Range kPositive{0.0, std::numeric_limits<double>::max(), true};
+inline constexpr Range kLatitude{-90.0, 90.0};
+inline constexpr Range kLongitude{-180.0, 180.0};
+inline constexpr Range kDegrees{-360.0, 360.0};
+
+class Fields {
+ public:
+  Fields() = default;
+  explicit Fields(const http::Parameters& query);
+
+  /// Adds the members of a JSON object, of which every name must be one of `known`.
+  /// Throws InvalidField ("unknown-field", "duplicate-parameter", "bad-json").
+  void add(const nlohmann::json& object, std::span<const std::string> known);
+  void add_text(const std::string& name, std::string text);
+
+  bool has(const std::string& name) const { return values_.contains(name); }
+  /// Throws InvalidField ("missing-parameter", "bad-parameter", "parameter-out-of-range"), as do those below.
+  double number(const std::string& name, const Range& range) const;
+  std::optional<double> optional_number(const std::string& name, const Range& range) const;
+  int integer(const std::string& name, int min, int max) const;
+  std::optional<int> optional_integer(const std::string& name, int min, int max) const;
+  std::string text(const std::string& name) const;
+  /// One of the words; the first where the field is absent.
+  std::string word(const std::string& name, std::span<const std::string_view> words) const;
+  /// `count` numbers: a JSON array, or text with commas between them.
+  std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t count) const;
+  /// The member of a JSON body as it is; nullptr where it is absent.
+  const nlohmann::json* member(const std::string& name) const;
+
+ private:
+  double to_number(const std::string& name, const nlohmann::json& value) const;
+
+  /// Text of a query or form is kept as a JSON string with `text_` set.
+  struct Value {
+    nlohmann::json json;
+    bool from_text = false;
+  };
+  const Value* find(const std::string& name) const;
+  std::map<std::string, Value> values_;
+};
+
+/// The whole of `text` as a finite number; nullopt for anything else.
+std::optional<double> parse_number(std::string_view text);
+
+}  // namespace roadfix::api

@@ -1,0 +1,113 @@
+#include "server/api/fix_request.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units/error.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+void require_together(const Fields& fields, std::initializer_list<const char*> names) {
+  const bool any = std::ranges::any_of(names, [&](const char* name) { return fields.has(name); });
+  for (const char* name : names) {
+    if (any && !fields.has(name)) {
+      throw InvalidField("missing-parameter", name,
+                         fmt::format("'{}' is missing; {} go together", name, fmt::join(names, ", ")));
+    }
+  }
+}
+
+double pose_number(const json& pose, const char* name, std::size_t index, const Range& range) {
+  const std::string field = fmt::format("poses[{}].{}", index, name);
+  const auto found = pose.find(name);
+  if (found == pose.end()) throw InvalidField("missing-parameter", field, fmt::format("'{}' is missing", field));
+  const double value = found->is_number() ? found->get<double>() : std::nan("");
+  if (!(value >= range.min && value <= range.max)) {
+    throw InvalidField("bad-parameter", field,
+                       fmt::format("'{}' must be a number from {} to {}", field, range.min, range.max));
+  }
+  return value;
+}
+
+GeoPose parse_pose(const json& pose, std::size_t index) {
+  if (!pose.is_object() || pose.size() > 3) {
+    throw InvalidField("bad-parameter", fmt::format("poses[{}]", index),
+                       "a pose is an object with lat, lon and heading_deg");
+  }
+  return {{pose_number(pose, "lat", index, kLatitude), pose_number(pose, "lon", index, kLongitude)},
+          Angle::degrees(pose_number(pose, "heading_deg", index, kDegrees))};
+}
+
+}  // namespace
+
+const std::vector<std::string>& prior_fields() {
+  static const std::vector<std::string> kFields{
+      "lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "confidence", "max_modes"};
+  return kFields;
+}
+
+Prior parse_prior(const Fields& fields) {
+  Prior prior;
+  require_together(fields, {"lat", "lon", "radius_m"});
+  if (fields.has("lat")) {
+    prior.circle = GeoCircle{{fields.number("lat", kLatitude), fields.number("lon", kLongitude)},
+                             fields.number("radius_m", {0.0, 2e7, true})};
+  }
+  if (const auto box = fields.optional_numbers("bbox", 4)) {
+    const GeoBox geo{{(*box)[1], (*box)[0]}, {(*box)[3], (*box)[2]}};
+    const auto on_earth = [](LatLon p) { return std::abs(p.lat_deg) <= 90.0 && std::abs(p.lon_deg) <= 180.0; };
+    if (!on_earth(geo.south_west) || !on_earth(geo.north_east) || geo.south_west.lat_deg >= geo.north_east.lat_deg ||
+        geo.south_west.lon_deg >= geo.north_east.lon_deg) {
+      throw InvalidField("bad-parameter", "bbox",
+                         "'bbox' must be west,south,east,north in degrees with west < east and south < north");
+    }
+    prior.box = geo;
+  }
+  require_together(fields, {"heading_deg", "heading_range_deg"});
+  if (fields.has("heading_deg")) {
+    prior.heading = HeadingRange{Angle::degrees(fields.number("heading_deg", kDegrees)),
+                                 Angle::degrees(fields.number("heading_range_deg", {0.0, 180.0}))};
+  }
+  return prior;
+}
+
+FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
+  FixOptions options;
+  options.confidence = fields.optional_number("confidence", {0.5, 0.999999}).value_or(options.confidence);
+  options.max_modes = fields.optional_integer("max_modes", 1, limits.modes).value_or(options.max_modes);
+  options.max_search_km2 = limits.search_km2;
+  return options;
+}
+
+std::chrono::milliseconds time_left(http::Clock::time_point deadline) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - http::Clock::now());
+  if (left.count() <= 0)
+    throw Interrupted("request-deadline", "the request's time ended before its answer was ready; try again");
+  return left;
+}
+
+std::vector<GeoPose> parse_poses(const Fields& fields, const Limits& limits) {
+  if (!fields.has("poses"))
+    throw InvalidField("missing-parameter", "poses", "'poses' is missing; send JSON with a list of poses");
+  const json* poses = fields.member("poses");
+  if (poses == nullptr || !poses->is_array() || poses->empty()) {
+    throw InvalidField("bad-parameter", "poses", "'poses' must be a list of at least one pose in a JSON body");
+  }
+  if (poses->size() > static_cast<std::size_t>(limits.poses)) {
+    throw LimitExceeded("too-many-poses", fmt::format("{} poses are more than {}", poses->size(), limits.poses));
+  }
+  std::vector<GeoPose> parsed;
+  parsed.reserve(poses->size());
+  for (std::size_t i = 0; i < poses->size(); ++i) parsed.push_back(parse_pose((*poses)[i], i));
+  return parsed;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,31 @@
+// The prior of a fix, its options, and the poses of a match, as a client gives them.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "core/locate/fix.hpp"
+#include "server/api/fields.hpp"
+#include "server/api/limits.hpp"
+#include "server/http/message.hpp"
+
+namespace roadfix::api {
+
+const std::vector<std::string>& prior_fields();
+
+/// lat, lon, radius_m; bbox = west, south, east, north; heading_deg with heading_range_deg (half the width). None of
+/// them = the whole map.
+Prior parse_prior(const Fields& fields);
+
+/// confidence and max_modes, and the limit of the search area.
+FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
+
+/// At least a millisecond, as no limit is 0. Throws Interrupted ("request-deadline") when nothing is left.
+std::chrono::milliseconds time_left(http::Clock::time_point deadline);
+
+/// "poses": objects with lat, lon, heading_deg. Throws InvalidField with the place ("poses[3].lat") or LimitExceeded
+/// ("too-many-poses").
+std::vector<GeoPose> parse_poses(const Fields& fields, const Limits& limits);
+
+}  // namespace roadfix::api

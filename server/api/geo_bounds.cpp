@@ -1,0 +1,26 @@
+#include "server/api/geo_bounds.hpp"
+
+#include <algorithm>
+
+namespace roadfix::api {
+
+GeoBounds bounds_of(const UtmZone& zone, const GridBox& box) {
+  // Along a side the extreme lies between samples by less than its curvature over one step: centimetres for a city.
+  constexpr int kSteps = 16;
+  GeoBounds bounds{{90.0, 180.0}, {-90.0, -180.0}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double east = box.min.east_m + box.width_m() * i / kSteps;
+    const double north = box.min.north_m + box.height_m() * i / kSteps;
+    for (const GridPoint p : {GridPoint{east, box.min.north_m}, GridPoint{east, box.max.north_m},
+                              GridPoint{box.min.east_m, north}, GridPoint{box.max.east_m, north}}) {
+      const LatLon at = zone.unproject(p);
+      bounds.south_west = {std::min(bounds.south_west.lat_deg, at.lat_deg),
+                           std::min(bounds.south_west.lon_deg, at.lon_deg)};
+      bounds.north_east = {std::max(bounds.north_east.lat_deg, at.lat_deg),
+                           std::max(bounds.north_east.lon_deg, at.lon_deg)};
+    }
+  }
+  return bounds;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,52 @@
+#include "server/api/json_body.hpp"
+
+#include <fmt/format.h>
+
+#include "core/units/error.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+/// Counts brackets and commas outside strings; whether it is JSON at all is left to the parser.
+void check_shape(std::string_view text, const JsonLimits& limits) {
+  int depth = 0;
+  std::size_t values = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+      continue;
+    }
+    if (c == '"') in_string = true;
+    if (c == ']' || c == '}') --depth;
+    const bool opens = c == '[' || c == '{';
+    if (opens && ++depth > limits.depth) {
+      throw InvalidField("json-too-deep", "body", fmt::format("the JSON is nested more than {} deep", limits.depth), i);
+    }
+    if ((opens || c == ',') && ++values > limits.values) {
+      throw LimitExceeded("too-many-poses",
+                          fmt::format("the JSON holds more than {} values; send fewer poses", limits.values));
+    }
+  }
+}
+
+}  // namespace
+
+json parse_json(std::string_view text, const JsonLimits& limits) {
+  check_shape(text, limits);
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", error.what()), error.byte);
+  } catch (const json::exception& error) {
+    throw InvalidField("bad-json", "body", fmt::format("the body is not usable JSON: {}", error.what()));
+  }
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,19 @@
+// JSON from outside, with its depth and size bounded before anything is built from it.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace roadfix::api {
+
+struct JsonLimits {
+  int depth = 16;
+  std::size_t values = 1'000'000;  ///< numbers, strings, objects and arrays together
+};
+
+/// Throws InvalidField ("bad-json" with the byte, "json-too-deep") or LimitExceeded ("too-many-poses"), the only thing
+/// that makes a request's JSON that long.
+nlohmann::json parse_json(std::string_view text, const JsonLimits& limits);
+
+}  // namespace roadfix::api

@@ -1,0 +1,129 @@
+#include "server/api/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+
+const std::map<std::string, int, std::less<>>& statuses() {
+  static const std::map<std::string, int, std::less<>> kByCode{
+      {"method-not-allowed", 405},
+      {"not-acceptable", 406},
+      {"request-timeout", 408},
+      {"length-required", 411},
+      {"body-too-large", 413},
+      {"image-too-large", 413},
+      {"too-many-cells", 413},
+      {"too-many-poses", 413},
+      {"url-too-long", 414},
+      {"unsupported-media-type", 415},
+      {"unsupported-content-encoding", 415},
+      {"head-too-large", 431},
+      // Requests that cannot be read as HTTP, or were not sent whole.
+      {"bad-request", 400},
+      {"bad-url", 400},
+      {"bad-content-length", 400},
+      {"bad-body-encoding", 400},
+      {"body-cut-off", 400},
+      // The service's own set-up, not the caller's fault.
+      {"model-missing", 503},
+      {"map-unreadable", 503},
+  };
+  return kByCode;
+}
+
+const char* title_of(int status) {
+  switch (status) {
+    case 400:
+      return "Bad request";
+    case 404:
+      return "Not found";
+    case 405:
+      return "Method not allowed";
+    case 406:
+      return "Not acceptable";
+    case 408:
+      return "Request timeout";
+    case 411:
+      return "Length required";
+    case 413:
+      return "Content too large";
+    case 414:
+      return "URI too long";
+    case 415:
+      return "Unsupported media type";
+    case 422:
+      return "Unprocessable content";
+    case 431:
+      return "Request header fields too large";
+    case 503:
+      return "Service unavailable";
+    default:
+      return "Internal error";
+  }
+}
+
+http::Response rendered(int status, json members) {
+  members["type"] = fmt::format("urn:roadfix:problem:{}", members["code"].get<std::string>());
+  members["title"] = title_of(status);
+  members["status"] = status;
+  return {status, "application/problem+json", members.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+http::Response of_error(const Error& error) {
+  json members{{"code", error.code()}, {"detail", error.what()}};
+  std::vector<std::pair<std::string, std::string>> headers;
+  if (const auto* field = dynamic_cast<const http::InvalidField*>(&error)) {
+    members["field"] = field->field();
+    if (field->byte()) members["byte"] = *field->byte();
+  }
+  if (const auto* method = dynamic_cast<const http::MethodNotAllowed*>(&error)) {
+    headers.emplace_back("Allow", method->allowed());
+  }
+  const int status = status_of(error);
+  if (const auto* busy = dynamic_cast<const http::Busy*>(&error)) {
+    headers.emplace_back("Retry-After", std::to_string(busy->retry_after().count()));
+  } else if (status == 503) {
+    headers.emplace_back("Retry-After", "5");
+  }
+  http::Response response = rendered(status, std::move(members));
+  response.headers = std::move(headers);
+  return response;
+}
+
+}  // namespace
+
+int status_of(const Error& error) {
+  const auto by_code = statuses().find(error.code());
+  if (by_code != statuses().end()) return by_code->second;
+  if (dynamic_cast<const http::InvalidField*>(&error) != nullptr) return 400;
+  if (dynamic_cast<const InvalidInput*>(&error) != nullptr) return 422;
+  if (dynamic_cast<const NotFound*>(&error) != nullptr) return 404;
+  if (dynamic_cast<const LimitExceeded*>(&error) != nullptr) return 422;
+  if (dynamic_cast<const Interrupted*>(&error) != nullptr) return 503;
+  return 500;
+}
+
+http::Response problem(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(std::move(thrown));
+  } catch (const Error& error) {
+    return of_error(error);
+  } catch (const std::bad_alloc&) {
+    return of_error(http::Busy("there is not enough memory for this request now", std::chrono::seconds(5)));
+  } catch (const std::exception&) {
+    return rendered(
+        500, {{"code", "internal-error"}, {"detail", "the service failed; its log says how, under the request id"}});
+  }
+}
+
+}  // namespace roadfix::api

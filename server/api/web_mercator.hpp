@@ -1,0 +1,34 @@
+// Tiles of the Web-Mercator square (EPSG:3857, XYZ scheme: x from the antimeridian east, y from the north).
+#pragma once
+
+#include <string>
+
+#include "core/geodesy/latlon.hpp"
+
+namespace roadfix::api {
+
+inline constexpr int kTilePixels = 256;
+inline constexpr int kMaxZoom = 24;
+
+/// 0 <= z <= kMaxZoom, 0 <= x, y < 2^z.
+struct TileAddress {
+  int z = 0;
+  int x = 0;
+  int y = 0;
+};
+
+/// Throws NotFound ("tile-not-found") for anything that is no tile of the square.
+TileAddress parse_tile(const std::string& z, const std::string& x, const std::string& y);
+
+/// Continuous pixel coordinates of the whole square at a zoom; the poles are at infinity.
+struct MercatorPixel {
+  double x = 0.0;
+  double y = 0.0;
+};
+MercatorPixel mercator_pixel(LatLon at, int zoom);
+LatLon lat_lon(MercatorPixel pixel, int zoom);
+
+/// Size of a pixel on the ground.
+double metres_per_pixel(double lat_deg, int zoom);
+
+}  // namespace roadfix::api

@@ -1,0 +1,148 @@
+#include "server/api/window.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+#include "server/api/base64.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kMaxSideM = 1'000'000.0;
+constexpr double kMaxWindowCellM = 4096.0;
+
+/// The coarsest cells of the map that are not larger than the window's.
+double source_cell(const MapView& map, double cell_m) {
+  double source = map.cell_m;
+  while (2.0 * source <= cell_m && 2.0 * source <= kMaxWindowCellM) source *= 2.0;
+  return source;
+}
+
+GridBox box_around(const GridPose& pose, double width_m, double height_m, double margin_m) {
+  const double c = std::abs(cos(pose.heading));
+  const double s = std::abs(sin(pose.heading));
+  const double east = 0.5 * (width_m * c + height_m * s) + margin_m;
+  const double north = 0.5 * (width_m * s + height_m * c) + margin_m;
+  const GridPoint p = pose.position;
+  return {{p.east_m - east, p.north_m - north}, {p.east_m + east, p.north_m + north}};
+}
+
+bool overlap(const GridBox& a, const GridBox& b) {
+  return a.min.east_m < b.max.east_m && b.min.east_m < a.max.east_m && a.min.north_m < b.max.north_m &&
+         b.min.north_m < a.max.north_m;
+}
+
+/// A centre from which a window of so many cells ends on the lattice.
+double snapped(double centre_m, int cells, double cell_m) {
+  const double edge = centre_m - 0.5 * cells * cell_m;
+  return std::round(edge / cell_m) * cell_m + 0.5 * cells * cell_m;
+}
+
+GridPoint corner(const Window& window, double col, double row) {
+  const auto transform = geotransform(window);
+  return {transform[0] + col * transform[1] + row * transform[2],
+          transform[3] + col * transform[4] + row * transform[5]};
+}
+
+json footprint(const Window& window) {
+  const double cols = window.cells.cells.cols();
+  const double rows = window.cells.cells.rows();
+  json ring = json::array();
+  for (const auto& [col, row] : {std::pair{0.0, 0.0}, {0.0, rows}, {cols, rows}, {cols, 0.0}, {0.0, 0.0}}) {
+    const LatLon at = window.zone.unproject(corner(window, col, row));
+    ring.push_back({at.lon_deg, at.lat_deg});
+  }
+  return {{"type", "Polygon"}, {"coordinates", json::array({ring})}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& window_fields() {
+  static const std::vector<std::string> kFields{"lat", "lon", "width_m", "height_m", "cell_m", "heading_deg", "format"};
+  return kFields;
+}
+
+WindowRequest parse_window(const Fields& fields) {
+  WindowRequest request;
+  request.centre = {fields.number("lat", kLatitude), fields.number("lon", kLongitude)};
+  request.width_m = fields.number("width_m", {0.0, kMaxSideM, true});
+  request.height_m = fields.number("height_m", {0.0, kMaxSideM, true});
+  request.cell_m = fields.optional_number("cell_m", {0.0, kMaxWindowCellM, true});
+  if (const auto heading = fields.optional_number("heading_deg", kDegrees)) request.heading = Angle::degrees(*heading);
+  return request;
+}
+
+Window cut_window(const MapView& map, const WindowRequest& request, const Limits& limits) {
+  const double cell_m = request.cell_m.value_or(map.cell_m);
+  const double cols = std::max(1.0, std::round(request.width_m / cell_m));
+  const double rows = std::max(1.0, std::round(request.height_m / cell_m));
+  if (cols * rows > static_cast<double>(limits.cells)) {
+    throw LimitExceeded(
+        "too-many-cells",
+        fmt::format("the window would have {:.0f} x {:.0f} cells, more than {}: ask for a smaller one or "
+                    "for larger cells",
+                    cols, rows, limits.cells));
+  }
+  const int n_cols = static_cast<int>(cols);
+  const int n_rows = static_cast<int>(rows);
+  const double source_m = source_cell(map, cell_m);
+  GridPose pose{map.zone.project(request.centre), Angle{}};
+  if (request.heading) {
+    pose.heading = map.zone.grid_from_true(*request.heading, pose.position);
+  } else if (source_m == cell_m) {
+    pose.position = {snapped(pose.position.east_m, n_cols, cell_m), snapped(pose.position.north_m, n_rows, cell_m)};
+  }
+  if (!overlap(box_around(pose, cols * cell_m, rows * cell_m, 0.0), map.extent)) {
+    throw InvalidInput(
+        "window-outside-map",
+        fmt::format("the window does not meet the map {}: GET /v1/maps/{} has its extent", map.name, map.name));
+  }
+  const GridBox needed = box_around(pose, cols * cell_m, rows * cell_m, 2.0 * source_m);
+  const RoadGrid grid = map.read(GridGeometry::covering(needed, source_m));
+  return {cut_out(grid, pose, n_cols, n_rows, cell_m),
+          pose,
+          {map.zone.unproject(pose.position), map.zone.true_from_grid(pose.heading, pose.position)},
+          map.zone,
+          map.name,
+          map.version};
+}
+
+std::array<double, 6> geotransform(const Window& window) {
+  const double cell_m = window.cells.cell_m;
+  const double c = cell_m * cos(window.grid_pose.heading);
+  const double s = cell_m * sin(window.grid_pose.heading);
+  const double half_cols = window.cells.cells.cols() / 2.0;
+  const double half_rows = window.cells.cells.rows() / 2.0;
+  const GridPoint p = window.grid_pose.position;
+  // Columns run right of the heading: (c, -s) east and north; rows run back: (-s, -c).
+  return {p.east_m - half_cols * c + half_rows * s, c, 0.0 - s, p.north_m + half_cols * s + half_rows * c, 0.0 - s, -c};
+}
+
+json to_json(const GeoPose& pose) {
+  return {
+      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+}
+
+json to_json(const FeatureMap& features) {
+  return {{"cols", features.cells.cols()},   {"rows", features.cells.rows()},
+          {"cell_m", features.cell_m},       {"nadir_col", features.nadir.col},
+          {"nadir_row", features.nadir.row}, {"cells", base64_encoded(features.cells.cells())}};
+}
+
+json to_json(const Window& window) {
+  json answer = to_json(window.cells);
+  answer["pose"] = to_json(window.pose);
+  answer["map"] = {{"name", window.map_name}, {"version", window.map_version}};
+  answer["footprint"] = footprint(window);
+  answer["epsg"] = window.zone.epsg();
+  answer["geotransform"] = geotransform(window);
+  return answer;
+}
+
+}  // namespace roadfix::api

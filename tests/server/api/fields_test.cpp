@@ -1,0 +1,71 @@
+#include "server/api/fields.hpp"
+
+#include <gmock/gmock.h>
+
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+std::string code_of(const auto& action) {
+  try {
+    action();
+    return "";
+  } catch (const InvalidField& error) {
+    return error.code() + " " + error.field();
+  }
+}
+
+TEST(Fields, ReadNumbersFromTextAndFromJsonAlike) {
+  Fields fields(http::Parameters{{"lat", "57.7"}});
+  const std::vector<std::string> known{"lon", "cols"};
+  fields.add(json{{"lon", 11.97}, {"cols", 12}}, known);
+  EXPECT_EQ(fields.number("lat", kLatitude), 57.7);
+  EXPECT_EQ(fields.number("lon", kLongitude), 11.97);
+  EXPECT_EQ(fields.integer("cols", 1, 100), 12);
+  EXPECT_EQ(fields.optional_number("radius_m", kPositive), std::nullopt);
+}
+
+TEST(Fields, RefuseWhatIsNoFiniteNumberInRange) {
+  for (const char* text : {"", "abc", "1e999", "nan", "inf", "-inf", "1,5", "1 ", " 1", "0x10", "1e"}) {
+    const Fields fields(http::Parameters{{"lat", text}});
+    EXPECT_EQ(code_of([&] { fields.number("lat", kLatitude); }), "bad-parameter lat") << text;
+  }
+  const Fields fields(http::Parameters{{"lat", "90.1"}, {"width_m", "0"}, {"height_m", "-3"}, {"cols", "1.5"}});
+  EXPECT_EQ(code_of([&] { fields.number("lat", kLatitude); }), "parameter-out-of-range lat");
+  EXPECT_EQ(code_of([&] { fields.number("width_m", kPositive); }), "parameter-out-of-range width_m");
+  EXPECT_EQ(code_of([&] { fields.number("height_m", kPositive); }), "parameter-out-of-range height_m");
+  EXPECT_EQ(code_of([&] { fields.integer("cols", 1, 10); }), "bad-parameter cols");
+  EXPECT_EQ(code_of([&] { fields.number("lon", kLongitude); }), "missing-parameter lon");
+}
+
+TEST(Fields, RefuseJsonMembersOfAnotherTypeUnknownOnesAndRepeatedOnes) {
+  const std::vector<std::string> known{"lat", "image"};
+  Fields fields(http::Parameters{{"lat", "1"}});
+  EXPECT_EQ(code_of([&] { fields.add(json{{"lat", 2}}, known); }), "duplicate-parameter lat");
+  EXPECT_EQ(code_of([&] { fields.add(json{{"latt", 2}}, known); }), "unknown-field latt");
+  EXPECT_EQ(code_of([&] { fields.add(json::array(), known); }), "bad-json body");
+  Fields wrong;
+  wrong.add(json{{"lat", "57"}, {"image", 5}}, known);
+  EXPECT_EQ(code_of([&] { wrong.number("lat", kLatitude); }), "bad-parameter lat");
+  EXPECT_EQ(code_of([&] { wrong.text("image"); }), "bad-parameter image");
+}
+
+TEST(Fields, ReadListsOfNumbers) {
+  const Fields text(
+      http::Parameters{{"bbox", "1,2.5,-3,4"}, {"short", "1,2"}, {"long", "1,2,3,4,5"}, {"odd", "1,,3,4"}});
+  EXPECT_THAT(*text.optional_numbers("bbox", 4), ::testing::ElementsAre(1, 2.5, -3, 4));
+  for (const char* name : {"short", "long", "odd"}) {
+    EXPECT_EQ(code_of([&] { text.optional_numbers(name, 4); }), std::string("bad-parameter ") + name);
+  }
+  Fields array;
+  const std::vector<std::string> known{"bbox"};
+  array.add(json{{"bbox", {1, 2, 3, 4}}}, known);
+  EXPECT_THAT(*array.optional_numbers("bbox", 4), ::testing::ElementsAre(1, 2, 3, 4));
+}
+
+}  // namespace
+}  // namespace roadfix::api

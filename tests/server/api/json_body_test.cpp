@@ -1,0 +1,43 @@
+#include "server/api/json_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/units/error.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+TEST(JsonBody, RefusesNestingBeyondTheLimitAtItsByte) {
+  const std::string deep(100'000, '[');
+  try {
+    parse_json(deep, {16, 1000});
+    FAIL();
+  } catch (const http::InvalidField& error) {
+    EXPECT_EQ(error.code(), "json-too-deep");
+    EXPECT_EQ(error.byte(), 16U);
+  }
+  EXPECT_NO_THROW(parse_json(R"({"a":[[["[[[[[[[[[[[[[[[[[[[[[{{{"]]]})", {4, 1000}));
+}
+
+TEST(JsonBody, RefusesMoreValuesThanAllowedBeforeBuildingThem) {
+  std::string poses = R"({"poses":[0)";
+  for (int i = 0; i < 2000; ++i) poses += ",0";
+  EXPECT_THROW(parse_json(poses + "]}", {16, 1000}), LimitExceeded);
+}
+
+TEST(JsonBody, SaysWhereJsonIsBroken) {
+  for (const char* text :
+       {"", "{", R"({"a":NaN})", R"({"a":1e999})", "{\"a\":\"\xff\"}", R"({"a":1}x)", R"({"a":"\)"}) {
+    try {
+      parse_json(text, {});
+      FAIL() << text;
+    } catch (const http::InvalidField& error) {
+      EXPECT_EQ(error.code(), "bad-json") << text;
+      EXPECT_EQ(error.field(), "body");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roadfix::api

@@ -1,0 +1,91 @@
+#include "server/api/window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/units/error.hpp"
+#include "tests/support/ascii_map.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using roadfix::testing::from_ascii;
+using roadfix::testing::to_ascii;
+
+/// A map of the picture's cells, 2 m each, with its north-western corner at (434000, 4180000) of zone 37 N.
+MapView map_of(const std::string& picture) {
+  const CellArray cells = from_ascii(picture);
+  const GridGeometry geometry{2.0, {217000, -2090000}, cells.cols(), cells.rows()};
+  const RoadGrid whole{geometry, cells};
+  const auto read = [whole](const GridGeometry& asked) {
+    RoadGrid part = RoadGrid::unobserved(asked);
+    paste(whole.cells, part.cells, whole.geometry.origin.col - asked.origin.col,
+          whole.geometry.origin.row - asked.origin.row);
+    return part;
+  };
+  return {"city", "v1", *UtmZone::from_epsg(32637), 2.0, geometry.box(), 0.0, read};
+}
+
+constexpr const char* kPicture = R"(
+  #.........
+  .#......#.
+  ..#...##..
+  ...###....
+  ..........
+  ?????.....)";
+
+LatLon at(double east_m, double north_m) { return UtmZone::from_epsg(32637)->unproject({east_m, north_m}); }
+
+TEST(Window, AlongTheGridGivesTheMapsOwnCellsAndTheNearestSuchCentre) {
+  const MapView map = map_of(kPicture);
+  const Window window = cut_window(map, {at(434010.3, 4179994.2), std::nullopt, 20.0, 12.0, std::nullopt}, {});
+  EXPECT_EQ(to_ascii(window.cells.cells), to_ascii(from_ascii(kPicture)));
+  EXPECT_NEAR(window.grid_pose.position.east_m, 434010.0, 1e-6);
+  EXPECT_NEAR(window.grid_pose.position.north_m, 4179994.0, 1e-6);
+}
+
+TEST(Window, HasATransformThatPutsItsCornersOnTheGroundTheyShow) {
+  const MapView map = map_of(kPicture);
+  const GridPoint centre{434010.0, 4179994.0};
+  const Angle heading = map.zone.true_from_grid(Angle::degrees(90.0), centre);
+  const Window east = cut_window(map, {at(centre.east_m, centre.north_m), heading, 12.0, 20.0, std::nullopt}, {});
+  // Heading grid east: the forward edge is the map's eastern column, columns run south.
+  EXPECT_EQ(east.cells.cells.at(5, 9), kUnobserved) << "the south-western corner of the map is behind and to the right";
+  EXPECT_EQ(east.cells.cells.at(0, 9), kRoad) << "the north-western corner is behind and to the left";
+  const auto t = geotransform(east);
+  EXPECT_NEAR(t[0], 434020.0, 1e-3);
+  EXPECT_NEAR(t[3], 4180000.0, 1e-3);
+  EXPECT_NEAR(t[1], 0.0, 1e-6);
+  EXPECT_NEAR(t[2], -2.0, 1e-6);
+  EXPECT_NEAR(t[4], -2.0, 1e-6);
+  EXPECT_NEAR(t[5], 0.0, 1e-6);
+}
+
+TEST(Window, IsUnobservedWhereTheMapEndsAndRefusedOutsideIt) {
+  const MapView map = map_of(kPicture);
+  const Window window = cut_window(map, {at(434000.0, 4180000.0), std::nullopt, 40.0, 40.0, std::nullopt}, {});
+  EXPECT_EQ(window.cells.cells.at(0, 0), kUnobserved);
+  EXPECT_EQ(window.cells.cells.at(10, 10), kRoad);
+  EXPECT_THROW(cut_window(map, {at(500000.0, 4180000.0), std::nullopt, 40.0, 40.0, std::nullopt}, {}), InvalidInput);
+}
+
+TEST(Window, RefusesMoreCellsThanTheLimitWithoutMakingThem) {
+  Limits limits;
+  limits.cells = 100;
+  EXPECT_THROW(cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 1e6, 1e6, 0.001}, limits),
+               LimitExceeded);
+}
+
+TEST(Window, TellsItsGroundInJson) {
+  const auto json =
+      to_json(cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {}));
+  EXPECT_EQ(json["cols"], 10);
+  EXPECT_EQ(json["rows"], 6);
+  EXPECT_EQ(json["footprint"]["coordinates"][0].size(), 5U);
+  EXPECT_EQ(json["footprint"]["coordinates"][0][0], json["footprint"]["coordinates"][0][4]);
+  EXPECT_EQ(json["map"]["version"], "v1");
+}
+
+}  // namespace
+}  // namespace roadfix::api

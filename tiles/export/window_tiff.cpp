@@ -1,0 +1,80 @@
+#include "tiles/export/window_tiff.hpp"
+
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr float kNoData = -1.0F;
+
+/// A file of GDAL's memory file system, gone with this object.
+class MemoryFile {
+ public:
+  MemoryFile() {
+    static std::atomic<std::uint64_t> next{0};
+    path_ = fmt::format("/vsimem/roadfix-window-{}.tif", next++);
+  }
+  ~MemoryFile() { VSIUnlink(path_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string bytes() const {
+    vsi_l_offset size = 0;
+    const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
+    return data == nullptr ? std::string()
+                           : std::string(reinterpret_cast<const char*>(data), static_cast<std::size_t>(size));
+  }
+
+ private:
+  std::string path_;
+};
+
+void require(bool done) {
+  if (!done) throw IoFailure("export-failed", fmt::format("GDAL cannot write the window: {}", CPLGetLastErrorMsg()));
+}
+
+std::vector<float> probabilities(const CellArray& cells) {
+  std::vector<float> values;
+  values.reserve(cells.cells().size());
+  for (const Cell cell : cells.cells())
+    values.push_back(is_observed(cell) ? static_cast<float>(probability(cell)) : kNoData);
+  return values;
+}
+
+}  // namespace
+
+std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::array<double, 6>& geotransform) {
+  static std::once_flag registered;
+  std::call_once(registered, GDALAllRegister);
+  const MemoryFile file;
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  require(driver != nullptr);
+  std::array<const char*, 2> options{"COMPRESS=DEFLATE", nullptr};
+  std::unique_ptr<GDALDataset> dataset(driver->Create(file.path().c_str(), cells.cols(), cells.rows(), 1, GDT_Float32,
+                                                      const_cast<char**>(options.data())));
+  require(dataset != nullptr);
+  OGRSpatialReference reference;
+  require(reference.importFromEPSG(zone.epsg()) == OGRERR_NONE);
+  auto transform = geotransform;
+  require(dataset->SetSpatialRef(&reference) == CE_None && dataset->SetGeoTransform(transform.data()) == CE_None);
+  GDALRasterBand* band = dataset->GetRasterBand(1);
+  require(band->SetNoDataValue(double{kNoData}) == CE_None);
+  std::vector<float> values = probabilities(cells);
+  require(band->RasterIO(GF_Write, 0, 0, cells.cols(), cells.rows(), values.data(), cells.cols(), cells.rows(),
+                         GDT_Float32, 0, 0) == CE_None);
+  dataset.reset();  // closing writes the directory
+  return file.bytes();
+}
+
+}  // namespace roadfix

@@ -15,6 +15,7 @@ void add_fix_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
 void add_match_command(CLI::App& app);
+void add_serve_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_world_command(CLI::App& app);
 

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_match_command(app);
   roadfix::cli::add_fix_command(app);
   roadfix::cli::add_world_command(app);
+  roadfix::cli::add_serve_command(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -8,4 +8,7 @@ namespace roadfix::schema {
 /// Statements that make the tables of an empty map file (schema/map.sql).
 std::string_view map_sql();
 
+/// Every route of the service, OpenAPI 3.1 (schema/openapi.json).
+std::string_view openapi_json();
+
 }  // namespace roadfix::schema

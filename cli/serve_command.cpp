@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "cli/command.hpp"
+#include "cli/detector_options.hpp"
+#include "cli/terminal.hpp"
+#include "server/application.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+
+struct ServeOptions {
+  server::Configuration service;
+  std::size_t body_mib = service.http.body_bytes / kMiB;
+  std::size_t map_cache_mib = service.map_cache_bytes / kMiB;
+  std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
+  double request_time_s = 30.0;
+  double idle_time_s = 15.0;
+  double watch_s = 1.0;
+  std::string log_level = "info";
+};
+
+int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+}
+
+server::Configuration configuration(const ServeOptions& options) {
+  server::Configuration result = options.service;
+  result.http.body_bytes = options.body_mib * kMiB;
+  result.map_cache_bytes = options.map_cache_mib * kMiB;
+  result.picture_cache_bytes = options.picture_cache_mib * kMiB;
+  result.http.request_time = milliseconds(options.request_time_s);
+  result.http.idle_time = milliseconds(options.idle_time_s);
+  result.watch_interval = milliseconds(options.watch_s);
+  return result;
+}
+
+/// "--request-time" is also ROADFIX_REQUEST_TIME.
+void also_from_environment(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return !o->get_lnames().empty(); })) {
+    std::string name = "ROADFIX_" + option->get_lnames().front();
+    std::ranges::transform(name, name.begin(),
+                           [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::toupper(c)); });
+    if (option->get_lnames().front() != "help") option->envname(name);
+  }
+}
+
+/// Options that neither the command line nor the environment gives. (CLI11 reads such files for whole programs only.)
+void also_from_file(CLI::App& command, const std::string& path) {
+  for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_file(path)) {
+    CLI::Option* option = item.parents.empty() ? command.get_option_no_throw("--" + item.name) : nullptr;
+    if (option == nullptr) throw CLI::ConfigError::NotConfigurable(item.fullname());
+    if (option->count() > 0) continue;
+    option->add_result(item.inputs);
+    option->run_callback();
+  }
+}
+
+void add_limits(CLI::App& command, ServeOptions& o) {
+  auto& limits = o.service.limits;
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    command.add_option(name, value, text)
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber)
+        ->group("Limits of one request");
+  };
+  add("--max-body", o.body_mib, "Body in MiB, after unpacking");
+  add("--max-pixels", limits.pixels, "Pixels of a picture");
+  add("--max-cells", limits.cells, "Cells of a window or feature map");
+  add("--max-poses", limits.poses, "Poses of a match");
+  add("--max-search", limits.search_km2, "Area of a search in km2");
+  add("--request-time", o.request_time_s, "Seconds that an answer may take");
+}
+
+void add_resources(CLI::App& command, ServeOptions& o) {
+  auto& http = o.service.http;
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return command.add_option(name, value, text)->capture_default_str()->check(CLI::PositiveNumber)->group("Resources");
+  };
+  add("--threads", http.threads, "Connections served at the same time");
+  add("--searches", http.heavy_running, "Searches and detections at the same time");
+  add("--searches-waiting", http.heavy_waiting, "Further ones that wait; others are told to come back");
+  add("--search-threads", o.service.search_threads, "Threads of one search");
+  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept");
+  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB");
+  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB");
+  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps");
+}
+
+void run_serve(const ServeOptions& options) {
+  const std::stop_token stop = stop_on_signals();
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("roadfix", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  server::Application application(configuration(options));
+  const int port = application.start();
+  const std::string& host = options.service.http.host;
+  fmt::print("roadfix serves {} at http://{}:{}/\n", options.service.maps.string(),
+             host.find(':') == std::string::npos ? host : "[" + host + "]", port);
+  std::fflush(stdout);
+  std::mutex mutex;
+  std::condition_variable_any stopped;
+  std::unique_lock lock(mutex);
+  stopped.wait(lock, stop, [] { return false; });
+  spdlog::info("stopping: requests that have begun are answered");
+  application.stop();
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app) {
+  auto* command = app.add_subcommand("serve", "The HTTP service: maps, windows, tiles, matches and fixes");
+  command->footer(
+      "Every option is also read from the environment (--request-time from ROADFIX_REQUEST_TIME) and from a file given "
+      "with --config (request-time = 30).\nExample: roadfix serve --maps maps --port 8080");
+  const auto options = std::make_shared<ServeOptions>();
+  ServeOptions& o = *options;
+  o.service.http.heavy_running = processors();
+  command->add_option("--maps", o.service.maps,
+                      "Folder of the maps (*.gpkg); files that appear, change or leave are noticed");
+  command->add_option("--host", o.service.http.host, "Address to listen at; 0.0.0.0 for every one")
+      ->capture_default_str();
+  command->add_option("--port", o.service.http.port, "Port, 0 for any free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  command->add_option("--cors-origin", o.service.http.cors_origin, "Web pages that may ask: an origin, or * for all");
+  command->add_option("--access-log", o.service.http.access_log,
+                      "A JSON line for each request: a file, or - for standard error");
+  command->add_option("--log-level", o.log_level, "Of the other messages on standard error")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
+  add_limits(*command, o);
+  add_resources(*command, o);
+  add_detector_options(*command, o.service.detector);
+  also_from_environment(*command);
+  const auto config = std::make_shared<std::string>();
+  command->add_option("--config", *config, "File with options, one \"name = value\" a line")->check(CLI::ExistingFile);
+  command->callback([command, config, options] {
+    if (!config->empty()) also_from_file(*command, *config);
+    if (options->service.maps.empty()) throw CLI::RequiredError("--maps");
+    run_serve(*options);
+  });
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,44 @@
+// The whole service from its configuration: the outermost ring, the only place that knows all of it.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/detect/make_detector.hpp"
+#include "server/api/limits.hpp"
+#include "server/http/server.hpp"
+
+namespace roadfix::server {
+
+struct Configuration {
+  std::filesystem::path maps;
+  std::chrono::milliseconds watch_interval{1000};
+  std::size_t map_cache_bytes = std::size_t{256} << 20;  ///< decoded tiles, for each map
+  std::size_t picture_cache_bytes = std::size_t{64} << 20;
+  int search_threads = 1;  ///< of one search
+  http::ServerSettings http;
+  api::Limits limits;
+  DetectorChoice detector;
+};
+
+class Application {
+ public:
+  /// Opens the maps and loads the detector. Throws what these throw.
+  explicit Application(Configuration configuration);
+  ~Application();
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
+
+  /// Serves from now on; returns the port.
+  int start();
+  /// Answers what has begun, then returns.
+  void stop();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace roadfix::server

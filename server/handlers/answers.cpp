@@ -1,0 +1,38 @@
+#include "server/handlers/answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace roadfix::server {
+
+http::Response json_response(const nlohmann::json& body) {
+  return {200, "application/json", body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+std::string base_url(const http::Request& request) {
+  const std::string& host = request.header("host");
+  const bool is_plain = !host.empty() && std::ranges::all_of(host, [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '-' ||
+           c == ':' || c == '[' || c == ']' || c == '_';
+  });
+  if (!is_plain) return {};
+  return (request.header("x-forwarded-proto") == "https" ? "https://" : "http://") + host;
+}
+
+std::string entity_tag(const std::string& version, const std::string& variation) {
+  return fmt::format("\"{:016x}\"", std::hash<std::string>{}(version + '\n' + variation));
+}
+
+bool is_known_to_client(const http::Request& request, const std::string& tag) {
+  const std::string& known = request.header("if-none-match");
+  return known == "*" || known.find(tag) != std::string::npos;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,25 @@
+// Answers that several handlers give.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "server/http/message.hpp"
+
+namespace roadfix::server {
+
+http::Response json_response(const nlohmann::json& body);
+
+/// "http://host:port" as the client wrote it, for links in answers.
+std::string base_url(const http::Request& request);
+
+/// A quoted entity tag for what is made from a version of a map and the request's own variation.
+std::string entity_tag(const std::string& version, const std::string& variation);
+/// Whether If-None-Match names the tag (RFC 9110 13.1.2).
+bool is_known_to_client(const http::Request& request, const std::string& tag);
+
+/// The query and the JSON members that a route takes.
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);
+
+}  // namespace roadfix::server

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/detect/image_codec.hpp"
+#include "server/api/feature_request.hpp"
+#include "server/api/media.hpp"
+#include "server/api/window.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+
+namespace roadfix::server {
+namespace {
+
+constexpr double kDefaultCellM = 2.0;
+constexpr std::array<api::Media, 2> kFormats{{{"png", "image/png"}, {"json", "application/json"}}};
+constexpr std::array<std::string_view, 2> kNames{"png", "json"};
+
+std::vector<std::string> query_fields() { return joined(api::frame_fields(), {"format"}); }
+
+http::Response post_detect(const Service& service, const http::Request& request) {
+  const api::Content content = api::read_content(request, joined(query_fields(), {"image"}), service.limits);
+  const std::string format = content.fields.has("format")
+                                 ? content.fields.word("format", kNames)
+                                 : std::string(api::negotiated(request.header("accept"), kFormats).name);
+  const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits);
+  http::Response response;
+  if (format == "json") {
+    nlohmann::json answer = api::to_json(features.map);
+    answer["time_ms"] = {{"detect", features.detect_time->count()}};
+    answer["detector"] = service.detector.describe();
+    response = json_response(answer);
+  } else {
+    const auto png = encode_feature_map(features.map.cells);
+    response = {200, "image/png", std::string(png.begin(), png.end())};
+  }
+  const auto& [col, row] = features.map.nadir;
+  response.headers.emplace_back("Roadfix-Cell-M", fmt::format("{}", features.map.cell_m));
+  response.headers.emplace_back("Roadfix-Nadir", fmt::format("{},{}", col, row));
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_detect_route(http::Router& router, const Service& service) {
+  router.add({"POST", "/v1/detect", query_fields(), true,
+              [&service](const http::Request& request) { return post_detect(service, request); }});
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,21 @@
+// One file per resource; each adds its routes.
+#pragma once
+
+#include <string>
+
+#include "server/http/router.hpp"
+#include "server/service.hpp"
+
+namespace roadfix::server {
+
+void add_index_route(http::Router& router, const Service& service);
+/// /healthz, /readyz, /metrics, /openapi.json, /v1/limits
+void add_operations_routes(http::Router& router, const Service& service);
+void add_map_routes(http::Router& router, const Service& service);
+void add_window_route(http::Router& router, const Service& service);
+void add_tile_routes(http::Router& router, const Service& service);
+void add_match_route(http::Router& router, const Service& service);
+void add_fix_route(http::Router& router, const Service& service);
+void add_detect_route(http::Router& router, const Service& service);
+
+}  // namespace roadfix::server

@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "server/api/geo_bounds.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+
+namespace roadfix::server {
+namespace {
+
+using nlohmann::json;
+
+json source_json(const SourceStatus& source) {
+  const SourceRecord& r = source.record;
+  json answer{{"name", r.name},
+              {"kind", r.kind},
+              {"date", r.date},
+              {"licence", r.licence},
+              {"attribution", r.attribution},
+              {"method", r.method},
+              {"registration_sigma_m", r.registration_sigma_m},
+              {"complete", source.complete}};
+  if (source.complete) answer["ingested_at"] = source.ingested_at;
+  return answer;
+}
+
+json summary(const ServedMap& map) {
+  const MapInfo& info = map.reader->info();
+  json answer{{"name", map.name},
+              {"status", info.extent.empty() ? "empty"
+                         : info.pending > 0  ? "incomplete"
+                                             : "ready"},
+              {"version", info.version},
+              {"epsg", info.settings.zone.epsg()},
+              {"cell_m", info.settings.cell_m},
+              {"levels", info.levels},
+              {"bbox", nullptr},
+              {"area_km2", 0.0}};
+  if (info.extent.empty()) return answer;
+  const api::GeoBounds bounds = api::bounds_of(info.settings.zone, info.extent);
+  answer["bbox"] = {bounds.south_west.lon_deg, bounds.south_west.lat_deg, bounds.north_east.lon_deg,
+                    bounds.north_east.lat_deg};
+  answer["area_km2"] = info.extent.width_m() * info.extent.height_m() / 1e6;
+  return answer;
+}
+
+json details(const ServedMap& map) {
+  const MapInfo& info = map.reader->info();
+  json answer = summary(map);
+  answer["tiles"] = info.tiles;
+  answer["extent_m"] = nullptr;
+  if (!info.extent.empty()) {
+    answer["extent_m"] = {info.extent.min.east_m, info.extent.min.north_m, info.extent.max.east_m,
+                          info.extent.max.north_m};
+  }
+  answer["sources"] = json::array();
+  for (const SourceStatus& source : info.sources) answer["sources"].push_back(source_json(source));
+  return answer;
+}
+
+http::Response list(const Service& service) {
+  std::vector<json> maps;
+  for (const auto& map : service.maps.maps()) maps.push_back(summary(*map));
+  for (const UnreadableMap& map : service.maps.unreadable()) {
+    maps.push_back({{"name", map.name}, {"status", "unreadable"}, {"code", map.code}, {"reason", map.reason}});
+  }
+  std::ranges::sort(maps, {}, [](const json& map) { return map["name"].get<std::string>(); });
+  return json_response({{"maps", maps}});
+}
+
+}  // namespace
+
+void add_map_routes(http::Router& router, const Service& service) {
+  router.add({"GET", "/v1/maps", {}, false, [&service](const http::Request&) { return list(service); }});
+  router.add({"GET", "/v1/maps/{map}", {}, false, [&service](const http::Request& request) {
+                return json_response(details(*service.maps.find(request.path_parameters.at("map"))));
+              }});
+}
+
+}  // namespace roadfix::server

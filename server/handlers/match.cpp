@@ -1,0 +1,38 @@
+#include "core/locate/match_poses.hpp"
+#include "server/api/feature_request.hpp"
+#include "server/api/fix_json.hpp"
+#include "server/api/fix_request.hpp"
+#include "server/api/time_limit.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+
+namespace roadfix::server {
+namespace {
+
+/// The heading step lets many poses share rotations of the feature map.
+std::vector<std::string> query_fields() { return joined(api::feature_fields(), {"heading_step_deg"}); }
+
+http::Response post_match(const Service& service, const http::Request& request) {
+  const auto map = service.maps.find(request.path_parameters.at("map"));
+  const api::Content content =
+      api::read_content(request, joined(joined(query_fields(), {"poses"}), api::picture_members()), service.limits);
+  const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
+  MatchOptions options;
+  options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
+  options.threads = service.search_threads;
+  const api::Features features = api::features_of(content, service.detector, map->view.cell_m, service.limits);
+  const api::TimeLimit limit(request.deadline);
+  options.stop = limit.token();
+  const std::vector<MatchScore> scores = match(map->view, features.map, poses, options);
+  return json_response(
+      {{"scores", api::to_json(scores)}, {"map", {{"name", map->name}, {"version", map->view.version}}}});
+}
+
+}  // namespace
+
+void add_match_route(http::Router& router, const Service& service) {
+  router.add({"POST", "/v1/maps/{map}/match", query_fields(), true,
+              [&service](const http::Request& request) { return post_match(service, request); }});
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,42 @@
+#include "schema/schema.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+
+namespace roadfix::server {
+namespace {
+
+using nlohmann::json;
+
+http::Response ready(const Service& service) {
+  const auto maps = service.maps.maps().size();
+  return json_response({{"status", "ready"}, {"maps", maps}, {"unreadable_maps", service.maps.unreadable().size()}});
+}
+
+http::Response limits(const Service& service) {
+  return json_response({{"body_bytes", service.http.body_bytes},
+                        {"pixels", service.limits.pixels},
+                        {"cells", service.limits.cells},
+                        {"poses", service.limits.poses},
+                        {"search_km2", service.limits.search_km2},
+                        {"json_depth", service.limits.json_depth},
+                        {"modes", service.limits.modes},
+                        {"request_time_ms", service.http.request_time.count()},
+                        {"searches_at_once", service.http.heavy_running},
+                        {"searches_waiting", service.http.heavy_waiting}});
+}
+
+}  // namespace
+
+void add_operations_routes(http::Router& router, const Service& service) {
+  router.add({"GET", "/healthz", {}, false, [](const http::Request&) { return json_response({{"status", "ok"}}); }});
+  router.add({"GET", "/readyz", {}, false, [&service](const http::Request&) { return ready(service); }});
+  router.add({"GET", "/metrics", {}, false, [&service](const http::Request&) {
+                return http::Response{200, "text/plain; version=0.0.4", service.metrics.text()};
+              }});
+  router.add({"GET", "/openapi.json", {}, false, [](const http::Request&) {
+                return http::Response{200, "application/json", std::string(schema::openapi_json())};
+              }});
+  router.add({"GET", "/v1/limits", {}, false, [&service](const http::Request&) { return limits(service); }});
+}
+
+}  // namespace roadfix::server

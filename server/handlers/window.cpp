@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/detect/image_codec.hpp"
+#include "server/api/media.hpp"
+#include "server/api/window.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+#include "tiles/export/window_tiff.hpp"
+
+namespace roadfix::server {
+namespace {
+
+constexpr std::array<api::Media, 3> kFormats{
+    {{"png", "image/png"}, {"tiff", "image/tiff"}, {"json", "application/json"}}};
+
+std::string_view format_of(const http::Request& request, const api::Fields& fields) {
+  if (!fields.has("format")) return api::negotiated(request.header("accept"), kFormats).name;
+  constexpr std::array<std::string_view, 3> kNames{"png", "tiff", "json"};
+  const std::string name = fields.word("format", kNames);
+  return *std::ranges::find(kNames, name);
+}
+
+http::Response rendered(const api::Window& window, std::string_view format) {
+  if (format == "json") return json_response(api::to_json(window));
+  if (format == "tiff")
+    return {200, "image/tiff", window_tiff(window.cells.cells, window.zone, api::geotransform(window))};
+  const auto png = encode_feature_map(window.cells.cells);
+  return {200, "image/png", std::string(png.begin(), png.end())};
+}
+
+http::Response get_window(const Service& service, const http::Request& request) {
+  const api::Fields fields(request.query);
+  const api::WindowRequest asked = api::parse_window(fields);
+  const std::string_view format = format_of(request, fields);
+  const auto map = service.maps.find(request.path_parameters.at("map"));
+  const api::Window window = api::cut_window(map->view, asked, service.limits);
+  http::Response response = rendered(window, format);
+  // What a picture cannot say about itself, so that it can be posted back: its pose and cell size.
+  response.headers.emplace_back("Roadfix-Pose", api::to_json(window.pose).dump());
+  response.headers.emplace_back("Roadfix-Cell-M", fmt::format("{}", window.cells.cell_m));
+  response.headers.emplace_back("Vary", "Accept");
+  response.headers.emplace_back("Cache-Control", "no-cache");
+  return response;
+}
+
+}  // namespace
+
+void add_window_route(http::Router& router, const Service& service) {
+  router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), false,
+              [&service](const http::Request& request) { return get_window(service, request); }});
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,174 @@
+#include "server/maps/map_registry.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "tiles/view/map_file_view.hpp"
+
+namespace roadfix::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExtension = ".gpkg";
+
+std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
+
+std::map<std::string, fs::path> map_files(const fs::path& folder) {
+  std::map<std::string, fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code gone;
+    if (entry.path().extension() == kExtension && entry.is_regular_file(gone))
+      files[entry.path().stem()] = entry.path();
+  }
+  return files;
+}
+
+}  // namespace
+
+MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes)
+    : folder_(std::move(folder)), cache_bytes_(cache_bytes) {
+  if (!fs::is_directory(folder_)) {
+    throw NotFound("maps-folder-not-found",
+                   fmt::format("--maps {} is no folder; name the one that holds the maps", folder_.string()));
+  }
+  refresh();
+}
+
+MapRegistry::~MapRegistry() { stop(); }
+
+void MapRegistry::watch(std::chrono::milliseconds interval) {
+  watcher_ = std::jthread([this, interval](std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+      lock.unlock();
+      try {
+        refresh();
+      } catch (const std::exception& error) {
+        spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), error.what());
+      }
+      lock.lock();
+      if (stop.stop_requested()) return;
+    }
+  });
+}
+
+void MapRegistry::stop() {
+  if (!watcher_.joinable()) return;
+  watcher_.request_stop();
+  watcher_.join();
+}
+
+MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
+  Stamp stamp;
+  struct stat file = {};
+  if (::stat(path.c_str(), &file) == 0) {
+    stamp.modified = nanoseconds(file.st_mtim);
+    stamp.size = static_cast<std::uintmax_t>(file.st_size);
+    stamp.inode = file.st_ino;
+  }
+  struct stat wal = {};
+  if (::stat((path.string() + "-wal").c_str(), &wal) == 0) {
+    stamp.wal_modified = nanoseconds(wal.st_mtim);
+    stamp.wal_size = static_cast<std::uintmax_t>(wal.st_size);
+  }
+  return stamp;
+}
+
+MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp) const {
+  const std::string name = path.stem();
+  try {
+    const auto reader = std::make_shared<const MapReader>(path, cache_bytes_);
+    auto map = std::make_shared<const ServedMap>(ServedMap{name, path, reader, view_of(reader, name)});
+    spdlog::info("serving map {} version {}", name, reader->info().version);
+    return {stamp, std::move(map), {}};
+  } catch (const Error& error) {
+    spdlog::warn("map {} cannot be served: {} [{}]", name, error.what(), error.code());
+    return {stamp, nullptr, {name, error.code(), error.what()}};
+  }
+}
+
+/// A touched file whose version is the same keeps its reader and with it the decoded tiles.
+bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Stamp& stamp) const {
+  if (entry.stamp == stamp) return true;
+  if (entry.map == nullptr || entry.stamp.inode != stamp.inode) return false;
+  try {
+    const MapInfo now = MapReader(path, 0).info();
+    const MapInfo& then = entry.map->reader->info();
+    return now.version == then.version && now.pending == then.pending && now.sources.size() == then.sources.size();
+  } catch (const Error&) {
+    return false;  // opened() finds the same and reports it
+  }
+}
+
+void MapRegistry::forget_missing(const std::map<std::string, fs::path>& present) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [&](const auto& item) {
+    if (present.contains(item.first)) return false;
+    spdlog::info("map {} has left the folder", item.first);
+    return true;
+  });
+}
+
+void MapRegistry::refresh() {
+  const std::lock_guard one_at_a_time(refresh_mutex_);
+  const auto files = map_files(folder_);
+  for (const auto& [name, path] : files) {
+    const Stamp stamp = stamp_of(path);
+    Entry known;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = entries_.find(name);
+      if (found != entries_.end()) known = found->second;
+    }
+    const bool is_known = known.map != nullptr || !known.problem.code.empty();
+    Entry current =
+        is_known && is_current(known, path, stamp) ? Entry{stamp, known.map, known.problem} : opened(path, stamp);
+    const std::lock_guard lock(mutex_);
+    entries_[name] = std::move(current);
+  }
+  forget_missing(files);
+}
+
+std::vector<std::shared_ptr<const ServedMap>> MapRegistry::maps() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<const ServedMap>> result;
+  for (const auto& [name, entry] : entries_) {
+    if (entry.map != nullptr) result.push_back(entry.map);
+  }
+  return result;
+}
+
+std::vector<UnreadableMap> MapRegistry::unreadable() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<UnreadableMap> result;
+  for (const auto& [name, entry] : entries_) {
+    if (entry.map == nullptr) result.push_back(entry.problem);
+  }
+  return result;
+}
+
+std::shared_ptr<const ServedMap> MapRegistry::find(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(name);
+  if (found == entries_.end()) {
+    throw NotFound("map-not-found", fmt::format("no map is called '{}'; GET /v1/maps lists them", name.substr(0, 80)));
+  }
+  if (found->second.map == nullptr) {
+    throw IoFailure("map-unreadable",
+                    fmt::format("the map '{}' cannot be read: {}", name, found->second.problem.reason));
+  }
+  return found->second.map;
+}
+
+std::size_t MapRegistry::cached_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& map : maps()) bytes += map->reader->cached_bytes();
+  return bytes;
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,85 @@
+// The maps being served: every *.gpkg of a folder. Files that appear, change or leave are noticed without a restart.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/locate/map_view.hpp"
+#include "tiles/store/map_reader.hpp"
+
+namespace roadfix::server {
+
+/// A map as it was when it was opened. Requests keep it alive while a newer one takes its place.
+struct ServedMap {
+  std::string name;
+  std::filesystem::path path;
+  std::shared_ptr<const MapReader> reader;
+  MapView view;
+};
+
+/// A file that looks like a map and cannot be served.
+struct UnreadableMap {
+  std::string name;
+  std::string code;
+  std::string reason;
+};
+
+class MapRegistry {
+ public:
+  /// `cache_bytes` bounds the decoded tiles of each map. Throws NotFound ("maps-folder-not-found").
+  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes);
+  ~MapRegistry();
+  MapRegistry(const MapRegistry&) = delete;
+  MapRegistry& operator=(const MapRegistry&) = delete;
+
+  /// Looks at the folder now.
+  void refresh();
+  /// Refreshes in a thread of its own, again and again.
+  void watch(std::chrono::milliseconds interval);
+  void stop();
+
+  std::vector<std::shared_ptr<const ServedMap>> maps() const;
+  std::vector<UnreadableMap> unreadable() const;
+  /// The name is the file's without .gpkg. Throws NotFound ("map-not-found") or IoFailure ("map-unreadable") with the
+  /// reason.
+  std::shared_ptr<const ServedMap> find(const std::string& name) const;
+  std::size_t cached_bytes() const;
+
+ private:
+  /// What tells that a file may have changed.
+  struct Stamp {
+    std::int64_t modified = 0;
+    std::uintmax_t size = 0;
+    std::int64_t wal_modified = 0;
+    std::uintmax_t wal_size = 0;
+    std::uint64_t inode = 0;
+    friend bool operator==(const Stamp&, const Stamp&) = default;
+  };
+  struct Entry {
+    Stamp stamp;
+    std::shared_ptr<const ServedMap> map;  ///< null if unreadable
+    UnreadableMap problem;
+  };
+  static Stamp stamp_of(const std::filesystem::path& path);
+  Entry opened(const std::filesystem::path& path, const Stamp& stamp) const;
+  bool is_current(const Entry& entry, const std::filesystem::path& path, const Stamp& stamp) const;
+  void forget_missing(const std::map<std::string, std::filesystem::path>& present);
+
+  const std::filesystem::path folder_;
+  const std::size_t cache_bytes_;
+  std::mutex refresh_mutex_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::map<std::string, Entry> entries_;
+  std::jthread watcher_;
+};
+
+}  // namespace roadfix::server

@@ -1,0 +1,30 @@
+// What the handlers share, and the table of routes made of them.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "core/detect/road_detector.hpp"
+#include "server/api/limits.hpp"
+#include "server/http/metrics.hpp"
+#include "server/http/router.hpp"
+#include "server/http/server.hpp"
+#include "server/maps/map_registry.hpp"
+#include "server/maps/picture_cache.hpp"
+
+namespace roadfix::server {
+
+struct Service {
+  MapRegistry& maps;
+  const RoadDetector& detector;
+  const api::Limits& limits;
+  const http::ServerSettings& http;
+  http::Metrics& metrics;
+  PictureCache& pictures;
+  int search_threads = 1;
+};
+
+/// Every route of the service; schema/openapi.json describes them. `service` must outlive the router's handlers.
+http::Router make_router(const Service& service);
+
+}  // namespace roadfix::server

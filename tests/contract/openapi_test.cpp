@@ -1,0 +1,160 @@
+// The OpenAPI document and the routes say the same, in both directions.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "core/detect/tree_detector.hpp"
+#include "schema/schema.hpp"
+#include "server/api/feature_request.hpp"
+#include "server/api/fix_request.hpp"
+#include "server/service.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using nlohmann::json;
+
+class OpenApi : public ::testing::Test {
+ protected:
+  const json document_ = json::parse(schema::openapi_json());
+  const testing::TemporaryFolder folder_;
+  server::MapRegistry maps_{folder_.path(), 1 << 20};
+  const TreeRoadDetector detector_;
+  const api::Limits limits_;
+  const http::ServerSettings http_;
+  http::Metrics metrics_;
+  server::PictureCache pictures_{1 << 20};
+  const server::Service service_{maps_, detector_, limits_, http_, metrics_, pictures_};
+  const http::Router router_ = server::make_router(service_);
+
+  const json& resolved(const json& node) const {
+    if (!node.contains("$ref")) return node;
+    return document_.at(json::json_pointer(node["$ref"].get<std::string>().substr(1)));
+  }
+
+  /// Names of an operation's parameters that are in `place`, those of its path included.
+  std::set<std::string> parameters(const json& path, const json& operation, const std::string& place) const {
+    std::set<std::string> names;
+    for (const json* holder : {&path, &operation}) {
+      for (const json& parameter : holder->value("parameters", json::array())) {
+        const json& it = resolved(parameter);
+        if (it.at("in") == place) names.insert(it.at("name").get<std::string>());
+      }
+    }
+    return names;
+  }
+
+  /// What this document uses of JSON Schema to describe members.
+  void check(const json& schema, const json& value, const std::string& where) const {
+    const json& s = resolved(schema);
+    if (s.contains("properties") && value.is_object()) {
+      const json required = s.value("required", json::array());
+      for (const json& name : required) {
+        EXPECT_TRUE(value.contains(name.get<std::string>())) << where << " lacks " << name;
+      }
+      for (const auto& [name, member] : value.items()) {
+        ASSERT_TRUE(s["properties"].contains(name)) << where << "." << name << " is not described";
+        check(s["properties"][name], member, where + "." + name);
+      }
+    }
+    if (s.contains("items") && value.is_array()) {
+      for (const json& element : value) check(s["items"], element, where + "[]");
+    }
+    if (s.contains("enum")) {
+      EXPECT_NE(std::find(s["enum"].begin(), s["enum"].end(), value), s["enum"].end()) << where;
+    }
+  }
+
+  int check_examples(const json& holder, const std::string& where) const {
+    int examples = 0;
+    const json contents = holder.value("content", json::object());
+    for (const auto& [type, content] : contents.items()) {
+      if (!content.contains("example")) continue;
+      ++examples;
+      check(content.at("schema"), content["example"], where);
+    }
+    return examples;
+  }
+};
+
+std::string method_of(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+TEST_F(OpenApi, DocumentsEveryRouteAndNoOther) {
+  std::set<std::string> documented;
+  for (const auto& [path, item] : document_.at("paths").items()) {
+    for (const auto& [method, operation] : item.items()) {
+      if (method != "parameters") documented.insert(method_of(method) + " " + path);
+    }
+  }
+  std::set<std::string> registered;
+  for (const http::Route& route : router_.routes()) registered.insert(route.method + " " + route.path);
+  EXPECT_EQ(documented, registered);
+}
+
+TEST_F(OpenApi, DocumentsEveryParameterAndNoOther) {
+  for (const http::Route& route : router_.routes()) {
+    std::string method = route.method;
+    for (char& c : method) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const json& path = document_.at("paths").at(route.path);
+    const json& operation = path.at(method);
+    EXPECT_EQ(parameters(path, operation, "query"),
+              std::set<std::string>(route.parameters.begin(), route.parameters.end()))
+        << route.path;
+    std::set<std::string> in_path;
+    for (std::size_t open = route.path.find('{'); open != std::string::npos; open = route.path.find('{', open + 1)) {
+      in_path.insert(route.path.substr(open + 1, route.path.find('}', open) - open - 1));
+    }
+    EXPECT_EQ(parameters(path, operation, "path"), in_path) << route.path;
+  }
+}
+
+TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
+  const auto members = [&](const char* schema) {
+    std::set<std::string> names;
+    for (const auto& [name, ignored] : document_.at("components").at("schemas").at(schema).at("properties").items())
+      names.insert(name);
+    return names;
+  };
+  std::set<std::string> fix(api::feature_fields().begin(), api::feature_fields().end());
+  fix.insert(api::picture_members().begin(), api::picture_members().end());
+  std::set<std::string> match = fix;
+  fix.insert(api::prior_fields().begin(), api::prior_fields().end());
+  match.insert({"heading_step_deg", "poses"});
+  std::set<std::string> detect(api::frame_fields().begin(), api::frame_fields().end());
+  detect.insert({"image", "format"});
+  EXPECT_EQ(members("FixRequest"), fix);
+  EXPECT_EQ(members("MatchRequest"), match);
+  EXPECT_EQ(members("DetectRequest"), detect);
+}
+
+TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {
+  int examples = 0;
+  for (const auto& [path, item] : document_.at("paths").items()) {
+    for (const auto& [method, operation] : item.items()) {
+      if (method == "parameters") continue;
+      if (operation.contains("requestBody")) examples += check_examples(operation["requestBody"], path + " body");
+      for (const auto& [status, response] : operation.at("responses").items()) {
+        examples += check_examples(resolved(response), path + " " + status);
+      }
+    }
+  }
+  EXPECT_GT(examples, 20);
+}
+
+TEST_F(OpenApi, RefersOnlyToWhatIsThere) {
+  const std::string text = document_.dump();
+  for (std::size_t at = text.find("\"$ref\":\"#"); at != std::string::npos; at = text.find("\"$ref\":\"#", at + 1)) {
+    const std::size_t begin = at + 9;
+    const std::string pointer = text.substr(begin, text.find('"', begin) - begin);
+    EXPECT_TRUE(document_.contains(json::json_pointer(pointer))) << pointer;
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

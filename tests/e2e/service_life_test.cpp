@@ -1,0 +1,178 @@
+// The service over time: maps that come and go, many clients, the end.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include "tests/e2e/service_fixture.hpp"
+#include "tests/support/raw_http.hpp"
+
+namespace roadfix {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+bool eventually(const auto& condition) {
+  for (int i = 0; i < 400; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(25ms);
+  }
+  return false;
+}
+
+TEST(ServiceLife, NoticesMapsThatAppearChangeBreakAndLeave) {
+  const testing::TemporaryFolder folder;
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  const testing::Town town;
+  const auto status = [&] {
+    const json maps = testing::json_of(client.Get("/v1/maps"))["maps"];
+    return maps.empty() ? "none" : maps[0]["status"].get<std::string>();
+  };
+  EXPECT_EQ(status(), "none");
+
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  EXPECT_TRUE(eventually([&] { return status() == "ready"; }));
+  const std::string version = testing::json_of(client.Get("/v1/maps/town"))["version"];
+
+  {
+    MapWriter writer(folder / "town.gpkg", {town.zone, 2.0});
+    writer.remove_source("town");
+  }
+  EXPECT_TRUE(eventually([&] { return testing::json_of(client.Get("/v1/maps/town"))["version"] != version; }));
+
+  std::ofstream(folder / "broken.gpkg") << "no map at all";
+  EXPECT_TRUE(eventually([&] { return status() == "unreadable"; })) << "the broken one is listed, first by name";
+  EXPECT_EQ(testing::refusal(client.Get("/v1/maps/broken")), "503 map-unreadable");
+  EXPECT_EQ(client.Get("/v1/maps/town")->status, 200) << "the other one is served";
+
+  std::filesystem::remove(folder / "broken.gpkg");
+  std::filesystem::remove(folder / "town.gpkg");
+  EXPECT_TRUE(eventually([&] { return status() == "none"; }));
+}
+
+TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  testing::ServiceProcess service(folder.path());
+  const std::string body = town.seen();
+  testing::RawConnection connection(service.port());
+  connection.send("POST /v1/maps/town/fix?cell_m=2 HTTP/1.1\r\nHost: x\r\nContent-Type: image/png\r\nContent-Length: " +
+                  std::to_string(body.size()) + "\r\n\r\n" + body.substr(0, 100));
+  std::this_thread::sleep_for(100ms);
+  service.send_signal(SIGTERM);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_THROW(testing::RawConnection(service.port()), std::system_error) << "no new connections";
+  connection.send(body.substr(100));
+  const std::string answer = connection.read_all(30s);
+  EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(answer, ::testing::HasSubstr("\"status\":\"fix\""));
+  const int status = service.wait();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(ServiceLife, StopsAtOnceWhenNothingIsInFlight) {
+  const testing::TemporaryFolder folder;
+  testing::ServiceProcess service(folder.path());
+  testing::RawConnection idle(service.port());
+  httplib::Client client = testing::client_of(service);
+  client.Get("/healthz");
+  const auto start = std::chrono::steady_clock::now();
+  service.send_signal(SIGINT);
+  EXPECT_EQ(service.wait(), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 3s) << "idle connections do not hold it up";
+}
+
+TEST(ServiceLife, SendsSearchesAwayWhenTooManyWait) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const testing::ServiceProcess service(folder.path(), {"--searches", "1", "--searches-waiting", "1"});
+  const std::string body = town.seen();
+  std::atomic<int> answered = 0;
+  std::atomic<int> sent_away = 0;
+  {
+    std::vector<std::jthread> clients;
+    for (int i = 0; i < 8; ++i) {
+      clients.emplace_back([&] {
+        httplib::Client client = testing::client_of(service);
+        for (int k = 0; k < 4; ++k) {
+          const auto answer = client.Post("/v1/maps/town/fix?cell_m=2", body, "image/png");
+          if (answer && answer->status == 200) ++answered;
+          if (testing::refusal(answer) == "503 server-busy" && !answer->get_header_value("Retry-After").empty())
+            ++sent_away;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(answered + sent_away, 32);
+  EXPECT_GT(answered, 0);
+  EXPECT_GT(sent_away, 0);
+}
+
+TEST(ServiceLife, ServesEveryClientThoughThereAreMoreThanThreads) {
+  const testing::TemporaryFolder folder;
+  const testing::ServiceProcess service(folder.path(), {"--threads", "2"});
+  std::vector<std::unique_ptr<testing::RawConnection>> idle;
+  for (int i = 0; i < 4; ++i) idle.push_back(std::make_unique<testing::RawConnection>(service.port()));
+  std::atomic<int> answered = 0;
+  {
+    std::vector<std::jthread> clients;
+    for (int i = 0; i < 8; ++i) {
+      clients.emplace_back([&] {
+        httplib::Client client = testing::client_of(service);
+        for (int k = 0; k < 100; ++k) {
+          const auto answer = client.Get("/healthz");
+          if (answer && answer->status == 200) ++answered;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(answered, 800) << "neither idle connections nor busy ones starve the others";
+}
+
+TEST(ServiceLife, EndsARequestWhoseTimeIsOver) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const testing::ServiceProcess service(folder.path(), {"--request-time", "0.005"});
+  const auto answer = testing::client_of(service).Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png");
+  EXPECT_EQ(answer->status, 503) << answer->body;
+}
+
+TEST(ServiceLife, TakesOptionsFromTheEnvironmentAndAFile) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "roadfix.conf") << "max-poses = 77\n";
+  ::setenv("ROADFIX_MAX_SEARCH", "12.5", 1);
+  const testing::ServiceProcess service(folder.path(),
+                                        {"--config", (folder / "roadfix.conf").string(), "--max-cells", "555"});
+  ::unsetenv("ROADFIX_MAX_SEARCH");
+  const json limits = testing::json_of(testing::client_of(service).Get("/v1/limits"));
+  EXPECT_EQ(limits["poses"], 77);
+  EXPECT_EQ(limits["search_km2"], 12.5);
+  EXPECT_EQ(limits["cells"], 555);
+}
+
+TEST(ServiceLife, WritesALineForEachRequest) {
+  const testing::TemporaryFolder folder;
+  const std::string log = (folder / "access.log").string();
+  const testing::ServiceProcess service(folder.path(), {"--access-log", log});
+  testing::client_of(service).Get("/v1/maps?x=1", {{"X-Request-Id", "flight-7"}});
+  std::string line;
+  EXPECT_TRUE(eventually([&] {
+    std::ifstream file(log);
+    return static_cast<bool>(std::getline(file, line));
+  }));
+  const json entry = json::parse(line);
+  EXPECT_EQ(entry["id"], "flight-7");
+  EXPECT_EQ(entry["status"], 400);
+  EXPECT_EQ(entry["route"], "/v1/maps");
+}
+
+}  // namespace
+}  // namespace roadfix

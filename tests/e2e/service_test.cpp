@@ -1,0 +1,194 @@
+// The service as a client meets it: the real program over real sockets.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "server/api/web_mercator.hpp"
+#include "tests/e2e/service_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Service : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    town_ = new testing::Town;
+    folder_ = new testing::TemporaryFolder;
+    testing::write_map_file(*folder_ / "town.gpkg", town_->roads, 2.0);
+    service_ = new testing::ServiceProcess(folder_->path(), {"--cors-origin", "*"});
+  }
+  static void TearDownTestSuite() {
+    delete service_;
+    delete folder_;
+    delete town_;
+  }
+
+  static std::string place(double radius_m = 300.0) {
+    return "&lat=" + std::to_string(town_->place.lat_deg) + "&lon=" + std::to_string(town_->place.lon_deg) +
+           "&radius_m=" + std::to_string(radius_m);
+  }
+  static std::string window_query(double heading_deg) {
+    return "/v1/maps/town/window?lat=" + std::to_string(town_->place.lat_deg) +
+           "&lon=" + std::to_string(town_->place.lon_deg) +
+           "&width_m=320&height_m=320&heading_deg=" + std::to_string(heading_deg);
+  }
+  static void expect_pose(const json& pose, LatLon at, double heading_deg, double metres, double degrees) {
+    const GridPoint truth = town_->zone.project(at);
+    EXPECT_LT(distance_m(town_->zone.project({pose["lat"], pose["lon"]}), truth), metres);
+    EXPECT_LT(angular_distance(Angle::degrees(pose["heading_deg"]), Angle::degrees(heading_deg)).degrees(), degrees);
+  }
+
+  inline static testing::Town* town_ = nullptr;
+  inline static testing::TemporaryFolder* folder_ = nullptr;
+  inline static testing::ServiceProcess* service_ = nullptr;
+  httplib::Client client_ = testing::client_of(*service_);
+};
+
+TEST_F(Service, SaysThatItLivesAndWhatItServes) {
+  EXPECT_EQ(client_.Get("/healthz")->status, 200);
+  EXPECT_EQ(testing::json_of(client_.Get("/readyz"))["maps"], 1);
+  EXPECT_THAT(client_.Get("/")->body, HasSubstr("town"));
+  const json list = testing::json_of(client_.Get("/v1/maps"));
+  ASSERT_EQ(list["maps"].size(), 1U);
+  EXPECT_EQ(list["maps"][0]["status"], "ready");
+  const json map = testing::json_of(client_.Get("/v1/maps/town"));
+  EXPECT_EQ(map["epsg"], 32634);
+  EXPECT_EQ(map["sources"][0]["name"], "town");
+  EXPECT_EQ(testing::json_of(client_.Get("/openapi.json"))["openapi"], "3.1.0");
+  EXPECT_GT(testing::json_of(client_.Get("/v1/limits"))["poses"], 0);
+}
+
+TEST_F(Service, ReturnsThePoseOfAWindowThatIsPostedBackAsItIs) {
+  const double heading = 37.3;
+  const auto png = client_.Get(window_query(heading), {{"Accept", "image/png"}});
+  ASSERT_EQ(png->get_header_value("Content-Type"), "image/png");
+  const json by_png = testing::json_of(client_.Post("/v1/maps/town/fix?cell_m=2" + place(), png->body, "image/png"));
+  ASSERT_EQ(by_png["status"], "fix") << by_png;
+  expect_pose(by_png["pose"], town_->place, heading, 1.0, 1.0);
+
+  const auto window = client_.Get(window_query(heading) + "&format=json");
+  const json by_json = testing::json_of(client_.Post("/v1/maps/town/fix", window->body, "application/json"));
+  ASSERT_EQ(by_json["status"], "fix") << by_json;
+  expect_pose(by_json["pose"], town_->place, heading, 1.0, 1.0);
+}
+
+TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
+  const std::string seen = town_->seen();
+  const httplib::MultipartFormDataItems form{{"image", seen, "seen.png", "image/png"},
+                                             {"request", R"({"cell_m":2})", "", "application/json"}};
+  const httplib::MultipartFormDataItems plain_form{{"image", seen, "seen.png", "image/png"}, {"cell_m", "2", "", ""}};
+  for (const httplib::Result& answer :
+       {client_.Post("/v1/maps/town/fix?cell_m=2", seen, "image/png"), client_.Post("/v1/maps/town/fix", form),
+        client_.Post("/v1/maps/town/fix", plain_form)}) {
+    const json fix = testing::json_of(answer);
+    ASSERT_EQ(fix["status"], "fix") << fix;
+    expect_pose(fix["pose"], town_->place, town_->heading_deg, 6.0, 2.0);
+    EXPECT_EQ(fix["map"]["name"], "town");
+    EXPECT_EQ(fix["geometry"]["type"], "Point");
+    EXPECT_GT(fix["probability"], 0.99);
+  }
+}
+
+TEST_F(Service, SearchesOnlyWhereThePriorAllows) {
+  const std::string seen = town_->seen();
+  const json near = testing::json_of(client_.Post(
+      "/v1/maps/town/fix?cell_m=2&heading_range_deg=20&heading_deg=" + std::to_string(town_->heading_deg) + place(100),
+      seen, "image/png"));
+  EXPECT_EQ(near["status"], "fix") << near;
+  EXPECT_LT(near["searched"]["area_km2"], 0.05);
+  EXPECT_EQ(testing::refusal(client_.Post("/v1/maps/town/fix?cell_m=2&lat=10&lon=20&radius_m=50", seen, "image/png")),
+            "422 prior-outside-map");
+}
+
+TEST_F(Service, ScoresPosesInTheirOrder) {
+  json request = testing::json_of(client_.Get(window_query(120.0) + "&format=json"));
+  json elsewhere = request["pose"];
+  elsewhere["heading_deg"] = 10.0;
+  json far = request["pose"];
+  far["lat"] = far["lat"].get<double>() + 1.0;
+  request["poses"] = {request["pose"], elsewhere, far};
+  const json scores =
+      testing::json_of(client_.Post("/v1/maps/town/match", request.dump(), "application/json"))["scores"];
+  ASSERT_EQ(scores.size(), 3U);
+  EXPECT_GT(scores[0]["rho"], 0.8);
+  EXPECT_LT(scores[1]["rho"], 0.5);
+  EXPECT_TRUE(scores[2]["rho"].is_null());
+  EXPECT_EQ(scores[2]["observed_cells"], 0);
+}
+
+TEST_F(Service, TurnsFramesIntoFeatureMapsAndFixes) {
+  cv::Mat frame(300, 400, CV_8UC3, cv::Scalar(90, 110, 100));
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", frame, png);
+  const auto picture = client_.Post("/v1/detect?gsd_m=0.5&cell_m=2", testing::text_of(png), "image/png");
+  ASSERT_EQ(picture->status, 200) << picture->body;
+  EXPECT_EQ(picture->get_header_value("Content-Type"), "image/png");
+  const json features = testing::json_of(
+      client_.Post("/v1/detect?fov_deg=60&agl_m=200&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
+  EXPECT_GT(features["cols"], 50);
+  const json fix =
+      testing::json_of(client_.Post("/v1/maps/town/fix?kind=frame&gsd_m=0.5", testing::text_of(png), "image/png"));
+  EXPECT_EQ(fix["status"], "no_fix") << "a bare field shows no road";
+  EXPECT_FALSE(fix.contains("pose"));
+}
+
+TEST_F(Service, ServesTilesThatClientsMayCache) {
+  const json description = testing::json_of(client_.Get("/v1/maps/town/tilejson.json"));
+  EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png"));
+  const api::MercatorPixel pixel = api::mercator_pixel(town_->place, 16);
+  const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
+                           std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
+  const auto tile = client_.Get(path);
+  ASSERT_EQ(tile->status, 200);
+  EXPECT_EQ(tile->get_header_value("Content-Type"), "image/png");
+  EXPECT_THAT(tile->get_header_value("Cache-Control"), HasSubstr("max-age"));
+  const auto again = client_.Get(path, {{"If-None-Match", tile->get_header_value("ETag")}});
+  EXPECT_EQ(again->status, 304);
+  EXPECT_TRUE(again->body.empty());
+  EXPECT_NE(client_.Get(path + "?style=grey")->get_header_value("ETag"), tile->get_header_value("ETag"));
+  EXPECT_EQ(client_.Get("/v1/maps/town/tiles/16/0/0.png")->status, 204);
+  EXPECT_EQ(testing::refusal(client_.Get("/v1/maps/town/tiles/16/70000/0.png")), "404 tile-not-found");
+}
+
+TEST_F(Service, GivesWindowsAsGeoTiffToo) {
+  const auto tiff = client_.Get(window_query(20.0), {{"Accept", "image/tiff"}});
+  EXPECT_EQ(tiff->get_header_value("Content-Type"), "image/tiff");
+  EXPECT_THAT(tiff->body.substr(0, 4), ::testing::AnyOf(std::string("II*\0", 4), std::string("MM\0*", 4)));
+  EXPECT_EQ(testing::refusal(client_.Get(window_query(20.0), {{"Accept", "text/html"}})), "406 not-acceptable");
+}
+
+TEST_F(Service, PacksJsonWithGzipAndTellsCachesSo) {
+  const auto plain = client_.Get("/openapi.json");
+  EXPECT_FALSE(plain->has_header("Content-Encoding"));
+  const auto packed = client_.Get("/openapi.json", {{"Accept-Encoding", "gzip, br"}});
+  EXPECT_EQ(packed->get_header_value("Content-Encoding"), "gzip");
+  EXPECT_THAT(packed->get_header_value("Vary"), HasSubstr("Accept-Encoding"));
+}
+
+TEST_F(Service, EchoesTheRequestIdAndMakesOneUp) {
+  EXPECT_EQ(client_.Get("/healthz", {{"X-Request-Id", "flight-7"}})->get_header_value("X-Request-Id"), "flight-7");
+  EXPECT_FALSE(client_.Get("/healthz")->get_header_value("X-Request-Id").empty());
+  EXPECT_NE(client_.Get("/healthz", {{"X-Request-Id", std::string(500, 'x')}})->get_header_value("X-Request-Id"),
+            std::string(500, 'x'));
+}
+
+TEST_F(Service, AnswersBrowsersOfOtherOrigins) {
+  EXPECT_EQ(client_.Get("/healthz")->get_header_value("Access-Control-Allow-Origin"), "*");
+  const auto preflight = client_.Options("/v1/maps/town/fix");
+  EXPECT_EQ(preflight->status, 204);
+  EXPECT_EQ(preflight->get_header_value("Allow"), "OPTIONS, POST");
+}
+
+TEST_F(Service, CountsWhatItDoes) {
+  client_.Get("/v1/maps/town");
+  const std::string text = client_.Get("/metrics")->body;
+  EXPECT_THAT(text, HasSubstr("roadfix_requests_total{method=\"GET\",route=\"/v1/maps/{map}\",status=\"200\"}"));
+  EXPECT_THAT(text, HasSubstr("roadfix_maps 1\n"));
+}
+
+}  // namespace
+}  // namespace roadfix

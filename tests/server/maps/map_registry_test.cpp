@@ -1,0 +1,88 @@
+#include "server/maps/map_registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/units/error.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+
+namespace roadfix::server {
+namespace {
+
+namespace fs = std::filesystem;
+using roadfix::testing::TemporaryFolder;
+
+constexpr std::size_t kCache = std::size_t{1} << 20;
+
+void make_map(const fs::path& path, std::uint64_t seed, bool replace = false) {
+  MapWriter writer(path, roadfix::testing::settings_37n());
+  roadfix::testing::ingest(writer, {"imagery", seed, roadfix::testing::some_blocks(1)}, replace);
+}
+
+TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
+  const TemporaryFolder folder;
+  MapRegistry registry(folder.path(), kCache);
+  EXPECT_TRUE(registry.maps().empty());
+
+  make_map(folder / "city.gpkg", 1);
+  registry.refresh();
+  const auto first = registry.find("city");
+  EXPECT_EQ(first->view.name, "city");
+
+  make_map(folder / "city.gpkg", 2, true);
+  registry.refresh();
+  const auto second = registry.find("city");
+  EXPECT_NE(second->view.version, first->view.version);
+  EXPECT_NO_THROW(first->view.read(GridGeometry::covering(first->view.extent, 2.0)))
+      << "requests under way keep theirs";
+
+  fs::remove(folder / "city.gpkg");
+  registry.refresh();
+  EXPECT_THROW(registry.find("city"), NotFound);
+}
+
+TEST(MapRegistry, KeepsTheReaderOfAFileThatWasOnlyTouched) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  const auto before = registry.find("city");
+  fs::last_write_time(folder / "city.gpkg", fs::file_time_type::clock::now() + std::chrono::seconds(5));
+  registry.refresh();
+  EXPECT_EQ(registry.find("city"), before);
+}
+
+TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
+  const TemporaryFolder folder;
+  make_map(folder / "good.gpkg", 1);
+  std::ofstream(folder / "broken.gpkg") << "this is no map";
+  std::ofstream(folder / "empty.gpkg");
+  std::ofstream(folder / "notes.txt") << "not looked at";
+  MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(registry.maps().size(), 1U);
+  const auto broken = registry.unreadable();
+  ASSERT_EQ(broken.size(), 2U);
+  EXPECT_EQ(broken[0].name, "broken");
+  EXPECT_FALSE(broken[0].reason.empty());
+  EXPECT_FALSE(broken[0].code.empty());
+  EXPECT_THROW(registry.find("broken"), IoFailure);
+
+  fs::remove(folder / "broken.gpkg");
+  make_map(folder / "broken.gpkg", 3);
+  registry.refresh();
+  EXPECT_EQ(registry.find("broken")->name, "broken") << "a repaired map is served";
+}
+
+TEST(MapRegistry, WatchesByItself) {
+  const TemporaryFolder folder;
+  MapRegistry registry(folder.path(), kCache);
+  registry.watch(std::chrono::milliseconds(5));
+  make_map(folder / "city.gpkg", 1);
+  for (int i = 0; i < 2000 && registry.maps().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(registry.maps().size(), 1U);
+}
+
+TEST(MapRegistry, RefusesAFolderThatIsNotThere) { EXPECT_THROW(MapRegistry("/no/such/folder", kCache), NotFound); }
+
+}  // namespace
+}  // namespace roadfix::server

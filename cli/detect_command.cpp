@@ -6,16 +6,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/detector_options.hpp"
-#include "core/detect/frame_image.hpp"
+#include "cli/frame_options.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -24,27 +26,45 @@ struct DetectOptions {
   DetectorChoice detector;
   std::string image;
   std::string target;
-  double gsd_m = 0.0;
+  FrameOptions frame;
   double cell_m = 2.0;
   std::uint64_t seed = 1;
-  bool black_unseen = false;
   bool json = false;
 };
 
-constexpr std::int64_t kMaxPixels = 400'000'000;
+/// Where the first cell of a georeferenced picture lies.
+struct Place {
+  UtmZone zone;
+  GridPoint north_west;
+};
 
-std::vector<std::uint8_t> bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) {
-    throw InvalidInput("image-missing", fmt::format("{} cannot be read", path));
+struct Picture {
+  GroundView view;
+  std::optional<Place> place;
+};
+
+Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
+  if (options.frame.given()) {
+    return {ground_seen(options.frame, decode_image(bytes_of(options.image), kMostPixels), detector), {}};
   }
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const UtmZone zone = zone_of_image(options.image);
+  Orthoimage ortho = read_orthoimage(options.image, zone);
+  return {rectified(std::move(ortho.image)), Place{zone, ortho.north_west}};
 }
 
-void write(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+void write(const std::filesystem::path& path, std::string_view bytes) {
   std::ofstream out(path, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!out.flush()) throw IoFailure("image-unwritable", fmt::format("{} cannot be written", path));
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush()) throw IoFailure("image-unwritable", fmt::format("{} cannot be written", path.string()));
+}
+
+/// World file and reference system beside the PNG, as GDAL and QGIS look for them.
+void write_place(std::filesystem::path png, const Place& place, double cell_m) {
+  write(png.string() + ".aux.xml",
+        fmt::format("<PAMDataset>\n  <SRS>EPSG:{}</SRS>\n</PAMDataset>\n", place.zone.epsg()));
+  write(png.replace_extension(".pgw"),
+        fmt::format("{}\n0\n0\n{}\n{:.3f}\n{:.3f}\n", cell_m, -cell_m, place.north_west.east_m + 0.5 * cell_m,
+                    place.north_west.north_m - 0.5 * cell_m));
 }
 
 double mean_probability(const CellArray& cells) {
@@ -57,21 +77,27 @@ double mean_probability(const CellArray& cells) {
 
 void run_detect(const DetectOptions& options) {
   const auto detector = make_detector(options.detector);
-  const auto bytes = bytes_of(options.image);
-  const GroundImage frame = frame_image(decode_image(bytes, kMaxPixels), options.gsd_m,
-                                        options.black_unseen ? Border::kBlackUnseen : Border::kSeen);
+  const Picture picture = read_picture(options, *detector);
   const auto start = std::chrono::steady_clock::now();
-  const CellArray cells = detector->detect(frame, options.cell_m, options.seed);
+  const FeatureMap map = detect_features(*detector, picture.view, options.cell_m, options.seed);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  write(options.target, encode_feature_map(cells));
-  const nlohmann::json answer{{"feature_map", options.target},
-                              {"cell_m", options.cell_m},
-                              {"cols", cells.cols()},
-                              {"rows", cells.rows()},
-                              {"observed_cells", cells.observed_count()},
-                              {"mean_probability", mean_probability(cells)},
-                              {"detector", detector->describe()},
-                              {"time_ms", time.count()}};
+  const CellArray& cells = map.cells;
+  if (cells.observed_count() == 0) {
+    throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
+  }
+  const std::vector<std::uint8_t> png = encode_feature_map(cells);
+  write(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
+  if (picture.place) write_place(options.target, *picture.place, options.cell_m);
+  nlohmann::json answer{{"feature_map", options.target},
+                        {"cell_m", options.cell_m},
+                        {"cols", cells.cols()},
+                        {"rows", cells.rows()},
+                        {"nadir_cell", {map.nadir.col, map.nadir.row}},
+                        {"observed_cells", cells.observed_count()},
+                        {"mean_probability", mean_probability(cells)},
+                        {"detector", detector->describe()},
+                        {"time_ms", time.count()}};
+  if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
   if (options.json) {
     fmt::print("{}\n", answer.dump());
   } else {
@@ -84,17 +110,22 @@ void run_detect(const DetectOptions& options) {
 }  // namespace
 
 void add_detect_command(CLI::App& app) {
-  auto* command = app.add_subcommand("detect", "Detects the roads of one frame: a feature map as PNG");
-  command->footer("Example: roadfix detect frame.png roads.png --gsd 0.5");
+  auto* command = app.add_subcommand("detect", "Detects the roads of one picture: a feature map as PNG");
+  command->footer(
+      "Examples: roadfix detect frame.png roads.png --gsd 0.5\n"
+      "          roadfix detect frame.jpg roads.png --fov 73 --agl 120 --pitch 4\n"
+      "          roadfix detect ortho.tif roads.png   (north up, with a world file)");
   const auto options = std::make_shared<DetectOptions>();
-  command->add_option("image", options->image, "Frame: PNG or JPEG, seen straight from above")->required();
+  command
+      ->add_option("image", options->image,
+                   "Frame (PNG or JPEG, with --gsd or --fov and --agl), or any georeferenced image")
+      ->required();
   command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
-  command->add_option("--gsd", options->gsd_m, "Metres per pixel of the frame")->required()->check(CLI::PositiveNumber);
+  add_frame_options(*command, options->frame);
   command->add_option("--cell", options->cell_m, "Cell size in metres")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", options->seed, "Of detectors that draw random numbers")->capture_default_str();
-  command->add_flag("--black-unseen", options->black_unseen, "Black areas at the frame's rim were not seen");
   command->add_flag("--json", options->json, "Answer as JSON");
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/frame_options.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/grid/feature_map.hpp"
 
@@ -15,12 +16,7 @@ namespace roadfix::cli {
 struct FeatureInputOptions {
   std::string path;
   double cell_m = 0.0;  ///< of a feature map; 0 = the input is a frame
-  double gsd_m = 0.0;   ///< of a frame seen straight from above; 0 = by the camera
-  double fov_deg = 0.0;
-  double agl_m = 0.0;
-  double roll_deg = 0.0;
-  double pitch_deg = 0.0;
-  bool black_unseen = false;
+  FrameOptions frame;
   std::uint64_t seed = 1;
   DetectorChoice detector;
 };

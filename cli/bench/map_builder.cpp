@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "core/detect/network_description.hpp"
-#include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
-#include "tiles/sources/mosaic.hpp"
+#include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
 
 namespace roadfix::bench {
@@ -77,20 +76,6 @@ MapView build_map(const ManifestMap& map, const MapBuilding& building) {
     }
   }
   return view_of(std::make_shared<const MapReader>(file), map.name);
-}
-
-Orthoimage read_orthoimage(const std::filesystem::path& path, const UtmZone& zone) {
-  constexpr double kMaxPixels = 4e8;
-  const Mosaic mosaic({path.string()}, {}, ValueRule::kPicture, zone);
-  const GridBox box = mosaic.extent();
-  const double gsd_m = mosaic.gsd_m();
-  const double pixels = box.width_m() / gsd_m * (box.height_m() / gsd_m);
-  if (pixels > kMaxPixels) {
-    throw LimitExceeded("imagery-too-large",
-                        fmt::format("{}: {:.0f} megapixels are more than the {:.0f} that a bench can hold",
-                                    path.string(), pixels / 1e6, kMaxPixels / 1e6));
-  }
-  return {mosaic.view(box, gsd_m), {box.min.east_m, box.max.north_m}};
 }
 
 std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone) {

@@ -29,10 +29,6 @@ struct MapBuilding {
 /// of this program). Throws what sources, pipeline and store throw.
 MapView build_map(const ManifestMap& map, const MapBuilding& building);
 
-/// One raster on the plane of the zone at its own ground sample distance. Throws LimitExceeded ("imagery-too-large")
-/// beyond 400 megapixels.
-Orthoimage read_orthoimage(const std::filesystem::path& path, const UtmZone& zone);
-
 /// The rasters of the map's imagery sources.
 std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone);
 

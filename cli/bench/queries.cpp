@@ -11,11 +11,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "cli/bench/frames_csv.hpp"
-#include "cli/bench/map_builder.hpp"
 #include "cli/bench/query_poses.hpp"
 #include "cli/bench/simulated_features.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -62,7 +62,7 @@ int number_of(int wanted, const QueryDrawing& drawing) {
 }
 
 std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
-  const Orthoimage ortho = read_orthoimage(set.path, map.zone);
+  const Orthoimage ortho = read_orthoimage(set.path.string(), map.zone);
   const RoadGrid grid = whole(map);
   const Observed in_imagery = seen_by(ortho);
   const Observed in_map = seen_by(grid);

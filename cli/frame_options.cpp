@@ -1,0 +1,56 @@
+#include "cli/frame_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/detect/frame_image.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::cli {
+
+std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
+  auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
+                  ->check(CLI::PositiveNumber);
+  auto* fov = command.add_option("--fov", o.fov_deg, "The input is a camera frame: field of view across, degrees")
+                  ->check(CLI::PositiveNumber)
+                  ->excludes(gsd);
+  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov")
+                  ->check(CLI::PositiveNumber)
+                  ->needs(fov);
+  fov->needs(agl);
+  command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down")->needs(fov);
+  command.add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up")->needs(fov);
+  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's rim were not seen")->needs(gsd);
+  return {gsd, fov};
+}
+
+GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {
+  constexpr double kFarthestGroundM = 3000.0;
+  if (options.gsd_m > 0.0) {
+    return rectified(frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen));
+  }
+  constexpr double kAnyGsd = 1.0;  // follows from the camera
+  const GroundImage frame = frame_image(decoded, kAnyGsd);
+  FrameCamera camera;
+  camera.horizontal_fov = Angle::degrees(options.fov_deg);
+  camera.agl_m = options.agl_m;
+  camera.roll = Angle::degrees(options.roll_deg);
+  camera.pitch = Angle::degrees(options.pitch_deg);
+  const double gsd_m = std::max(nominal_gsd_m(camera, frame.pixels.size()), 0.5 * detector.preferred_gsd_m());
+  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(kMostPixels));
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,37 @@
+// A frame on the command line: what its pixels measure on the ground, said directly or by the camera.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "core/detect/frame.hpp"
+
+namespace roadfix::cli {
+
+inline constexpr std::int64_t kMostPixels = 400'000'000;
+
+struct FrameOptions {
+  double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
+  double fov_deg = 0.0;
+  double agl_m = 0.0;
+  double roll_deg = 0.0;
+  double pitch_deg = 0.0;
+  bool black_unseen = false;
+
+  bool given() const { return gsd_m > 0.0 || fov_deg > 0.0; }
+};
+
+/// Adds --gsd, --fov, --agl, --roll, --pitch and --black-unseen; `options` must live as long as the command. Returns
+/// the two of which one says that there is a frame.
+std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
+
+/// The ground that the frame (see decode_image) shows, in pixels that the detector makes use of.
+/// Throws what frame_image and rectify throw. options.given() must hold.
+GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector);
+
+/// Throws InvalidInput "not-a-file" or NotFound "file-not-found".
+std::vector<std::uint8_t> bytes_of(const std::string& path);
+
+}  // namespace roadfix::cli

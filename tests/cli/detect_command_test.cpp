@@ -1,0 +1,93 @@
+// roadfix detect as a script meets it.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A bright street across grass, 200 x 120 pixels.
+class DetectCommand : public ::testing::Test {
+ protected:
+  DetectCommand() {
+    cv::Mat picture(120, 200, CV_8UC3);
+    cv::randu(picture, 40, 120);
+    cv::line(picture, {0, 60}, {200, 60}, cv::Scalar::all(180), 14);
+    cv::imwrite(folder / "frame.png", picture);
+  }
+
+  struct Result {
+    int code = 0;
+    std::string out;
+    std::string err;
+  };
+
+  Result detect(const std::string& arguments) const {
+    const auto out = folder / "out";
+    const auto err = folder / "err";
+    const std::string command = ROADFIX_PROGRAM " detect --detector tree " + (folder / "frame.png").string() + " " +
+                                (folder / "roads.png").string() + " " + arguments;
+    const int status = std::system((command + " >" + out.string() + " 2>" + err.string()).c_str());
+    return {WEXITSTATUS(status), text_of(out), text_of(err)};
+  }
+
+  static std::string text_of(const std::filesystem::path& file) {
+    std::stringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(DetectCommand, TurnsAFrameOfKnownScaleIntoCells) {
+  const Result result = detect("--gsd 0.5 --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto answer = nlohmann::json::parse(result.out);
+  EXPECT_EQ(answer["cols"], 50);
+  EXPECT_EQ(answer["rows"], 30);
+  EXPECT_EQ(cv::imread(folder / "roads.png", cv::IMREAD_UNCHANGED).channels(), 4);
+  EXPECT_FALSE(std::filesystem::exists(folder / "roads.pgw"));
+}
+
+TEST_F(DetectCommand, RectifiesWhatACameraSaw) {
+  // Straight down from 100 m with 90 degrees across: 200 m wide, 120 m high.
+  const auto level = nlohmann::json::parse(detect("--fov 90 --agl 100 --json").out);
+  EXPECT_EQ(level["cols"], 100);
+  EXPECT_EQ(level["rows"], 60);
+  const auto nose_up = nlohmann::json::parse(detect("--fov 90 --agl 100 --pitch 30 --json").out);
+  EXPECT_GT(nose_up["nadir_cell"][1], nose_up["rows"].get<double>() / 2.0) << "the ground seen lies ahead of the UAV";
+}
+
+TEST_F(DetectCommand, KeepsThePlaceOfAGeoreferencedImage) {
+  std::ofstream(folder / "frame.pgw") << "0.5\n0\n0\n-0.5\n434000.25\n4179999.75\n";
+  std::ofstream(folder / "frame.png.aux.xml") << "<PAMDataset><SRS>EPSG:32637</SRS></PAMDataset>";
+  const Result result = detect("--json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["crs"], "EPSG:32637");
+  EXPECT_EQ(text_of(folder / "roads.pgw"), "2\n0\n0\n-2\n434001.000\n4179999.000\n");
+  EXPECT_THAT(text_of(folder / "roads.png.aux.xml"), HasSubstr("EPSG:32637"));
+}
+
+TEST_F(DetectCommand, SaysWhatIsMissing) {
+  const Result nowhere = detect("");
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_THAT(nowhere.err, HasSubstr("[image-without-georeference]"));
+  EXPECT_EQ(detect("--fov 90").code, 2);
+  EXPECT_EQ(detect("--fov 90 --agl 100 --gsd 1").code, 2);
+  EXPECT_THAT(detect("--fov 190 --agl 100").err, HasSubstr("[frame-camera]"));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,8 +1,45 @@
 #include "cli/detector_options.hpp"
 
+#include <map>
 #include <string>
 
 namespace roadfix::cli {
+
+namespace {
+
+/// Everything that method and paper leave to the user of the growing tree.
+void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
+  constexpr const char* kGroup = "Growing tree (--detector tree)";
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    command.add_option(name, value, what)->group(kGroup);
+  };
+  using Map = TreeDetectorOptions::Map;
+  command.add_option("--tree-map", o.map, "probabilistic (default) or binary: the paper's, by --tree-min-nodes")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Map>{{"probabilistic", Map::kProbabilistic}, {"binary", Map::kBinary}}))
+      ->group(kGroup);
+  add("--tree-gsd", o.gsd_m, "Metres per pixel of the brightness; default: 0.5");
+  add("--tree-roots", o.trees_per_km2, "Trees per km2; default: 3000");
+  add("--tree-min-nodes", o.min_nodes, "Nodes that make a cell of the binary map road; default: 3");
+  add("--tree-alpha", o.tree.alpha, "Equation (1): weight of the new edge; default: 0.5");
+  add("--tree-beta", o.tree.beta, "Equation (1): exponent of the cosine, above 0.7; default: 0.8");
+  add("--tree-gamma", o.tree.gamma, "Equation (2): weight of the new direction; default: 0.5");
+  add("--tree-epsilon", o.tree.epsilon, "Grey levels added to B of equation (3); default: 4");
+  add("--tree-edge", o.tree.edge_px, "Length of an edge in pixels; default: 12");
+  add("--tree-fan", o.tree.fan, "Edges proposed from a node; default: 7");
+  command
+      .add_option_function<double>(
+          "--tree-fan-width", [&o](double degrees) { o.tree.fan_half_width = Angle::degrees(degrees); },
+          "Half the angle of the fan in degrees; default: 40")
+      ->group(kGroup);
+  add("--tree-root-fan", o.tree.root_fan, "Edges proposed from the root, all around; default: 16");
+  add("--tree-nodes", o.tree.max_nodes, "End of a tree: number of nodes; default: 200");
+  add("--tree-explored", o.tree.max_explored_share, "End of a tree: explored share of the picture");
+  add("--tree-area", o.tree.max_area_px, "End of a tree: its estimated area in pixels");
+  add("--tree-min-score", o.tree.min_score, "End of a branch: score of a new node");
+}
+
+}  // namespace
 
 void add_detector_options(CLI::App& command, DetectorChoice& choice) {
   command.add_option("--detector", choice.name, std::string("Road detector, one of: ") + kDetectorNames)
@@ -14,6 +51,7 @@ void add_detector_options(CLI::App& command, DetectorChoice& choice) {
                   "1, 4 or 8: mean over the picture turned and mirrored; slower, better, for maps")
       ->capture_default_str()
       ->check(CLI::IsMember({1, 4, 8}));
+  add_tree_options(command, choice.tree);
 }
 
 }  // namespace roadfix::cli

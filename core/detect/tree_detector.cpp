@@ -116,7 +116,7 @@ std::string TreeRoadDetector::describe() const {
   const auto optional = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string("-"); };
   return fmt::format(
       "tree map={} gsd_m={} trees_per_km2={} min_nodes={} alpha={} beta={} gamma={} epsilon={} edge_px={} fan={} "
-      "fan_half_width_deg={} root_fan={} max_nodes={} max_explored_share={} max_area_px={} min_score={}",
+      "fan_half_width_deg={:g} root_fan={} max_nodes={} max_explored_share={} max_area_px={} min_score={}",
       options_.map == TreeDetectorOptions::Map::kBinary ? "binary" : "probabilistic", options_.gsd_m,
       options_.trees_per_km2, options_.min_nodes, t.alpha, t.beta, t.gamma, t.epsilon, t.edge_px, t.fan,
       t.fan_half_width.degrees(), t.root_fan, optional(t.max_nodes), optional(t.max_explored_share),

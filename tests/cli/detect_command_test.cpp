@@ -80,6 +80,20 @@ TEST_F(DetectCommand, KeepsThePlaceOfAGeoreferencedImage) {
   EXPECT_THAT(text_of(folder / "roads.png.aux.xml"), HasSubstr("EPSG:32637"));
 }
 
+TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
+  const auto answer = nlohmann::json::parse(
+      detect("--gsd 0.5 --json --tree-map binary --tree-roots 5000 --tree-min-nodes 2 --tree-alpha 0.4 --tree-beta 0.9 "
+             "--tree-gamma 0.6 --tree-epsilon 2 --tree-edge 8 --tree-fan 5 --tree-fan-width 30 --tree-root-fan 12 "
+             "--tree-nodes 50 --tree-explored 0.5 --tree-area 4000 --tree-min-score 0.01")
+          .out);
+  EXPECT_EQ(answer["detector"],
+            "tree map=binary gsd_m=0.5 trees_per_km2=5000 min_nodes=2 alpha=0.4 beta=0.9 gamma=0.6 epsilon=2 edge_px=8 "
+            "fan=5 fan_half_width_deg=30 root_fan=12 max_nodes=50 max_explored_share=0.5 max_area_px=4000 "
+            "min_score=0.01");
+  EXPECT_THAT(detect("--gsd 0.5 --tree-beta 0.7").err, HasSubstr("[tree-parameter]"));
+  EXPECT_EQ(detect("--gsd 0.5 --tree-map sharp").code, 2);
+}
+
 TEST_F(DetectCommand, SaysWhatIsMissing) {
   const Result nowhere = detect("");
   EXPECT_EQ(nowhere.code, 1);

@@ -16,6 +16,7 @@ import time
 from dataclasses import dataclass
 
 FALSE_FIX_M = 25.0
+DEMO_FOOTPRINT_M = 700  # what a camera of 78 degrees sees from 430 m; smaller ones are honestly refused more often
 EARTH_RADIUS_M = 6371008.8
 
 
@@ -184,7 +185,8 @@ def parse_arguments():
 def prepare(arguments, work):
     """The sources of the map and the frames to ask for."""
     if not arguments.images:
-        run(arguments.roadfix, "world", "--out", work / "world", "--seed", arguments.seed)
+        run(arguments.roadfix, "world", "--out", work / "world", "--seed", arguments.seed,
+            "--footprint-m", DEMO_FOOTPRINT_M)
         return [work / "world" / "pre.tif"], read_frames(work / "world" / "frames" / "frames.csv")
     frames = [Frame(file, arguments.gsd) for file in arguments.frame]
     if not frames:

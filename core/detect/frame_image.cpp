@@ -21,7 +21,7 @@ GroundImage frame_image(const cv::Mat& decoded, double gsd_m, Border border) {
   GroundImage image{pixels, cv::Mat(pixels.size(), CV_8UC1, cv::Scalar(255)), gsd_m};
   if (channels == 4) {
     cv::extractChannel(pixels, image.observed, 3);
-    cv::threshold(image.observed, image.observed, 0, 255, cv::THRESH_BINARY);
+    cv::threshold(image.observed, image.observed, 127, 255, cv::THRESH_BINARY);
     cv::cvtColor(pixels, image.pixels, cv::COLOR_BGRA2BGR);
   }
   if (border == Border::kBlackUnseen) image.observed &= seen_inside_black_border(image.pixels);

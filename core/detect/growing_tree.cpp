@@ -168,7 +168,7 @@ std::optional<double> brightness_variation(const cv::Mat& brightness, const cv::
     const cv::Point p = pixel_of(from + (static_cast<double>(k) / steps) * way);
     if (!is_open(observed, p)) return std::nullopt;
     const int level = brightness.at<uchar>(p);
-    if (previous >= 0) total += std::abs(level - previous);
+    if (previous >= 0) total += std::abs(level - previous);  // (3)
     previous = level;
   }
   return total;
@@ -177,11 +177,11 @@ std::optional<double> brightness_variation(const cv::Mat& brightness, const cv::
 double node_score(const TreeParameters& p, Angle direction, Angle parent_mean, double variation, double parent_score) {
   const double bend = cos(angular_distance(direction, parent_mean));
   const double along = bend > 0.0 ? std::pow(bend, p.beta) : 0.0;
-  return p.alpha * along / (variation + p.epsilon) + (1.0 - p.alpha) * parent_score;
+  return p.alpha * along / (variation + p.epsilon) + (1.0 - p.alpha) * parent_score;  // (1)
 }
 
 Angle running_mean(const TreeParameters& p, Angle direction, Angle parent_mean) {
-  return (parent_mean + p.gamma * (direction - parent_mean).wrapped()).wrapped();
+  return (parent_mean + p.gamma * (direction - parent_mean).wrapped()).wrapped();  // (2)
 }
 
 RoadTree grow_tree(const cv::Mat& brightness, const cv::Mat& observed, cv::Point root,

@@ -24,10 +24,12 @@ TEST(FrameImage, BlackThatReachesTheRimWasNotSeenAndBlackInsideWas) {
 TEST(FrameImage, AlphaSaysWhatWasSeen) {
   cv::Mat frame(8, 8, CV_8UC4, cv::Scalar(10, 20, 30, 255));
   frame.at<cv::Vec4b>(2, 3)[3] = 0;
+  frame.at<cv::Vec4b>(3, 3)[3] = 127;  // less than half of it
+  frame.at<cv::Vec4b>(4, 3)[3] = 128;
   const GroundImage image = frame_image(frame, 1.0);
   EXPECT_EQ(image.pixels.type(), CV_8UC3);
   EXPECT_EQ(image.pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(10, 20, 30));
-  EXPECT_EQ(cv::countNonZero(image.observed), 63);
+  EXPECT_EQ(cv::countNonZero(image.observed), 62);
 }
 
 TEST(FrameImage, SixteenBitsAreCutToTheirUpperEight) {

@@ -60,7 +60,9 @@ std::optional<ImageHeader> jpeg_header(Bytes bytes) {
 bool is_whole(Bytes bytes, const ImageHeader& header) {
   if (header.format == ImageHeader::Format::kPng) return true;
   constexpr std::array<std::uint8_t, 2> kEnd{0xff, 0xd9};
-  return !std::ranges::search(bytes.subspan(header.end), kEnd).empty();
+  // Not std::ranges::search: Clang 14 cannot compile it.
+  const Bytes rest = bytes.subspan(header.end);
+  return std::search(rest.begin(), rest.end(), kEnd.begin(), kEnd.end()) != rest.end();
 }
 
 }  // namespace

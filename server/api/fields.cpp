@@ -127,7 +127,7 @@ std::string Fields::text(const std::string& name) const {
 
 std::string Fields::word(const std::string& name, std::span<const std::string_view> words) const {
   if (!has(name)) return std::string(words.front());
-  const std::string value = text(name);
+  std::string value = text(name);
   if (std::ranges::find(words, value) == words.end()) {
     throw InvalidField("bad-parameter", name,
                        fmt::format("'{}' is '{}'; it must be one of: {}", name, shown(value), fmt::join(words, ", ")));

@@ -21,7 +21,7 @@ std::string rendered(const Service& service, const ServedMap& map, api::TileAddr
   const std::string key = fmt::format("{}/{}/{}/{}/{}/{}", map.name, map.view.version, style, tile.z, tile.x, tile.y);
   if (auto kept = service.pictures.find(key)) return *kept;
   const auto png = api::tile_png(map.view, tile, style == "grey" ? api::TileStyle::kGrey : api::TileStyle::kColour);
-  const std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
+  std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
   service.pictures.keep(key, bytes);
   return bytes;
 }

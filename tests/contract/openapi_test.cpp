@@ -20,11 +20,11 @@ using nlohmann::json;
 class OpenApi : public ::testing::Test {
  protected:
   const json document_ = json::parse(schema::openapi_json());
-  const testing::TemporaryFolder folder_;
+  const testing::TemporaryFolder folder_{};
   server::MapRegistry maps_{folder_.path(), 1 << 20};
-  const TreeRoadDetector detector_;
-  const api::Limits limits_;
-  const http::ServerSettings http_;
+  const TreeRoadDetector detector_{};
+  const api::Limits limits_{};
+  const http::ServerSettings http_{};
   http::Metrics metrics_;
   server::PictureCache pictures_{1 << 20};
   const server::Service service_{maps_, detector_, limits_, http_, metrics_, pictures_};

@@ -17,30 +17,29 @@ using ::testing::StartsWith;
 class BadRequests : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new testing::TemporaryFolder;
-    testing::write_map_file(*folder_ / "town.gpkg", testing::Town().roads, 2.0);
-    service_ =
-        new testing::ServiceProcess(folder_->path(), {"--max-body", "1", "--max-poses", "1000", "--max-search", "0.5",
-                                                      "--max-pixels", "1000000", "--max-cells", "200000"});
+    folder = new testing::TemporaryFolder;
+    testing::write_map_file(*folder / "town.gpkg", testing::Town().roads, 2.0);
+    service = new testing::ServiceProcess(folder->path(), {"--max-body", "1", "--max-poses", "1000", "--max-search",
+                                                           "0.5", "--max-pixels", "1000000", "--max-cells", "200000"});
   }
   static void TearDownTestSuite() {
-    delete service_;
-    delete folder_;
+    delete service;
+    delete folder;
   }
   void TearDown() override {
-    EXPECT_EQ(testing::client_of(*service_).Get("/healthz")->status, 200) << "the service goes on";
+    EXPECT_EQ(testing::client_of(*service).Get("/healthz")->status, 200) << "the service goes on";
   }
 
   std::string raw(const std::string& request, bool finish = true) const {
-    RawConnection connection(service_->port());
+    RawConnection connection(service->port());
     connection.send(request);
     if (finish) connection.finish();
     return connection.read_all();
   }
 
-  inline static testing::TemporaryFolder* folder_ = nullptr;
-  inline static testing::ServiceProcess* service_ = nullptr;
-  httplib::Client client_ = testing::client_of(*service_);
+  inline static testing::TemporaryFolder* folder = nullptr;
+  inline static testing::ServiceProcess* service = nullptr;
+  httplib::Client client_ = testing::client_of(*service);
   const std::string fix_ = "/v1/maps/town/fix";
   const std::string match_ = "/v1/maps/town/match";
 };
@@ -71,8 +70,7 @@ TEST_F(BadRequests, SayWhichMethodsThereAre) {
   const auto answer = client_.Delete("/v1/maps/town");
   EXPECT_EQ(refusal(answer), "405 method-not-allowed");
   EXPECT_EQ(answer->get_header_value("Allow"), "GET, HEAD, OPTIONS");
-  EXPECT_EQ(refusal(testing::client_of(*service_).Put("/v1/maps/town", "body", "text/plain")),
-            "405 method-not-allowed");
+  EXPECT_EQ(refusal(testing::client_of(*service).Put("/v1/maps/town", "body", "text/plain")), "405 method-not-allowed");
 }
 
 TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
@@ -144,7 +142,7 @@ TEST_F(BadRequests, WithTooManyPosesAreRefused) {
 TEST_F(BadRequests, WithBodiesBeyondTheLimitAreRefusedHoweverTheyCome) {
   const std::string large(2 << 20, 'x');
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", large, "image/png")), "413 body-too-large");
-  EXPECT_EQ(refusal(testing::client_of(*service_).Post(
+  EXPECT_EQ(refusal(testing::client_of(*service).Post(
                 fix_ + "?cell_m=2",
                 [&](std::size_t offset, httplib::DataSink& sink) {
                   if (offset < large.size())
@@ -180,13 +178,13 @@ TEST_F(BadRequests, WithAGzipBombAreRefusedAtTheLimit) {
   ASSERT_LT(bomb.size(), 200'000U);
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", {{"Content-Encoding", "gzip"}}, bomb, "image/png")),
             "413 body-too-large");
-  EXPECT_EQ(refusal(testing::client_of(*service_).Post(match_, {{"Content-Encoding", "gzip"}}, gzipped("{"),
-                                                       "application/json")),
+  EXPECT_EQ(refusal(testing::client_of(*service).Post(match_, {{"Content-Encoding", "gzip"}}, gzipped("{"),
+                                                      "application/json")),
             "400 bad-json body");
-  EXPECT_EQ(refusal(testing::client_of(*service_).Post(match_, {{"Content-Encoding", "gzip"}}, "no gzip",
-                                                       "application/json")),
-            "400 bad-body-encoding");
-  EXPECT_EQ(refusal(testing::client_of(*service_).Post(match_, {{"Content-Encoding", "br"}}, "x", "application/json")),
+  EXPECT_EQ(
+      refusal(testing::client_of(*service).Post(match_, {{"Content-Encoding", "gzip"}}, "no gzip", "application/json")),
+      "400 bad-body-encoding");
+  EXPECT_EQ(refusal(testing::client_of(*service).Post(match_, {{"Content-Encoding", "br"}}, "x", "application/json")),
             "415 unsupported-content-encoding");
 }
 

@@ -16,36 +16,36 @@ using ::testing::HasSubstr;
 class Service : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    town_ = new testing::Town;
-    folder_ = new testing::TemporaryFolder;
-    testing::write_map_file(*folder_ / "town.gpkg", town_->roads, 2.0);
-    service_ = new testing::ServiceProcess(folder_->path(), {"--cors-origin", "*"});
+    town = new testing::Town;
+    folder = new testing::TemporaryFolder;
+    testing::write_map_file(*folder / "town.gpkg", town->roads, 2.0);
+    service = new testing::ServiceProcess(folder->path(), {"--cors-origin", "*"});
   }
   static void TearDownTestSuite() {
-    delete service_;
-    delete folder_;
-    delete town_;
+    delete service;
+    delete folder;
+    delete town;
   }
 
   static std::string place(double radius_m = 300.0) {
-    return "&lat=" + std::to_string(town_->place.lat_deg) + "&lon=" + std::to_string(town_->place.lon_deg) +
+    return "&lat=" + std::to_string(town->place.lat_deg) + "&lon=" + std::to_string(town->place.lon_deg) +
            "&radius_m=" + std::to_string(radius_m);
   }
   static std::string window_query(double heading_deg) {
-    return "/v1/maps/town/window?lat=" + std::to_string(town_->place.lat_deg) +
-           "&lon=" + std::to_string(town_->place.lon_deg) +
+    return "/v1/maps/town/window?lat=" + std::to_string(town->place.lat_deg) +
+           "&lon=" + std::to_string(town->place.lon_deg) +
            "&width_m=320&height_m=320&heading_deg=" + std::to_string(heading_deg);
   }
   static void expect_pose(const json& pose, LatLon at, double heading_deg, double metres, double degrees) {
-    const GridPoint truth = town_->zone.project(at);
-    EXPECT_LT(distance_m(town_->zone.project({pose["lat"], pose["lon"]}), truth), metres);
+    const GridPoint truth = town->zone.project(at);
+    EXPECT_LT(distance_m(town->zone.project({pose["lat"], pose["lon"]}), truth), metres);
     EXPECT_LT(angular_distance(Angle::degrees(pose["heading_deg"]), Angle::degrees(heading_deg)).degrees(), degrees);
   }
 
-  inline static testing::Town* town_ = nullptr;
-  inline static testing::TemporaryFolder* folder_ = nullptr;
-  inline static testing::ServiceProcess* service_ = nullptr;
-  httplib::Client client_ = testing::client_of(*service_);
+  inline static testing::Town* town = nullptr;
+  inline static testing::TemporaryFolder* folder = nullptr;
+  inline static testing::ServiceProcess* service = nullptr;
+  httplib::Client client_ = testing::client_of(*service);
 };
 
 TEST_F(Service, SaysThatItLivesAndWhatItServes) {
@@ -68,16 +68,16 @@ TEST_F(Service, ReturnsThePoseOfAWindowThatIsPostedBackAsItIs) {
   ASSERT_EQ(png->get_header_value("Content-Type"), "image/png");
   const json by_png = testing::json_of(client_.Post("/v1/maps/town/fix?cell_m=2" + place(), png->body, "image/png"));
   ASSERT_EQ(by_png["status"], "fix") << by_png;
-  expect_pose(by_png["pose"], town_->place, heading, 1.0, 1.0);
+  expect_pose(by_png["pose"], town->place, heading, 1.0, 1.0);
 
   const auto window = client_.Get(window_query(heading) + "&format=json");
   const json by_json = testing::json_of(client_.Post("/v1/maps/town/fix", window->body, "application/json"));
   ASSERT_EQ(by_json["status"], "fix") << by_json;
-  expect_pose(by_json["pose"], town_->place, heading, 1.0, 1.0);
+  expect_pose(by_json["pose"], town->place, heading, 1.0, 1.0);
 }
 
 TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
-  const std::string seen = town_->seen();
+  const std::string seen = town->seen();
   const httplib::MultipartFormDataItems form{{"image", seen, "seen.png", "image/png"},
                                              {"request", R"({"cell_m":2})", "", "application/json"}};
   const httplib::MultipartFormDataItems plain_form{{"image", seen, "seen.png", "image/png"}, {"cell_m", "2", "", ""}};
@@ -86,7 +86,7 @@ TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
         client_.Post("/v1/maps/town/fix", plain_form)}) {
     const json fix = testing::json_of(answer);
     ASSERT_EQ(fix["status"], "fix") << fix;
-    expect_pose(fix["pose"], town_->place, town_->heading_deg, 6.0, 2.0);
+    expect_pose(fix["pose"], town->place, town->heading_deg, 6.0, 2.0);
     EXPECT_EQ(fix["map"]["name"], "town");
     EXPECT_EQ(fix["geometry"]["type"], "Point");
     EXPECT_GT(fix["probability"], 0.99);
@@ -94,9 +94,9 @@ TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
 }
 
 TEST_F(Service, SearchesOnlyWhereThePriorAllows) {
-  const std::string seen = town_->seen();
+  const std::string seen = town->seen();
   const json near = testing::json_of(client_.Post(
-      "/v1/maps/town/fix?cell_m=2&heading_range_deg=20&heading_deg=" + std::to_string(town_->heading_deg) + place(100),
+      "/v1/maps/town/fix?cell_m=2&heading_range_deg=20&heading_deg=" + std::to_string(town->heading_deg) + place(100),
       seen, "image/png"));
   EXPECT_EQ(near["status"], "fix") << near;
   EXPECT_LT(near["searched"]["area_km2"], 0.05);
@@ -139,7 +139,7 @@ TEST_F(Service, TurnsFramesIntoFeatureMapsAndFixes) {
 TEST_F(Service, ServesTilesThatClientsMayCache) {
   const json description = testing::json_of(client_.Get("/v1/maps/town/tilejson.json"));
   EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png"));
-  const api::MercatorPixel pixel = api::mercator_pixel(town_->place, 16);
+  const api::MercatorPixel pixel = api::mercator_pixel(town->place, 16);
   const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
                            std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
   const auto tile = client_.Get(path);

@@ -15,14 +15,16 @@
 
 namespace {
 
-using namespace roadfix;
+namespace api = roadfix::api;
+namespace http = roadfix::http;
 
 /// Stands for a detector that costs nothing: what is fuzzed lies before it.
-class NoRoads : public RoadDetector {
+class NoRoads : public roadfix::RoadDetector {
  public:
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+  roadfix::CellArray detect(const roadfix::GroundImage& image, double cell_m, std::uint64_t) const override {
     const double cells = image.gsd_m / cell_m;
-    return {static_cast<int>(image.pixels.cols * cells) + 1, static_cast<int>(image.pixels.rows * cells) + 1, kNoRoad};
+    return {static_cast<int>(image.pixels.cols * cells) + 1, static_cast<int>(image.pixels.rows * cells) + 1,
+            roadfix::kNoRoad};
   }
   double preferred_gsd_m() const override { return 1.0; }
   double halo_m() const override { return 0.0; }
@@ -91,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   try {
     read_request(static_cast<char>(data[0]), {reinterpret_cast<const char*>(data) + 1, size - 1});
-  } catch (const Error&) {  // NOLINT(bugprone-empty-catch): refusing is right, anything else is a bug
+  } catch (const roadfix::Error&) {  // NOLINT(bugprone-empty-catch): refusing is right, anything else is a bug
   }
   return 0;
 }

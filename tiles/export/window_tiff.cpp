@@ -69,7 +69,7 @@ std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::
   auto transform = geotransform;
   require(dataset->SetSpatialRef(&reference) == CE_None && dataset->SetGeoTransform(transform.data()) == CE_None);
   GDALRasterBand* band = dataset->GetRasterBand(1);
-  require(band->SetNoDataValue(double{kNoData}) == CE_None);
+  require(band->SetNoDataValue(static_cast<double>(kNoData)) == CE_None);
   std::vector<float> values = probabilities(cells);
   require(band->RasterIO(GF_Write, 0, 0, cells.cols(), cells.rows(), values.data(), cells.cols(), cells.rows(),
                          GDT_Float32, 0, 0) == CE_None);

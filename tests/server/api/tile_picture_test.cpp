@@ -82,7 +82,7 @@ TEST(TilePicture, ShowsEveryPixelWhatTheExactProjectionFindsThere) {
       const bool inside = p.col >= 0 && p.row >= 0 && p.col < 500 && p.row < 500;
       const Cell cell =
           inside ? cell_at(217000 + static_cast<int>(p.col), -2090000 + static_cast<int>(p.row)) : kUnobserved;
-      const auto pixel = picture.at<cv::Vec4b>(y, x);
+      const auto& pixel = picture.at<cv::Vec4b>(y, x);
       if (is_observed(cell) != (pixel[3] == 255)) ++wrong;
       if (is_observed(cell) && pixel[3] == 255 && (cell == kRoad) != (pixel[0] >= 128)) ++wrong;
     }

@@ -56,7 +56,7 @@ TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   const TemporaryFolder folder;
   make_map(folder / "good.gpkg", 1);
   std::ofstream(folder / "broken.gpkg") << "this is no map";
-  std::ofstream(folder / "empty.gpkg");
+  std::ofstream(folder / "empty.gpkg").flush();
   std::ofstream(folder / "notes.txt") << "not looked at";
   MapRegistry registry(folder.path(), kCache);
   EXPECT_EQ(registry.maps().size(), 1U);

@@ -6,7 +6,8 @@
 
 namespace roadfix::cli {
 
-/// Adds --detector, --model, --orientations and the growing tree's --tree-..., which write into `choice`; it must live as long as the command.
+/// Adds --detector, --model, --orientations and the growing tree's --tree-..., which write into `choice`; it must live
+/// as long as the command.
 void add_detector_options(CLI::App& command, DetectorChoice& choice);
 
 }  // namespace roadfix::cli

@@ -6,7 +6,8 @@ from osgeo import gdal, osr
 
 gdal.UseExceptions()
 osr.UseExceptions()
-FRAME_PX = 800
+FOOTPRINT_M = 600
+LARGEST_SHARE = 0.6  # of the shorter side of the image, so that there is room to turn
 TRIES_PER_FRAME = 200
 
 
@@ -31,19 +32,19 @@ def grid_bearing_of_true_north_deg(to_utm, lat, lon):
     return math.degrees(math.atan2(east_1 - east_0, north_1 - north_0))
 
 
-def rotated_geotransform(east, north, grid_heading_deg, gsd_m):
+def rotated_geotransform(east, north, grid_heading_deg, gsd_m, size_px):
     """Row 0 is the forward edge, columns run to the right of travel, the centre of the frame lies at (east, north)."""
     heading = math.radians(grid_heading_deg)
     right = (math.cos(heading) * gsd_m, -math.sin(heading) * gsd_m)
     back = (-math.sin(heading) * gsd_m, -math.cos(heading) * gsd_m)
-    half = FRAME_PX / 2
+    half = size_px / 2
     return (east - half * (right[0] + back[0]), right[0], back[0], north - half * (right[1] + back[1]), right[1], back[1])
 
 
-def warped_frame(source, utm, geotransform):
+def warped_frame(source, utm, geotransform, size_px):
     """The frame's bands with an alpha band, or None where the image does not cover it."""
     bands = source.RasterCount
-    frame = gdal.GetDriverByName("MEM").Create("", FRAME_PX, FRAME_PX, bands + 1, gdal.GDT_Byte)
+    frame = gdal.GetDriverByName("MEM").Create("", size_px, size_px, bands + 1, gdal.GDT_Byte)
     frame.SetProjection(utm.ExportToWkt())
     frame.SetGeoTransform(geotransform)
     frame.GetRasterBand(bands + 1).SetColorInterpretation(gdal.GCI_AlphaBand)
@@ -82,15 +83,16 @@ def cut_frames(image, folder, count, seed):
         to_utm = osr.CoordinateTransformation(geographic(), utm)
         east, north, _ = to_utm.TransformPoint(lon, lat)
         gsd_m = ground_size_m(source, to_geographic, to_utm, column, row)
+        size_px = min(round(FOOTPRINT_M / gsd_m), int(LARGEST_SHARE * min(source.RasterXSize, source.RasterYSize)))
         heading = generator.random() * 360
         grid_heading = heading + grid_bearing_of_true_north_deg(to_utm, lat, lon)
-        frame = warped_frame(source, utm, rotated_geotransform(east, north, grid_heading, gsd_m))
+        frame = warped_frame(source, utm, rotated_geotransform(east, north, grid_heading, gsd_m, size_px), size_px)
         if frame is not None:
             file = folder / f"frame_{len(frames) + 1:02}.png"
             gdal.GetDriverByName("PNG").CreateCopy(str(file), frame)
             file.with_suffix(".png.aux.xml").unlink(missing_ok=True)
             frames.append((file, gsd_m, (lat, lon, heading)))
-    raise ValueError(f"{image} has no room for {count} frames of {FRAME_PX} x {FRAME_PX} pixels")
+    raise ValueError(f"{image} has no room for {count} frames: it is too small, or too little of it holds data")
 
 
 def ground_size_m(source, to_geographic, to_utm, column, row):

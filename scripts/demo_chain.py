@@ -153,6 +153,7 @@ def ask_all(base, frames):
     right = sum(error <= FALSE_FIX_M for error in known)
     print(f"\n{len(frames)} frames, {len(known)} answered with a fix that can be checked: {right} within {FALSE_FIX_M:g} m, "
           f"{len(known) - right} wrong", flush=True)
+    return right
 
 
 def parse_arguments():
@@ -165,7 +166,7 @@ def parse_arguments():
                         help="georeferenced imagery of a later day to cut the frames from (default: the map's own imagery)")
     parser.add_argument("--frame", action="append", type=pathlib.Path, default=[], metavar="FILE", help="a frame of yours (PNG or JPEG)")
     parser.add_argument("--gsd", type=float, metavar="METRES", help="size of a pixel of --frame on the ground")
-    parser.add_argument("--frames", type=int, default=8, metavar="N", help="frames to cut out of the imagery (default: 8)")
+    parser.add_argument("--frames", type=int, default=8, metavar="N", help="frames to ask for (default: 8)")
     parser.add_argument("--seed", type=int, default=1, help="for the rendered city and the places of the frames (default: 1)")
     parser.add_argument("--port", type=int, help="port of the service (default: a free one)")
     parser.add_argument("--once", action="store_true", help="end after the answers")
@@ -186,7 +187,7 @@ def prepare(arguments, work):
     """The sources of the map and the frames to ask for."""
     if not arguments.images:
         run(arguments.roadfix, "world", "--out", work / "world", "--seed", arguments.seed,
-            "--footprint-m", DEMO_FOOTPRINT_M)
+            "--frames", arguments.frames, "--footprint-m", DEMO_FOOTPRINT_M)
         return [work / "world" / "pre.tif"], read_frames(work / "world" / "frames" / "frames.csv")
     frames = [Frame(file, arguments.gsd) for file in arguments.frame]
     if not frames:
@@ -206,7 +207,9 @@ def demo(arguments, work):
     port = arguments.port or free_port()
     with service(arguments.roadfix, maps, port, work / "serve.log") as process:
         host = f"http://127.0.0.1:{port}"
-        ask_all(f"{host}/v1/maps/demo", frames)
+        right = ask_all(f"{host}/v1/maps/demo", frames)
+        if right == 0 and not arguments.images:
+            raise DemoError("not one frame of the rendered town was placed, which is not how it should be")
         if arguments.once:
             return
         print(f"""

@@ -6,22 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "server/api/fix_json.hpp"
+
 namespace roadfix::bench {
 namespace {
 
 using nlohmann::json;
-
-const char* word(FixStatus status) {
-  switch (status) {
-    case FixStatus::kFix:
-      return "fix";
-    case FixStatus::kAmbiguous:
-      return "ambiguous";
-    case FixStatus::kNoFix:
-      return "no_fix";
-  }
-  return "";
-}
 
 json pose_json(const GeoPose& pose) {
   return {
@@ -34,7 +24,7 @@ json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
           {"truth", pose_json(outcome.truth)},
-          {"status", word(answer.status)},
+          {"status", api::to_string(answer.status)},
           {"reason", answer.reason},
           {"answer", answer.best ? pose_json(*answer.best) : json(nullptr)},
           {"probability", answer.probability},

@@ -7,8 +7,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <chrono>
+#include <exception>
+#include <mutex>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -30,7 +33,7 @@ std::uint64_t mixed(std::uint64_t x) {
 
 struct Block {
   TileIndex index;
-  CellArray cells;
+  CellArray cells;  // empty: could not be read
 };
 
 [[noreturn]] void stopped(const std::string& source) {
@@ -41,6 +44,31 @@ struct Block {
                   source));
 }
 
+/// The first failure of any stage. A pipeline that an exception cancels leaks the blocks in flight (oneTBB 2021.8), so
+/// the stages keep it here, nothing new is begun, and blocks that were read already are still written.
+class FirstFailure {
+ public:
+  template <typename Work>
+  void guard(const Work& work) noexcept {
+    try {
+      work();
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+  bool failed() const noexcept { return failed_; }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  std::atomic<bool> failed_ = false;
+};
+
 /// Reads and writes the blocks; returns the number of observed cells.
 std::int64_t carry(const CellSource& source, const std::string& name, double cell_m, std::span<const TileIndex> todo,
                    std::int64_t before, MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
@@ -49,21 +77,28 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
   std::int64_t done = before;
   std::int64_t observed = 0;
   std::size_t next = 0;
+  FirstFailure failure;
   if (progress.blocks) progress.blocks(done, total);
   const auto plan = [&](tbb::flow_control& control) -> std::size_t {
-    if (next == todo.size() || stop.stop_requested()) {
+    if (next == todo.size() || stop.stop_requested() || failure.failed()) {
       control.stop();
       return 0;
     }
     return next++;
   };
   const auto read = [&](std::size_t i) {
-    return Block{todo[i], source.read(tile_geometry(todo[i], cell_m), block_seed(options.seed, todo[i]))};
+    Block block{todo[i], {}};
+    failure.guard(
+        [&] { block.cells = source.read(tile_geometry(block.index, cell_m), block_seed(options.seed, block.index)); });
+    return block;
   };
   const auto write = [&](const Block& block) {
-    writer.put_block(name, block.index, block.cells);
-    observed += static_cast<std::int64_t>(block.cells.observed_count());
-    if (progress.blocks) progress.blocks(++done, total);
+    if (block.cells.empty()) return;
+    failure.guard([&] {
+      writer.put_block(name, block.index, block.cells);
+      observed += static_cast<std::int64_t>(block.cells.observed_count());
+      if (progress.blocks) progress.blocks(++done, total);
+    });
   };
   const auto tokens = static_cast<std::size_t>(2 * options.jobs);
   // More jobs than processors are the user's choice: reading may wait for a disk or a network.
@@ -75,6 +110,7 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
                                        tbb::make_filter<std::size_t, Block>(tbb::filter_mode::parallel, read) &
                                        tbb::make_filter<Block, void>(tbb::filter_mode::serial_out_of_order, write));
   });
+  failure.rethrow();
   return observed;
 }
 

@@ -139,7 +139,8 @@ TEST_F(IngestTest, ADamagedBlockIsReportedAndNothingHalfDoneCounts) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("a.tif"));
   }
   EXPECT_FALSE(MapReader(folder / "parts.gpkg").info().sources.front().complete);
-  run(NoiseSource(), "parts.gpkg", 2);
+  const IngestReport report = run(NoiseSource(), "parts.gpkg", 2);
+  EXPECT_EQ(report.blocks_before, damaged.reads() - 1) << "what could be read beside the damaged block is kept";
   expect_equal("whole.gpkg", "parts.gpkg");
 }
 

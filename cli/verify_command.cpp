@@ -4,11 +4,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_verifier.hpp"
+#include "tiles/store/map_writer.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -18,6 +20,7 @@ using nlohmann::json;
 struct Options {
   std::string map;
   bool as_json = false;
+  bool repair = false;
 };
 
 void print_json(const std::string& path, const MapVerdict& verdict) {
@@ -39,8 +42,23 @@ void print_text(const std::string& path, const MapVerdict& verdict) {
   }
 }
 
+void repair(const std::string& path, const std::stop_token& stop) {
+  const auto settings = MapWriter::settings_of(path);
+  if (!settings) throw NotFound("map-not-found", fmt::format("{}: there is no such map", path));
+  MapWriter writer(path, *settings);
+  std::vector<std::string> lost;
+  {
+    Progress progress("repair", "tiles");
+    lost = writer.repair([&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+  }
+  for (const std::string& source : lost) {
+    fmt::print(stderr, "source '{}' had damaged evidence, which was dropped: ingest it again with --replace\n", source);
+  }
+}
+
 void verify(const Options& options) {
   const std::stop_token stop = stop_on_signals();
+  if (options.repair) repair(options.map, stop);
   MapVerdict verdict;
   {
     Progress progress("verify", "tiles");
@@ -61,6 +79,9 @@ void add_verify_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");
+  command->add_flag(
+      "--repair", options->repair,
+      "First make all tiles anew from the evidence of the sources; damaged evidence is dropped and named");
   command->callback([options] { verify(*options); });
 }
 

@@ -71,6 +71,8 @@ TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(damaged.code, 1);
   EXPECT_EQ(nlohmann::json::parse(damaged.out)["problems"][0]["code"], "tile-corrupt");
   EXPECT_THAT(damaged.err, HasSubstr("[map-damaged]"));
+  EXPECT_EQ(roadfix("verify --repair " + path.string()).code, 0);
+  EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
 }
 
 TEST_F(MapCommands, ExportWritesARegion) {

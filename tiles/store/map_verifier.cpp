@@ -18,7 +18,7 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 
-constexpr const char* kIngestAgain = "Ingest the source again under --replace, or restore the map from a copy";
+constexpr const char* kRepair = "Repair it with roadfix verify --repair, or restore the map from a copy";
 
 class Verifier {
  public:
@@ -110,15 +110,15 @@ class Verifier {
         "SELECT count(*) FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON b.source_id = e.source_id AND "
         "b.tile_row = e.tile_row AND b.tile_column = e.tile_column WHERE b.done IS NOT 1");
     if (unexplained > 0) {
-      report("ledger-broken", fmt::format("{} tiles of evidence belong to no finished block of a source. {}",
-                                          unexplained, kIngestAgain));
+      report("ledger-broken",
+             fmt::format("{} tiles of evidence belong to no finished block of a source. {}", unexplained, kRepair));
     }
     Statement open(map_,
                    "SELECT s.name, count(*) FROM roadfix_sources s JOIN roadfix_blocks b ON b.source_id = s.id WHERE "
                    "s.in_force = 1 AND b.done = 0 GROUP BY s.id");
     while (open.step()) {
-      report("ledger-broken", fmt::format("source '{}' is in force but lacks {} blocks. {}", open.text(0),
-                                          open.integer(1), kIngestAgain));
+      report("ledger-broken",
+             fmt::format("source '{}' is in force but lacks {} blocks. {}", open.text(0), open.integer(1), kRepair));
     }
   }
 
@@ -150,7 +150,7 @@ class Verifier {
         decode_tile(evidence.blob(0), TileDepth::kEvidence);
       } catch (const CorruptData& error) {
         report("evidence-corrupt", fmt::format("evidence of source '{}' column {} row {}: {}. {}", evidence.text(1),
-                                               evidence.integer(2), evidence.integer(3), error.what(), kIngestAgain));
+                                               evidence.integer(2), evidence.integer(3), error.what(), kRepair));
       }
     }
   }
@@ -173,7 +173,7 @@ class Verifier {
         tiles.push_back({static_cast<int>(col), index_row(static_cast<int>(row), zoom)});
       } else {
         report("tile-outside-lattice",
-               fmt::format("tile zoom {} column {} row {} lies outside the lattice. {}", zoom, col, row, kIngestAgain));
+               fmt::format("tile zoom {} column {} row {} lies outside the lattice. {}", zoom, col, row, kRepair));
       }
     }
     return tiles;
@@ -203,7 +203,7 @@ class Verifier {
       if (!expected || *expected == stored.value_or(CellArray(kTileCells, kTileCells))) continue;
       report(zoom == table_.finest_zoom() ? "tile-not-fused" : "overview-differs",
              fmt::format("tile zoom {} column {} row {} does not follow from {}. {}", zoom, index.col, row,
-                         zoom == table_.finest_zoom() ? "the evidence" : "the level below", kIngestAgain));
+                         zoom == table_.finest_zoom() ? "the evidence" : "the level below", kRepair));
     }
   }
 
@@ -224,7 +224,8 @@ class Verifier {
     const bool same =
         (extent.empty() && info.extent.empty()) || (extent.min == info.extent.min && extent.max == info.extent.max);
     if (!same)
-      report("extent-wrong", "gpkg_contents does not give the box of the observed cells. Restore the map from a copy");
+      report("extent-wrong",
+             "gpkg_contents does not give the box of the observed cells. Repair it with roadfix verify --repair");
     std::uint64_t sum = 0;
     Statement tiles(map_, "SELECT tile_column, tile_row, tile_data FROM road_probability WHERE zoom_level = ?1");
     tiles.with(table_.finest_zoom());
@@ -234,7 +235,8 @@ class Verifier {
           tiles.blob(2));
     }
     if (fmt::format("{:016x}", sum) != info.version) {
-      report("version-wrong", "the version in roadfix_meta is not that of the tiles. Restore the map from a copy");
+      report("version-wrong",
+             "the version in roadfix_meta is not that of the tiles. Repair it with roadfix verify --repair");
     }
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -64,6 +65,7 @@ struct MapWriter::State {
   std::int64_t fuse_some();
   void fuse(int zoom, TileIndex index);
   void set_extent();
+  std::vector<std::string> drop_damaged_evidence();
   std::int64_t count(const char* sql) {
     Statement statement(map, sql);
     statement.step();
@@ -142,6 +144,33 @@ void MapWriter::State::set_extent() {
   } else {
     Statement(map, update).with(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m).run();
   }
+}
+
+/// Returns the sources that lost evidence, each once. Their fingerprint is emptied: they are not what was ingested.
+std::vector<std::string> MapWriter::State::drop_damaged_evidence() {
+  std::vector<std::int64_t> damaged;
+  for (Statement all(map, "SELECT id, tile_data FROM roadfix_evidence"); all.step();) {
+    try {
+      decode_tile(all.blob(1), TileDepth::kEvidence);
+    } catch (const CorruptData&) {
+      damaged.push_back(all.integer(0));
+    }
+  }
+  std::set<std::string> names;
+  Statement source(map,
+                   "UPDATE roadfix_sources SET fingerprint = '' WHERE id = (SELECT source_id FROM roadfix_evidence "
+                   "WHERE id = ?1) RETURNING name");
+  Statement unfinished(map,
+                       "UPDATE roadfix_blocks SET done = 0 WHERE (source_id, tile_row, tile_column) = (SELECT "
+                       "source_id, tile_row, tile_column FROM roadfix_evidence WHERE id = ?1)");
+  Statement remove(map, "DELETE FROM roadfix_evidence WHERE id = ?1");
+  for (const std::int64_t id : damaged) {
+    if (source.with(id).step()) names.insert(std::string(source.text(0)));
+    source.reset();
+    unfinished.with(id).run();
+    remove.with(id).run();
+  }
+  return {names.begin(), names.end()};
 }
 
 void MapWriter::State::fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress,
@@ -277,6 +306,27 @@ void MapWriter::remove_source(const std::string& source) {
     transaction.commit();
   }
   s.fuse_pending({}, {});
+}
+
+std::vector<std::string> MapWriter::repair(const std::function<void(std::int64_t, std::int64_t)>& progress,
+                                           std::stop_token stop) {
+  State& s = *state_;
+  Transaction transaction(s.map, Transaction::Kind::kWrite);
+  const std::vector<std::string> lost = s.drop_damaged_evidence();
+  for (const char* sql : {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
+                          "DELETE FROM road_probability", "DELETE FROM roadfix_pending",
+                          "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
+    s.map.execute(sql);
+  }
+  std::vector<std::int64_t> sources;
+  for (Statement all(s.map, "SELECT id FROM roadfix_sources WHERE in_force = 1"); all.step();) {
+    sources.push_back(all.integer(0));
+  }
+  for (const std::int64_t id : sources) s.mark_pending(id);
+  s.set_extent();
+  transaction.commit();
+  s.fuse_pending(progress, stop);
+  return lost;
 }
 
 }  // namespace roadfix

@@ -43,6 +43,12 @@ class MapWriter {
   /// Removes a source and fuses what it touched.
   void remove_source(const std::string& source);
 
+  /// Fuses every tile anew from the evidence. Evidence that cannot be decoded is dropped first; returns the names of
+  /// the sources that lost some, which count as changed from now on: ingest them again with `replace`. Readers see the
+  /// map grow back meanwhile. Can be interrupted and repeated.
+  std::vector<std::string> repair(const std::function<void(std::int64_t, std::int64_t)>& progress = {},
+                                  std::stop_token stop = {});
+
  private:
   struct State;
   std::unique_ptr<State> state_;

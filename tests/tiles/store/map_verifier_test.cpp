@@ -16,6 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::ingest;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using testing::settings_37n;
 using testing::some_blocks;
 using testing::TemporaryFolder;
@@ -120,6 +121,33 @@ TEST_F(MapVerifier, FindsDamageToTheDatabaseItself) {
   } catch (const CorruptData& error) {
     EXPECT_EQ(error.code(), "map-corrupt");
   }
+}
+
+TEST_F(MapVerifier, RepairMakesTheTilesAnewFromTheEvidence) {
+  const auto before = testing::tile_bytes(path);
+  const std::string version = MapReader(path).info().version;
+  EXPECT_THAT(codes_after("UPDATE road_probability SET tile_data = x'00' WHERE id % 3 = 1;"
+                          "DELETE FROM road_probability WHERE id = 2;"
+                          "UPDATE roadfix_meta SET value = 'beef' WHERE key = 'version'"),
+              Not(IsEmpty()));
+  EXPECT_THAT(MapWriter(path, settings_37n()).repair(), IsEmpty());
+  EXPECT_THAT(verify_map(path).problems, IsEmpty());
+  EXPECT_EQ(testing::tile_bytes(path), before);
+  EXPECT_EQ(MapReader(path).info().version, version);
+}
+
+TEST_F(MapVerifier, RepairNamesTheSourceThatLostEvidenceAndIngestingItAgainHealsTheMap) {
+  const auto before = testing::tile_bytes(path);
+  sqlite::Connection(path, sqlite::Access::kReadWrite)
+      .execute("UPDATE roadfix_evidence SET tile_data = x'00' WHERE id = (SELECT max(id) FROM roadfix_evidence)");
+  MapWriter writer(path, settings_37n());
+  EXPECT_THAT(writer.repair(), ElementsAre("b"));
+  EXPECT_THAT(verify_map(path).problems, ElementsAre(::testing::Field(&MapProblem::code, "ledger-broken")));
+  const testing::TestSource lost{"b", 2, some_blocks(1)};
+  EXPECT_THROW(writer.begin_source(lost.record(), lost.blocks, false), InvalidInput);
+  ingest(writer, lost, true);
+  EXPECT_THAT(verify_map(path).problems, IsEmpty());
+  EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
 TEST_F(MapVerifier, CanBeStopped) {

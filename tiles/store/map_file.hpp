@@ -10,6 +10,9 @@ namespace roadfix {
 
 inline constexpr int kSchemaVersion = 1;
 
+/// SQL for the present time as GeoPackage writes it.
+inline constexpr const char* kSqlNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
+
 /// Makes an empty map under the name in one step: killed at any point, there is a whole map or none.
 /// Throws InvalidInput ("cell-size-not-supported") or IoFailure.
 void create_map(const std::filesystem::path& path, const MapSettings& settings);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/store/fusion_queue.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -22,11 +23,6 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
-
-/// Tiles fused in one transaction: as many as keep a reader waiting for a moment only.
-constexpr int kTilesPerTransaction = 64;
-
-constexpr const char* kNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
 
 Connection open_or_create(const std::filesystem::path& path, const MapSettings& settings) {
   if (!std::filesystem::exists(path)) create_map(path, settings);
@@ -50,6 +46,7 @@ struct MapWriter::State {
         map(open_or_create(path, settings)),
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
+        fusion(map, tiles),
         put_evidence(map,
                      "INSERT OR REPLACE INTO roadfix_evidence (source_id, tile_column, tile_row, tile_data) VALUES "
                      "(?1, ?2, ?3, ?4)"),
@@ -59,92 +56,17 @@ struct MapWriter::State {
                   "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
                   "RETURNING 1") {}
 
-  void mark_pending(std::int64_t id);
-  void fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
-  std::pair<int, TileIndex> pending_tile(const Statement& row) const;
-  std::int64_t fuse_some();
-  void fuse(int zoom, TileIndex index);
-  void set_extent();
   std::vector<std::string> drop_damaged_evidence();
-  std::int64_t count(const char* sql) {
-    Statement statement(map, sql);
-    statement.step();
-    return statement.integer(0);
-  }
 
   WriterLock lock;
   Connection map;
   TileTable tiles;
   SourceTable sources;
+  FusionQueue fusion;
   Statement put_evidence;
   Statement remove_evidence;
   Statement mark_done;
 };
-
-/// Every tile that the evidence of the source touches, with its overviews, waits to be fused anew.
-void MapWriter::State::mark_pending(std::int64_t id) {
-  Statement(map,
-            "INSERT OR IGNORE INTO roadfix_pending SELECT ?2, tile_row, tile_column FROM roadfix_evidence WHERE "
-            "source_id = ?1")
-      .with(id, tiles.finest_zoom())
-      .run();
-  Statement parents(map,
-                    "INSERT OR IGNORE INTO roadfix_pending SELECT ?1, tile_row >> 1, tile_column >> 1 FROM "
-                    "roadfix_pending WHERE zoom_level = ?1 + 1");
-  for (int zoom = tiles.finest_zoom() - 1; zoom >= kCoarsestZoom; --zoom) parents.with(zoom).run();
-}
-
-void MapWriter::State::fuse(int zoom, TileIndex index) {
-  const auto cells = zoom == tiles.finest_zoom() ? tiles.fused_evidence(index) : tiles.overview(zoom, index);
-  tiles.put(zoom, index, cells ? *cells : CellArray(kTileCells, kTileCells));
-}
-
-std::pair<int, TileIndex> MapWriter::State::pending_tile(const Statement& row) const {
-  const std::int64_t zoom = row.integer(0);
-  if (zoom >= kCoarsestZoom && zoom <= tiles.finest_zoom()) {
-    const int level = static_cast<int>(zoom);
-    const std::int64_t index = row.integer(1) - matrix_height(level);
-    const TileIndex tile{static_cast<int>(row.integer(2)), static_cast<int>(index)};
-    if (tile.col == row.integer(2) && tile.row == index && on_lattice(tile, level)) return {level, tile};
-  }
-  throw CorruptData("map-corrupt", fmt::format("{}: roadfix_pending names a tile outside the lattice. Restore the map "
-                                               "from a copy",
-                                               map.path().string()));
-}
-
-/// Fuses the next tiles, finest level first, in one transaction. Returns how many it did.
-std::int64_t MapWriter::State::fuse_some() {
-  Transaction transaction(map, Transaction::Kind::kWrite);
-  Statement next(map,
-                 "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending ORDER BY zoom_level DESC, tile_row, "
-                 "tile_column LIMIT ?1");
-  std::vector<std::pair<int, TileIndex>> batch;
-  next.with(kTilesPerTransaction);
-  while (next.step()) {
-    batch.push_back(pending_tile(next));
-  }
-  Statement fused(map, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
-  for (const auto& [zoom, index] : batch) {
-    fuse(zoom, index);
-    fused.with(zoom, tile_row(index, zoom), index.col).run();
-  }
-  if (!batch.empty() && count("SELECT count(*) FROM roadfix_pending") == 0) set_extent();
-  transaction.commit();
-  return static_cast<std::int64_t>(batch.size());
-}
-
-void MapWriter::State::set_extent() {
-  const GridBox box = tiles.observed_extent();
-  const std::string update = fmt::format(
-      "UPDATE gpkg_contents SET last_change = {}, min_x = ?1, min_y = ?2, max_x = ?3, max_y = ?4 WHERE table_name = "
-      "'road_probability'",
-      kNow);
-  if (box.empty()) {
-    Statement(map, update).run();
-  } else {
-    Statement(map, update).with(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m).run();
-  }
-}
 
 /// Returns the sources that lost evidence, each once. Their fingerprint is emptied: they are not what was ingested.
 std::vector<std::string> MapWriter::State::drop_damaged_evidence() {
@@ -171,21 +93,6 @@ std::vector<std::string> MapWriter::State::drop_damaged_evidence() {
     remove.with(id).run();
   }
   return {names.begin(), names.end()};
-}
-
-void MapWriter::State::fuse_pending(const std::function<void(std::int64_t, std::int64_t)>& progress,
-                                    const std::stop_token& stop) {
-  const std::int64_t total = count("SELECT count(*) FROM roadfix_pending");
-  std::int64_t done = 0;
-  if (progress) progress(done, total);
-  while (done < total) {
-    if (stop.stop_requested()) {
-      throw Interrupted("interrupted", fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
-                                                   map.path().string(), done, total));
-    }
-    done += fuse_some();
-    if (progress) progress(done, total);
-  }
 }
 
 MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& settings)
@@ -270,12 +177,12 @@ void MapWriter::finish_source(const std::string& source,
     const auto replaced = s.sources.find(source, true);
     if (const auto complete = s.sources.find(source, false)) {
       s.sources.require_complete(complete->id, source);
-      s.mark_pending(complete->id);
+      s.fusion.add_source(complete->id);
       if (replaced) {
-        s.mark_pending(replaced->id);
+        s.fusion.add_source(replaced->id);
         s.sources.remove(replaced->id);
       }
-      Statement(s.map, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kNow))
+      Statement(s.map, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kSqlNow))
           .with(complete->id)
           .run();
     } else if (!replaced) {
@@ -284,7 +191,7 @@ void MapWriter::finish_source(const std::string& source,
     }
     transaction.commit();
   }
-  s.fuse_pending(progress, stop);
+  s.fusion.drain(progress, stop);
 }
 
 void MapWriter::remove_source(const std::string& source) {
@@ -295,7 +202,7 @@ void MapWriter::remove_source(const std::string& source) {
     for (const bool in_force : {false, true}) {
       const auto found = s.sources.find(source, in_force);
       if (!found) continue;
-      if (in_force) s.mark_pending(found->id);
+      if (in_force) s.fusion.add_source(found->id);
       s.sources.remove(found->id);
       any = true;
     }
@@ -305,7 +212,7 @@ void MapWriter::remove_source(const std::string& source) {
     }
     transaction.commit();
   }
-  s.fuse_pending({}, {});
+  s.fusion.drain({}, {});
 }
 
 std::vector<std::string> MapWriter::repair(const std::function<void(std::int64_t, std::int64_t)>& progress,
@@ -313,19 +220,19 @@ std::vector<std::string> MapWriter::repair(const std::function<void(std::int64_t
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   const std::vector<std::string> lost = s.drop_damaged_evidence();
-  for (const char* sql : {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
-                          "DELETE FROM road_probability", "DELETE FROM roadfix_pending",
-                          "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
+  for (const char* sql :
+       {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
+        "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
     s.map.execute(sql);
   }
   std::vector<std::int64_t> sources;
   for (Statement all(s.map, "SELECT id FROM roadfix_sources WHERE in_force = 1"); all.step();) {
     sources.push_back(all.integer(0));
   }
-  for (const std::int64_t id : sources) s.mark_pending(id);
-  s.set_extent();
+  for (const std::int64_t id : sources) s.fusion.add_source(id);
+  s.fusion.update_extent();
   transaction.commit();
-  s.fuse_pending(progress, stop);
+  s.fusion.drain(progress, stop);
   return lost;
 }
 

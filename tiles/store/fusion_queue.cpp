@@ -1,0 +1,105 @@
+#include "tiles/store/fusion_queue.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/units/error.hpp"
+#include "tiles/store/map_file.hpp"
+#include "tiles/store/tile_matrix.hpp"
+
+namespace roadfix {
+
+using sqlite::Statement;
+using sqlite::Transaction;
+
+namespace {
+
+/// Tiles fused in one transaction: as many as keep a reader waiting for a moment only.
+constexpr int kTilesPerTransaction = 64;
+
+}  // namespace
+
+void FusionQueue::add_source(std::int64_t id) {
+  Statement(map_,
+            "INSERT OR IGNORE INTO roadfix_pending SELECT ?2, tile_row, tile_column FROM roadfix_evidence WHERE "
+            "source_id = ?1")
+      .with(id, tiles_.finest_zoom())
+      .run();
+  Statement parents(map_,
+                    "INSERT OR IGNORE INTO roadfix_pending SELECT ?1, tile_row >> 1, tile_column >> 1 FROM "
+                    "roadfix_pending WHERE zoom_level = ?1 + 1");
+  for (int zoom = tiles_.finest_zoom() - 1; zoom >= kCoarsestZoom; --zoom) parents.with(zoom).run();
+}
+
+std::int64_t FusionQueue::size() {
+  Statement statement(map_, "SELECT count(*) FROM roadfix_pending");
+  statement.step();
+  return statement.integer(0);
+}
+
+void FusionQueue::fuse(int zoom, TileIndex index) {
+  const auto cells = zoom == tiles_.finest_zoom() ? tiles_.fused_evidence(index) : tiles_.overview(zoom, index);
+  tiles_.put(zoom, index, cells ? *cells : CellArray(kTileCells, kTileCells));
+}
+
+std::pair<int, TileIndex> FusionQueue::pending_tile(const Statement& row) const {
+  const std::int64_t zoom = row.integer(0);
+  if (zoom >= kCoarsestZoom && zoom <= tiles_.finest_zoom()) {
+    const int level = static_cast<int>(zoom);
+    const std::int64_t index = row.integer(1) - matrix_height(level);
+    const TileIndex tile{static_cast<int>(row.integer(2)), static_cast<int>(index)};
+    if (tile.col == row.integer(2) && tile.row == index && on_lattice(tile, level)) return {level, tile};
+  }
+  throw CorruptData("map-corrupt", fmt::format("{}: roadfix_pending names a tile outside the lattice. Restore the map "
+                                               "from a copy",
+                                               map_.path().string()));
+}
+
+/// Fuses the next tiles, finest level first, in one transaction. Returns how many it did.
+std::int64_t FusionQueue::fuse_some() {
+  Transaction transaction(map_, Transaction::Kind::kWrite);
+  Statement next(map_,
+                 "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending ORDER BY zoom_level DESC, tile_row, "
+                 "tile_column LIMIT ?1");
+  std::vector<std::pair<int, TileIndex>> batch;
+  next.with(kTilesPerTransaction);
+  while (next.step()) batch.push_back(pending_tile(next));
+  Statement fused(map_, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
+  for (const auto& [zoom, index] : batch) {
+    fuse(zoom, index);
+    fused.with(zoom, tile_row(index, zoom), index.col).run();
+  }
+  if (!batch.empty() && size() == 0) update_extent();
+  transaction.commit();
+  return static_cast<std::int64_t>(batch.size());
+}
+
+void FusionQueue::update_extent() {
+  const GridBox box = tiles_.observed_extent();
+  const std::string update = fmt::format(
+      "UPDATE gpkg_contents SET last_change = {}, min_x = ?1, min_y = ?2, max_x = ?3, max_y = ?4 WHERE table_name = "
+      "'road_probability'",
+      kSqlNow);
+  if (box.empty()) {
+    Statement(map_, update).run();
+  } else {
+    Statement(map_, update).with(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m).run();
+  }
+}
+
+void FusionQueue::drain(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop) {
+  const std::int64_t total = size();
+  std::int64_t done = 0;
+  if (progress) progress(done, total);
+  while (done < total) {
+    if (stop.stop_requested()) {
+      throw Interrupted("interrupted", fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
+                                                   map_.path().string(), done, total));
+    }
+    done += fuse_some();
+    if (progress) progress(done, total);
+  }
+}
+
+}  // namespace roadfix

@@ -1,0 +1,38 @@
+// The tiles of a map that do not yet follow from the evidence in force (table roadfix_pending), and the work of fusing
+// them. For the writer; not for other modules.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <utility>
+
+#include "tiles/store/sqlite.hpp"
+#include "tiles/store/tile_table.hpp"
+
+namespace roadfix {
+
+class FusionQueue {
+ public:
+  FusionQueue(sqlite::Connection& map, TileTable& tiles) : map_(map), tiles_(tiles) {}
+
+  /// Every tile that the evidence of the source touches, with its overviews, waits to be fused anew. Part of the
+  /// caller's transaction.
+  void add_source(std::int64_t id);
+  /// Fuses what waits, finest level first, a few tiles per transaction, and then updates the extent. `progress` gets
+  /// (done, total) tiles. Throws Interrupted; what was done stays done.
+  void drain(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
+  /// The box of the observed cells, as other programs read it.
+  void update_extent();
+
+ private:
+  std::int64_t size();
+  std::pair<int, TileIndex> pending_tile(const sqlite::Statement& row) const;
+  std::int64_t fuse_some();
+  void fuse(int zoom, TileIndex index);
+
+  sqlite::Connection& map_;
+  TileTable& tiles_;
+};
+
+}  // namespace roadfix

@@ -219,7 +219,7 @@ std::vector<std::string> MapWriter::repair(const std::function<void(std::int64_t
                                            std::stop_token stop) {
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
-  const std::vector<std::string> lost = s.drop_damaged_evidence();
+  std::vector<std::string> lost = s.drop_damaged_evidence();
   for (const char* sql :
        {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
         "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {

@@ -64,7 +64,7 @@ std::optional<UtmZone> UtmZone::from_epsg(int code) {
   return UtmZone(number, hemisphere == 32600);
 }
 
-GridPoint UtmZone::project(LatLon point) const {
+std::optional<GridPoint> UtmZone::project_if_defined(LatLon point) const {
   require_on_earth(point);
   try {
     int zone = 0;
@@ -73,12 +73,17 @@ GridPoint UtmZone::project(LatLon point) const {
     double y = 0.0;
     UTMUPS::Forward(point.lat_deg, point.lon_deg, zone, north, x, y, number_);
     if (north != northern_) y += north ? UTMUPS::UTMShift() : -UTMUPS::UTMShift();
-    return {x, y};
+    return GridPoint{x, y};
   } catch (const GeographicLib::GeographicErr&) {
-    throw InvalidInput("position-outside-zone",
-                       fmt::format("latitude {} longitude {} is too far from UTM zone {}{} of the map", point.lat_deg,
-                                   point.lon_deg, number_, northern_ ? 'N' : 'S'));
+    return std::nullopt;
   }
+}
+
+GridPoint UtmZone::project(LatLon point) const {
+  if (const auto projected = project_if_defined(point)) return *projected;
+  throw InvalidInput("position-outside-zone",
+                     fmt::format("latitude {} longitude {} is too far from UTM zone {}{} of the map", point.lat_deg,
+                                 point.lon_deg, number_, northern_ ? 'N' : 'S'));
 }
 
 LatLon UtmZone::unproject(GridPoint point) const { return reverse(*this, point).position; }

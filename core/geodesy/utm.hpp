@@ -26,6 +26,8 @@ class UtmZone {
 
   /// Throws InvalidInput for NaN, out-of-range values and points so far off the zone that UTM is undefined.
   GridPoint project(LatLon point) const;
+  /// nullopt where UTM is undefined. Throws InvalidInput for NaN and out-of-range values.
+  std::optional<GridPoint> project_if_defined(LatLon point) const;
   LatLon unproject(GridPoint point) const;
   /// Bearing of grid north clockwise from true north at the point: true heading = grid heading + convergence.
   Angle convergence(GridPoint point) const;

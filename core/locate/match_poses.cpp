@@ -45,8 +45,9 @@ class Matcher {
                        {map_.extent.max.east_m + reach_m, map_.extent.max.north_m + reach_m}};
     std::map<BlockKey, std::vector<GridQuery>> blocks;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const GridPoint at = map_.zone.project(poses[i].position);
-      if (!wide.contains(at)) continue;
+      const auto projected = map_.zone.project_if_defined(poses[i].position);
+      if (!projected || !wide.contains(*projected)) continue;
+      const GridPoint at = *projected;
       const double col = std::floor(at.east_m / cell_m);
       const double row = std::floor(-at.north_m / cell_m);
       GridQuery query{i, {static_cast<int>(col), static_cast<int>(row)}, {}, {}};

@@ -51,6 +51,7 @@ TEST(UtmZone, RefusesPolesAndNonsense) {
   EXPECT_THROW(UtmZone::containing({std::numeric_limits<double>::quiet_NaN(), 0.0}), InvalidInput);
   EXPECT_THROW(UtmZone::containing({91.0, 0.0}), InvalidInput);
   EXPECT_THROW(UtmZone::containing({40.0, 39.0}).project({40.0, -140.0}), InvalidInput);
+  EXPECT_FALSE(UtmZone::containing({40.0, 39.0}).project_if_defined({40.0, -140.0}));
 }
 
 TEST(UtmZone, KnowsItsEpsgCodesOnly) {

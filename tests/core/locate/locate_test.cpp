@@ -216,19 +216,22 @@ TEST_F(Locate, MatchScoresPosesExactlyAndInBins) {
   off.position.east_m += 12.0;
   GridPose turned = truth;
   turned.heading += Angle::degrees(20.0);
-  const std::vector<GeoPose> poses{geo(truth), geo(off), geo(turned), {{10.0, 10.0 + 11.0}, Angle()}};
+  const std::vector<GeoPose> poses{
+      geo(truth), geo(off), geo(turned), {{10.0, 10.0 + 11.0}, Angle()}, {{40.0, -140.0}, Angle()}};
   for (const double step_deg : {0.0, 0.5}) {
     MatchOptions options;
     options.heading_step = Angle::degrees(step_deg);
     options.threads = 2;
     const std::vector<MatchScore> scores = match(view_, window, poses, options);
-    ASSERT_EQ(scores.size(), 4U);
+    ASSERT_EQ(scores.size(), 5U);
     EXPECT_GT(scores[0].rho.value(), step_deg > 0.0 ? 0.7 : 0.9);
     EXPECT_LT(scores[1].rho.value(), scores[0].rho.value());
     EXPECT_LT(scores[2].rho.value(), scores[0].rho.value());
     EXPECT_NEAR(static_cast<double>(scores[0].observed_cells), 10000.0, 150.0);
-    EXPECT_FALSE(scores[3].rho);
-    EXPECT_EQ(scores[3].observed_cells, 0);
+    for (const std::size_t elsewhere : {3U, 4U}) {
+      EXPECT_FALSE(scores[elsewhere].rho);
+      EXPECT_EQ(scores[elsewhere].observed_cells, 0);
+    }
   }
 }
 

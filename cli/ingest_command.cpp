@@ -147,7 +147,8 @@ void print_plan(nlohmann::json json, bool as_json) {
   }
 }
 
-void print_report(nlohmann::json json, const IngestReport& report, double block_mp, bool as_json) {
+/// Rates count the source's own pixels, of its observed ground.
+void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json) {
   const double fresh = static_cast<double>(report.blocks - report.blocks_before);
   json["blocks_done_before"] = report.blocks_before;
   json["observed_cells"] = report.observed_cells;
@@ -155,7 +156,8 @@ void print_report(nlohmann::json json, const IngestReport& report, double block_
   json["fusing_s"] = report.fusing_s;
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = json.contains("features");
-  const double amount = lines ? share * json["features"].get<double>() : fresh * block_mp;
+  const double amount =
+      lines ? share * json["features"].get<double>() : static_cast<double>(report.observed_cells) * cell_mp;
   const double rate = report.reading_s > 0.0 ? amount / report.reading_s : 0.0;
   json[lines ? "features_per_s" : "megapixels_per_s"] = rate;
   if (as_json) {
@@ -179,20 +181,21 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     return;
   }
   if (!writer) writer.emplace(arguments.map, settings);
-  const double block_px = kTileCells * settings.cell_m / summary.chosen_gsd_m;
-  const double block_mp = block_px * block_px / 1e6;
+  const double cell_px = settings.cell_m / summary.native_gsd_m;
+  const double cell_mp = cell_px * cell_px / 1e6;
   IngestReport report;
   {
     const bool lines = summary.native_gsd_m == 0.0;
     const double lines_per_block =
         static_cast<double>(summary.features) / static_cast<double>(std::max<std::int64_t>(1, blocks));
-    Progress reading(record.name, lines ? "features" : "MP", lines ? lines_per_block : block_mp);
+    Progress reading(record.name, lines ? "features" : "MP",
+                     lines ? lines_per_block : kTileCells * kTileCells * cell_mp);
     Progress fusing("fusing", "tiles");
     const IngestProgress progress{[&](std::int64_t done, std::int64_t total) { reading.update(done, total); },
                                   [&](std::int64_t done, std::int64_t total) { fusing.update(done, total); }};
     report = ingest(*source, record, settings, *writer, arguments.options, progress, stop);
   }
-  print_report(json, report, block_mp, arguments.json);
+  print_report(json, report, cell_mp, arguments.json);
 }
 
 void run(const IngestArguments& arguments, bool cell_given) {

@@ -140,7 +140,7 @@ NeuralRoadDetector::~NeuralRoadDetector() = default;
 
 CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t /*seed*/) const {
   const NetworkPicture picture = network_picture(image, network_);
-  const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride};
+  const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride, network_.multiple};
   cv::Mat mean;
   for (int k = 0; k < options_.orientations; ++k) {
     const cv::Mat pixels = oriented(picture.pixels, k);
@@ -156,8 +156,9 @@ CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, st
 double NeuralRoadDetector::preferred_gsd_m() const { return network_.gsd_m; }
 
 double NeuralRoadDetector::halo_m() const {
-  const int window = network_.local_contrast ? network_.local_contrast->window_px : 0;
-  return 0.5 * std::max(network_.overlap_px, window) * network_.gsd_m;
+  // Local contrast at a block's edge sees a part of its window: that moves a probability far less than what it costs to
+  // run the network on the window's other half.
+  return 0.5 * network_.overlap_px * network_.gsd_m;
 }
 
 std::string NeuralRoadDetector::describe() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <opencv2/imgproc.hpp>
 
 namespace roadfix {
 
@@ -27,6 +28,19 @@ std::vector<float> blend_weights(int cells, int overlap_cells) {
   return weights;
 }
 
+namespace {
+
+/// Smallest rectangle inside `tile` around the wanted pixels that begins and ends at multiples; empty without any.
+cv::Rect part_to_run(const cv::Mat& wanted, const cv::Rect& tile, int multiple) {
+  const cv::Rect box = cv::boundingRect(wanted(tile));
+  const int left = box.x / multiple * multiple;
+  const int top = box.y / multiple * multiple;
+  const auto up = [&](int end) { return (end + multiple - 1) / multiple * multiple; };
+  return cv::Rect(left, top, up(box.x + box.width) - left, up(box.y + box.height) - top) + tile.tl();
+}
+
+}  // namespace
+
 cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::function<cv::Mat(const cv::Rect&)>& run) {
   const cv::Size cells(wanted.cols / plan.stride, wanted.rows / plan.stride);
   cv::Mat sum = cv::Mat::zeros(cells, CV_32FC1);
@@ -34,13 +48,16 @@ cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::func
   for (const int top : tile_starts(wanted.rows, plan)) {
     for (const int left : tile_starts(wanted.cols, plan)) {
       const cv::Rect tile = cv::Rect(left, top, plan.tile, plan.tile) & cv::Rect(0, 0, wanted.cols, wanted.rows);
-      if (cv::countNonZero(wanted(tile)) == 0) continue;
-      const cv::Mat result = run(tile);
-      const cv::Rect place(left / plan.stride, top / plan.stride, tile.width / plan.stride, tile.height / plan.stride);
+      const cv::Rect part = part_to_run(wanted, tile, plan.multiple);
+      if (part.empty()) continue;
+      const cv::Mat result = run(part);
+      const cv::Rect place(part.x / plan.stride, part.y / plan.stride, part.width / plan.stride,
+                           part.height / plan.stride);
       assert(result.size() == place.size() && result.type() == CV_32FC1);
-      const auto down = blend_weights(place.height, plan.overlap / plan.stride);
-      const auto right = blend_weights(place.width, plan.overlap / plan.stride);
-      const cv::Mat weight = cv::Mat(down, true) * cv::Mat(right, true).t();
+      const auto down = blend_weights(tile.height / plan.stride, plan.overlap / plan.stride);
+      const auto right = blend_weights(tile.width / plan.stride, plan.overlap / plan.stride);
+      const cv::Mat whole = cv::Mat(down, true) * cv::Mat(right, true).t();
+      const cv::Mat weight = whole(place - cv::Point(left / plan.stride, top / plan.stride));
       sum(place) += result.mul(weight);
       weight_sum(place) += weight;
     }

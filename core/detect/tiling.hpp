@@ -10,7 +10,8 @@ namespace roadfix {
 struct TilePlan {
   int tile = 384;    ///< side of a tile in input pixels; a side of the picture that is shorter takes one short tile
   int overlap = 96;  ///< of neighbours, at most half a tile
-  int stride = 2;    ///< input pixels per output cell; divides tile, overlap and the picture's sides
+  int stride = 2;    ///< input pixels per output cell; divides `multiple`
+  int multiple = 2;  ///< divides tile, overlap, the picture's sides, and the sides of what is run
 };
 
 /// First pixels of the tiles along a side of `length` pixels. They cover it; the last one ends at its end.
@@ -20,8 +21,8 @@ std::vector<int> tile_starts(int length, const TilePlan& plan);
 /// overlap's middle half. Two neighbours' weights sum to 1 where both count.
 std::vector<float> blend_weights(int cells, int overlap_cells);
 
-/// Calls `run` with each tile's rectangle that `wanted` (CV_8UC1 of the picture's size, nonzero = wanted) touches, and
-/// blends the returned CV_32FC1 of rectangle / stride cells. Cells that no tile covers are 0.
+/// Calls `run` with the part of each tile around what is `wanted` (CV_8UC1 of the picture's size, nonzero = wanted),
+/// and blends the returned CV_32FC1 of rectangle / stride cells. Cells that nothing was run for are 0.
 cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::function<cv::Mat(const cv::Rect&)>& run);
 
 }  // namespace roadfix

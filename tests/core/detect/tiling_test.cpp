@@ -43,6 +43,23 @@ TEST(Tiling, TilesThatShowAConstantBlendToThatConstant) {
   EXPECT_NEAR(most, 3.0, 1e-5);
 }
 
+TEST(Tiling, OnlyThePartOfATileAroundWantedPixelsIsRun) {
+  cv::Mat wanted = cv::Mat::zeros(160, 160, CV_8UC1);
+  wanted(cv::Rect(40, 20, 90, 70)).setTo(255);
+  const TilePlan plan{.tile = 96, .overlap = 32, .stride = 2, .multiple = 16};
+  const cv::Mat blended = blend_tiles(wanted, plan, [&](const cv::Rect& part) {
+    EXPECT_EQ(part.x % 16 + part.y % 16 + part.width % 16 + part.height % 16, 0);
+    EXPECT_EQ(part & cv::Rect(32, 16, 112, 80), part);
+    cv::Mat columns(part.height / 2, part.width / 2, CV_32FC1);
+    for (int col = 0; col < columns.cols; ++col) columns.col(col) = static_cast<float>(part.x / 2 + col);
+    return columns;
+  });
+  for (int row = 10; row < 45; ++row) {
+    for (int col = 20; col < 65; ++col) ASSERT_NEAR(blended.at<float>(row, col), col, 1e-3) << row << ' ' << col;
+  }
+  EXPECT_EQ(blended.at<float>(5, 30), 0.0F);
+}
+
 TEST(Tiling, TilesWithoutAWantedPixelAreNotRun) {
   cv::Mat wanted = cv::Mat::zeros(64, 256, CV_8UC1);
   wanted.at<unsigned char>(5, 250) = 255;

@@ -63,6 +63,7 @@ void add_world_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--collapsed", settings.collapsed_share, "Share of the buildings that fall")
       ->capture_default_str();
+  command->add_flag("--varied", settings.varied, "Draw sun, air, season and camera at random, to learn from");
   command->add_option("--frames", settings.frames, "Frames to cut out of post.tif")->capture_default_str();
   command->add_option("--footprint-m", settings.footprint_m, "Side of the ground that a frame shows")
       ->capture_default_str();

@@ -5,16 +5,18 @@
 
 #include "core/units/angle.hpp"
 #include "tiles/world/plan.hpp"
+#include "tiles/world/random.hpp"
 
 namespace roadfix::world {
 
 struct Conditions {
-  Angle sun_azimuth;    ///< clockwise from grid north, where the sun stands
-  Angle sun_elevation;  ///< above the horizon
-  PlanPoint lean;       ///< where tops of things appear: metres on the plan for each metre of height
-  double dust = 0.0;    ///< share of dust on streets and roofs
-  double haze = 0.0;    ///< share of scattered light, more where buildings fell
-  double winter = 0.0;  ///< 0 summer, 1 brown grass and bare trees
+  Angle sun_azimuth;     ///< clockwise from grid north, where the sun stands
+  Angle sun_elevation;   ///< above the horizon
+  PlanPoint lean;        ///< where tops of things appear: metres on the plan for each metre of height
+  double dust = 0.0;     ///< share of dust on streets and roofs
+  double asphalt = 1.0;  ///< brightness of the streets against the palette's
+  double haze = 0.0;     ///< share of scattered light, more where buildings fell
+  double winter = 0.0;   ///< 0 summer, 1 brown grass and bare trees
   double contrast = 1.0;
   Colour gain{1.0, 1.0, 1.0};
   double blur_px = 0.6;
@@ -30,5 +32,8 @@ struct Conditions {
 /// A clear summer morning; a hazy winter day with a low sun and a camera that looks from the side.
 Conditions summer_before();
 Conditions winter_after();
+
+/// Any sun, air, season, street surface and camera: pictures to learn from must not all be of two days.
+Conditions any_day(Random& random, int noise_stream);
 
 }  // namespace roadfix::world

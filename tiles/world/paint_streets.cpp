@@ -13,12 +13,12 @@ constexpr double kLargeM = 8.0;     // streets at least this wide have markings
 constexpr double kDividedM = 13.0;  // and these a planted strip in the middle
 
 /// Asphalt of one street. Ages differ: from nearly new, dark, to bleached; some small ones were never paved.
-Colour surface_of(const Street& street, std::size_t number, double dust) {
+Colour surface_of(const Street& street, std::size_t number, const Conditions& conditions) {
   Random random(number, 29);
   Colour colour = palette::varied(palette::kAsphalt, 0.09, random);
   if (street.width_m >= kLargeM) colour *= 0.88;
   if (street.width_m < kLargeM && random.chance(0.12)) colour = palette::varied(palette::kSoil, 0.08, random) * 0.95;
-  return colour * (1.0 - dust) + palette::kDust * dust;
+  return colour * conditions.asphalt * (1.0 - conditions.dust) + palette::kDust * conditions.dust;
 }
 
 void paint_middle(Canvas& canvas, const Street& street, const Colour& marking) {
@@ -52,7 +52,7 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
   }
   for (std::size_t i = 0; i < plan.streets.size(); ++i) {
     const Street& street = plan.streets[i];
-    const Colour surface = surface_of(street, i, dust);
+    const Colour surface = surface_of(street, i, conditions);
     canvas.stroke(street.line, street.width_m, surface, Material::kAsphalt);
     // Tyres polish two tracks of each large street a little darker.
     if (street.width_m >= kLargeM)

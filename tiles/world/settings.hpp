@@ -20,6 +20,7 @@ struct WorldSettings {
   /// File of road lines to render instead of invented ones; empty to invent them.
   std::string roads;
   double collapsed_share = 0.1;  ///< of the buildings
+  bool varied = false;           ///< sun, air, season and camera drawn from the seed instead of the two usual days
   int frames = 8;
   double footprint_m = 400.0;  ///< side of the square that a frame shows
 };

@@ -23,7 +23,7 @@ namespace roadfix::world {
 namespace {
 
 /// Streams of random numbers, one for each part of a world.
-enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisaster, kFrames };
+enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisaster, kFrames, kDays };
 
 LatLon center_of(const WorldSettings& settings) {
   if (settings.center) return *settings.center;
@@ -101,6 +101,7 @@ void write_report(const WorldReport& report, const WorldSettings& settings, cons
       {"buildings", report.buildings},
       {"collapsed", report.collapsed},
       {"trees", report.trees},
+      {"varied", settings.varied},
       {"frames", report.frames},
       {"footprint_m", settings.footprint_m}};
   std::ofstream out(path);
@@ -145,8 +146,11 @@ WorldReport render_world(const WorldSettings& settings, const std::filesystem::p
 
   make_folder(folder);
   Photographer photographer(placement, settings.seed, progress, std::move(stop));
-  photographer.photograph(before, summer_before(), (folder / "pre.tif").string());
-  photographer.photograph(after, winter_after(), (folder / "post.tif").string());
+  Random days(settings.seed, kDays);
+  const Conditions day_before = settings.varied ? any_day(days, 1) : summer_before();
+  const Conditions day_after = settings.varied ? any_day(days, 5) : winter_after();
+  photographer.photograph(before, day_before, (folder / "pre.tif").string());
+  photographer.photograph(after, day_after, (folder / "post.tif").string());
   const int lines = write_road_truth((folder / "roads.geojson").string(), before.streets, placement);
   Random pose(settings.seed, kFrames);
   const auto poses = draw_poses(settings, placement, pose);

@@ -93,6 +93,20 @@ TEST(World, ComesOutTheSameToTheByteForTheSameSeedOnly) {
   }
 }
 
+TEST(World, OnVariedDaysIsTheSameTownUnderAnotherSun) {
+  const TemporaryFolder folder;
+  WorldSettings settings = small_settings(7);
+  render(settings, folder / "usual");
+  settings.varied = true;
+  render(settings, folder / "varied");
+  render(settings, folder / "again");
+  EXPECT_EQ(bytes_of(folder / "usual" / "roads.geojson"), bytes_of(folder / "varied" / "roads.geojson"));
+  for (const char* name : {"pre.tif", "post.tif"}) {
+    EXPECT_NE(bytes_of(folder / "usual" / name), bytes_of(folder / "varied" / name)) << name;
+    EXPECT_EQ(bytes_of(folder / "varied" / name), bytes_of(folder / "again" / name)) << name;
+  }
+}
+
 TEST(World, LiesWhereItWasAskedForInTheZoneOfItsCentre) {
   const TemporaryFolder folder;
   WorldSettings settings = small_settings();

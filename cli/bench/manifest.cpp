@@ -44,6 +44,11 @@ class Field {
     return fields;
   }
   bool is_null() const { return value_.is_null(); }
+  bool is_array() const { return value_.is_array(); }
+  bool truth() const {
+    require(value_.is_boolean(), "must be true or false");
+    return value_.get<bool>();
+  }
   bool is_object() const { return value_.is_object(); }
   std::string text() const {
     require(value_.is_string(), "must be a string");
@@ -74,13 +79,23 @@ class Field {
 constexpr double kMaxFootprintM = 10'000.0;
 constexpr double kMaxCount = 1e6;
 
+ManifestSource parse_source(const Field& field, const std::filesystem::path& directory) {
+  const std::string as = field.at("as").one_of({"imagery", "roads", "invented"});
+  if (as != "invented") {
+    field.allow_only({"path", "as"});
+    return {directory / field.at("path").text(), as};
+  }
+  field.allow_only({"as", "seed", "side_m"});
+  return {
+      {}, as, static_cast<std::uint64_t>(field.at("seed").number(0.0, 1e9)), field.at("side_m").number(500.0, 8000.0)};
+}
+
 ManifestMap parse_map(const Field& field, const std::filesystem::path& directory) {
   field.allow_only({"name", "sources"});
   ManifestMap map;
   map.name = field.at("name").text();
   for (const Field& source : field.at("sources").elements()) {
-    source.allow_only({"path", "as"});
-    map.sources.push_back({directory / source.at("path").text(), source.at("as").one_of({"imagery", "roads"})});
+    map.sources.push_back(parse_source(source, directory));
   }
   if (map.sources.empty()) field.refuse("has no sources");
   return map;
@@ -96,10 +111,28 @@ Exclusion parse_exclusion(const Field& field) {
   return {share("top"), share("bottom"), share("left"), share("right")};
 }
 
-FeatureNoise parse_noise(const Field& field) {
-  field.allow_only({"erase", "invent", "shift_m"});
-  return {optional_number(field, "erase", 0.0, 1.0), optional_number(field, "invent", 0.0, 10.0),
-          optional_number(field, "shift_m", 0.0, 1000.0)};
+QualityRange parse_noise(const Field& field) {
+  field.allow_only({"erase", "invent", "block", "shift_m", "scale", "tilt_deg"});
+  QualityRange range;
+  const auto parse = [&](const std::string& key, double FeatureQuality::*property, double highest) {
+    if (!field.has(key)) return;
+    const Field value = field.at(key);
+    if (!value.is_array()) {
+      range.low.*property = range.high.*property = value.number(0.0, highest);
+      return;
+    }
+    const auto bounds = value.elements();
+    if (bounds.size() != 2) value.refuse("must be a number or [lowest, highest]");
+    range.low.*property = bounds[0].number(0.0, highest);
+    range.high.*property = bounds[1].number(range.low.*property, highest);
+  };
+  parse("erase", &FeatureQuality::erase, 1.0);
+  parse("invent", &FeatureQuality::invent, 10.0);
+  parse("block", &FeatureQuality::block, 0.9);
+  parse("shift_m", &FeatureQuality::shift_m, 1000.0);
+  parse("scale", &FeatureQuality::scale, 0.2);
+  parse("tilt_deg", &FeatureQuality::tilt_deg, 20.0);
+  return range;
 }
 
 void parse_footprint_and_count(const Field& field, QuerySet& set) {
@@ -111,12 +144,19 @@ void parse_footprint_and_count(const Field& field, QuerySet& set) {
 }
 
 QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
-  field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved"});
+  field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved", "from",
+                    "elsewhere"});
   QuerySet set;
-  set.map = field.at("map").text();
-  if (std::ranges::none_of(manifest.maps, [&](const ManifestMap& map) { return map.name == set.map; })) {
-    field.at("map").refuse(fmt::format("names the map '{}', which is not among the maps", set.map));
-  }
+  const auto map_name = [&](const std::string& key) {
+    std::string name = field.at(key).text();
+    if (std::ranges::none_of(manifest.maps, [&](const ManifestMap& map) { return map.name == name; })) {
+      field.at(key).refuse(fmt::format("names the map '{}', which is not among the maps", name));
+    }
+    return name;
+  };
+  set.map = map_name("map");
+  set.from = field.has("from") ? map_name("from") : set.map;
+  if (field.has("elsewhere")) set.elsewhere = field.at("elsewhere").truth();
   if (field.has("image") == field.has("frames")) field.refuse("needs either 'image' or 'frames'");
   if (field.has("frames")) {
     set.kind = QuerySet::Kind::kFrames;
@@ -126,6 +166,7 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
     if (set.kind == QuerySet::Kind::kImage) set.path = directory / field.at("image").text();
     parse_footprint_and_count(field, set);
   }
+  if (field.has("from") && set.kind != QuerySet::Kind::kSimulated) field.at("from").refuse("needs \"image\": null");
   if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
   if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
   if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";

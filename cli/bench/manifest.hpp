@@ -1,6 +1,7 @@
 // What `roadfix bench` is asked to do: maps to build, queries to draw, methods to compare (docs/bench.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,12 +9,15 @@
 #include <vector>
 
 #include "core/detect/orthoimage.hpp"
+#include "core/locate/simulate.hpp"
 
 namespace roadfix::bench {
 
 struct ManifestSource {
-  std::filesystem::path path;
-  std::string as;  ///< "imagery" or "roads"
+  std::filesystem::path path;  ///< empty for an invented town
+  std::string as;              ///< "imagery", "roads" or "invented"
+  std::uint64_t seed = 1;      ///< of an invented town
+  double side_m = 0.0;         ///< of an invented town, which is square
 };
 
 struct ManifestMap {
@@ -29,11 +33,10 @@ struct Exclusion {
   double right = 0.0;
 };
 
-/// How a simulated feature map differs from the map it was cut from.
-struct FeatureNoise {
-  double erase = 0.0;    ///< share of the road cells that vanish, in patches
-  double invent = 0.0;   ///< road cells that appear, as a share of the true ones, as strokes
-  double shift_m = 0.0;  ///< 1 sigma of a common shift per axis
+/// From which each query draws its quality, every property uniformly between the two.
+struct QualityRange {
+  FeatureQuality low;
+  FeatureQuality high;
 };
 
 struct QuerySet {
@@ -44,7 +47,9 @@ struct QuerySet {
   int count = 0;               ///< ignored for frames: all are used
   Footprint footprint;         ///< ignored for frames
   Exclusion exclude;
-  FeatureNoise noise;
+  QualityRange noise;      ///< of simulated queries
+  std::string from;        ///< map that simulated feature maps are cut out of; `map` by default
+  bool elsewhere = false;  ///< the queries show ground that is not on the map: every fix is a false one
   bool black_is_unobserved = false;
   std::optional<double> prior_radius_m;  ///< nullopt = the whole map
 };

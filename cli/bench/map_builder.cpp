@@ -15,12 +15,35 @@
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
+#include "tiles/world/road_truth.hpp"
+#include "tiles/world/street_network.hpp"
 
 namespace roadfix::bench {
 namespace {
 
-SourceRequest request_of(const ManifestSource& source) {
+/// The roads of an invented town, written to the cache once.
+std::filesystem::path invented_roads(const ManifestSource& source, const std::filesystem::path& cache) {
+  const std::filesystem::path file = cache / fmt::format("invented-{}-{:g}.geojson", source.seed, source.side_m);
+  if (std::filesystem::exists(file)) return file;
+  world::WorldSettings settings;
+  settings.seed = source.seed;
+  settings.width_m = settings.height_m = source.side_m;
+  world::Plan plan;
+  plan.width_m = plan.height_m = source.side_m;
+  world::Random random(source.seed, 0);
+  world::invent_streets(plan, random);
+  const std::filesystem::path unfinished = cache / fmt::format("unfinished-{}.geojson", source.seed);
+  world::write_road_truth(unfinished.string(), plan.streets, world::place(settings, world::kDefaultCenter));
+  std::filesystem::rename(unfinished, file);
+  return file;
+}
+
+SourceRequest request_of(const ManifestSource& source, const std::filesystem::path& cache) {
   SourceRequest request;
+  if (source.as == "invented") {
+    request.files = find_source(invented_roads(source, cache).string(), parse_meaning("roads"));
+    return request;
+  }
   request.files = find_source(source.path.string(), parse_meaning(source.as));
   return request;
 }
@@ -60,10 +83,12 @@ std::filesystem::path file_of(const ManifestMap& map, const MapSettings& setting
 
 MapView build_map(const ManifestMap& map, const MapBuilding& building) {
   std::filesystem::create_directories(building.cache);
-  const MapSettings settings{UtmZone::containing(centre_of_source(request_of(map.sources.front()))), building.cell_m};
+  const MapSettings settings{UtmZone::containing(centre_of_source(request_of(map.sources.front(), building.cache))),
+                             building.cell_m};
   std::vector<OpenedSource> sources;
   for (const ManifestSource& source : map.sources) {
-    sources.push_back(open(request_of(source), static_cast<int>(sources.size()) + 1, settings, building));
+    sources.push_back(
+        open(request_of(source, building.cache), static_cast<int>(sources.size()) + 1, settings, building));
   }
   const std::filesystem::path file = file_of(map, settings, sources, building);
   {
@@ -82,7 +107,7 @@ std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone
   std::vector<Orthoimage> imagery;
   for (const ManifestSource& source : map.sources) {
     if (source.as != "imagery") continue;
-    for (const std::string& path : request_of(source).files.paths) imagery.push_back(read_orthoimage(path, zone));
+    for (const std::string& path : request_of(source, {}).files.paths) imagery.push_back(read_orthoimage(path, zone));
   }
   return imagery;
 }

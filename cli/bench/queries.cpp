@@ -12,7 +12,6 @@
 
 #include "cli/bench/frames_csv.hpp"
 #include "cli/bench/query_poses.hpp"
-#include "cli/bench/simulated_features.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
@@ -34,6 +33,11 @@ Observed seen_by(const Orthoimage& ortho) {
   return [&ortho](GridPoint point) { return sees(ortho, point); };
 }
 
+GridPoint anywhere_on(const MapView& map, Random& random) {
+  return {uniform(random, map.extent.min.east_m, map.extent.max.east_m),
+          uniform(random, map.extent.min.north_m, map.extent.max.north_m)};
+}
+
 Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& zone, Random& random) {
   if (!set.prior_radius_m) return {};
   // Uniform over the disc, so that the truth is anywhere in the circle that is told.
@@ -45,6 +49,22 @@ Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& z
 
 GeoPose geo(const GridPose& pose, const UtmZone& zone) {
   return {zone.unproject(pose.position), zone.true_from_grid(pose.heading, pose.position)};
+}
+
+/// Between both, property by property.
+FeatureQuality draw(const QualityRange& range, Random& random) {
+  FeatureQuality quality;
+  for (double FeatureQuality::*property :
+       {&FeatureQuality::erase, &FeatureQuality::invent, &FeatureQuality::block, &FeatureQuality::shift_m,
+        &FeatureQuality::scale, &FeatureQuality::tilt_deg}) {
+    quality.*property = uniform(random, range.low.*property, range.high.*property);
+  }
+  return quality;
+}
+
+std::optional<GeoPose> truth_of(const GridPose& pose, const QuerySet& set, const UtmZone& zone) {
+  if (set.elsewhere) return std::nullopt;
+  return geo(pose, zone);
 }
 
 GridPose draw(const PoseSampling& sampling, const QuerySet& set, Random& random) {
@@ -65,31 +85,44 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
   const Orthoimage ortho = read_orthoimage(set.path.string(), map.zone);
   const RoadGrid grid = whole(map);
   const Observed in_imagery = seen_by(ortho);
-  const Observed in_map = seen_by(grid);
+  const Observed in_map = set.elsewhere ? Observed([](GridPoint) { return true; }) : seen_by(grid);
   const PoseSampling sampling{without(ortho.box(), set.exclude), set.footprint,
                               [&](GridPoint p) { return in_imagery(p) && in_map(p); }};
   std::vector<Query> queries;
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, geo(pose, map.zone), {}};
+    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}};
     query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
-    query.prior = prior_around(pose.position, set, map.zone, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map.zone, random);
     queries.push_back(std::move(query));
   }
   return queries;
 }
 
-std::vector<Query> simulated(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
-  const RoadGrid grid = whole(map);
-  const PoseSampling sampling{without(map.extent, set.exclude), set.footprint, seen_by(grid)};
+/// A place of one map can be found in the other only where both lie on one plane.
+void require_same_plane(const QuerySet& set, const MapView& map, const MapView& from) {
+  if (set.elsewhere || map.zone == from.zone) return;
+  throw InvalidInput("map-of-another-zone", fmt::format("the maps '{}' and '{}' lie in different UTM zones: say "
+                                                        "\"elsewhere\": true, or take maps of one place",
+                                                        map.name, from.name));
+}
+
+std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapView& from,
+                             const QueryDrawing& drawing) {
+  require_same_plane(set, map, from);
+  const RoadGrid grid = whole(from);
+  const auto cells = [&](double side_m) { return static_cast<int>(std::lround(side_m / from.cell_m)); };
+  const PoseSampling sampling{without(from.extent, set.exclude), set.footprint, seen_by(grid)};
   std::vector<Query> queries;
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("simulated/{:04}", i), {}, {}, geo(pose, map.zone), {}};
-    query.features = simulate_features(grid, pose, set.footprint, set.noise, random);
-    query.prior = prior_around(pose.position, set, map.zone, random);
+    Query query{fmt::format("simulated/{:04}", i), {}, {}, truth_of(pose, set, map.zone), {}};
+    const FeatureQuality quality = draw(set.noise, random);
+    query.features =
+        simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map.zone, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -107,8 +140,10 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
       throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     Query query{frame.file.string(), {}, {}, frame.pose, {}};
+    if (set.elsewhere) query.truth.reset();
     query.picture = frame_image(decoded, frame.gsd_m, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
-    query.prior = prior_around(map.zone.project(frame.pose.position), set, map.zone, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position), set,
+                               map.zone, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -116,14 +151,15 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
 
 }  // namespace
 
-std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
+                                const QueryDrawing& drawing) {
   switch (set.kind) {
     case QuerySet::Kind::kImage:
       return from_imagery(set, map, drawing);
     case QuerySet::Kind::kFrames:
       return real_frames(set, map, drawing);
     case QuerySet::Kind::kSimulated:
-      return simulated(set, map, drawing);
+      return simulated(set, map, from, drawing);
   }
   return {};
 }

@@ -15,9 +15,11 @@ struct QueryDrawing {
   int limit = 0;          ///< at most so many; 0 = all
 };
 
+/// `map` is searched; simulated queries are cut out of `from`.
 /// Throws InvalidInput "no-place-for-query" where no pose fits, "frames-csv" naming line and column, and what reading
 /// the imagery throws.
-std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const QueryDrawing& drawing);
+std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
+                                const QueryDrawing& drawing);
 
 /// "post.jpg 400x400 m", "frames.csv", "simulated 400x400 m".
 std::string describe(const QuerySet& set);

@@ -13,7 +13,7 @@ struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
   std::optional<GroundImage> picture;  ///< in the body frame, nadir at its centre
   std::optional<FeatureMap> features;  ///< instead of a picture where the query is simulated
-  GeoPose truth;
+  std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "server/api/fix_json.hpp"
@@ -18,12 +19,14 @@ json pose_json(const GeoPose& pose) {
       {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
 }
 
-json number_or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+json number_or_null(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? json(*value) : json(nullptr);
+}
 
 json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
-          {"truth", pose_json(outcome.truth)},
+          {"truth", outcome.truth ? pose_json(*outcome.truth) : json(nullptr)},
           {"status", api::to_string(answer.status)},
           {"reason", answer.reason},
           {"answer", answer.best ? pose_json(*answer.best) : json(nullptr)},
@@ -39,11 +42,14 @@ std::string cell(const std::optional<double>& value, int digits) {
 
 }  // namespace
 
-Outcome judged(const std::string& id, const GeoPose& truth, Answer answer, const UtmZone& zone) {
+Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone) {
   Outcome outcome{id, truth, std::move(answer), {}, {}};
-  if (const auto& best = outcome.answer.best) {
-    outcome.error_m = distance_m(zone.project(best->position), zone.project(truth.position));
-    outcome.heading_error_deg = angular_distance(best->heading, truth.heading).degrees();
+  const auto& best = outcome.answer.best;
+  if (best && !truth) {
+    outcome.error_m = std::numeric_limits<double>::infinity();
+  } else if (best) {
+    outcome.error_m = distance_m(zone.project(best->position), zone.project(truth->position));
+    outcome.heading_error_deg = angular_distance(best->heading, truth->heading).degrees();
   }
   return outcome;
 }
@@ -68,7 +74,7 @@ Figures figures(const std::vector<Outcome>& outcomes) {
     if (outcome.answer.status != FixStatus::kFix) continue;
     ++result.answered;
     errors.push_back(outcome.error_m.value());
-    heading_errors.push_back(outcome.heading_error_deg.value());
+    if (outcome.heading_error_deg) heading_errors.push_back(*outcome.heading_error_deg);
     if (*outcome.error_m > kFalseFixM) ++result.false_fixes;
   }
   const auto recall = [&](double within_m) {

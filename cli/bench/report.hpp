@@ -13,14 +13,14 @@ inline constexpr double kFalseFixM = 25.0;  ///< a `fix` further off than this i
 
 struct Outcome {
   std::string id;
-  GeoPose truth;
+  std::optional<GeoPose> truth;
   Answer answer;
-  std::optional<double> error_m;  ///< of the best guess, whatever the status
+  std::optional<double> error_m;  ///< of the best guess, whatever the status; infinite where the truth is elsewhere
   std::optional<double> heading_error_deg;
 };
 
 /// Errors of an answer, in the plane of the zone.
-Outcome judged(const std::string& id, const GeoPose& truth, Answer answer, const UtmZone& zone);
+Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone);
 
 struct Figures {
   int n = 0;

@@ -49,14 +49,18 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
   std::vector<SetResult> results;
+  std::map<std::string, MapView> maps;
   for (const ManifestMap& manifest_map : manifest.maps) {
-    const MapView map = build_map(manifest_map, options.maps);
+    maps.emplace(manifest_map.name, build_map(manifest_map, options.maps));
+  }
+  for (const ManifestMap& manifest_map : manifest.maps) {
+    const MapView& map = maps.at(manifest_map.name);
     std::map<std::string, std::unique_ptr<Method>> methods;
     for (const std::string& name : manifest.methods) methods[name] = make_method(name, manifest_map, map, options);
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
-      const auto queries = make_queries(set, map, {options.seed, i, options.limit});
+      const auto queries = make_queries(set, map, maps.at(set.from), {options.seed, i, options.limit});
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));

@@ -31,6 +31,26 @@ TEST(Manifest, ReadsAllThreeKindsOfQueries) {
   EXPECT_EQ(manifest.queries[2].prior_radius_m, 500);
 }
 
+TEST(Manifest, ReadsTheQualityOfSimulatedQueriesAndWhereTheyComeFrom) {
+  const Manifest manifest = parse_manifest(R"({
+    "maps": [{"name": "old", "sources": [{"path": "old.pbf", "as": "roads"}]},
+             {"name": "town", "sources": [{"as": "invented", "seed": 7, "side_m": 2000}]}],
+    "queries": [{"map": "old", "from": "town", "elsewhere": true, "image": null, "count": 7, "footprint_m": [200, 200],
+                 "noise": {"erase": [0.1, 0.5], "tilt_deg": 2}}],
+    "methods": ["roads"]})",
+                                           ".");
+  EXPECT_EQ(manifest.maps[1].sources[0].as, "invented");
+  EXPECT_EQ(manifest.maps[1].sources[0].seed, 7u);
+  EXPECT_EQ(manifest.maps[1].sources[0].side_m, 2000.0);
+  const QuerySet& set = manifest.queries.at(0);
+  EXPECT_EQ(set.from, "town");
+  EXPECT_TRUE(set.elsewhere);
+  EXPECT_EQ(set.noise.low.erase, 0.1);
+  EXPECT_EQ(set.noise.high.erase, 0.5);
+  EXPECT_EQ(set.noise.low.tilt_deg, 2.0);
+  EXPECT_EQ(set.noise.high.tilt_deg, 2.0);
+}
+
 std::string with(const std::string& from, const std::string& to) {
   std::string text = kManifest;
   text.replace(text.find(from), from.size(), to);
@@ -47,6 +67,10 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("[400, 300]", "[400]"), "queries[0].footprint_m");
   expect_complaint(with("\"map\": \"town\", \"frames\"", "\"map\": \"city\", \"frames\""), "'city'");
   expect_complaint(with("\"as\": \"imagery\"", "\"as\": \"pixels\""), "maps[0].sources[0].as");
+  expect_complaint(with("\"erase\": 0.2", "\"erase\": [0.5, 0.2]"), "queries[2].noise.erase[1]");
+  expect_complaint(with("\"count\": 7", "\"from\": \"city\", \"count\": 7"), "queries[2].from");
+  expect_complaint(with("\"count\": 5", "\"from\": \"town\", \"count\": 5"), "queries[0].from");
+  expect_complaint(with("\"count\": 7", "\"elsewhere\": 1, \"count\": 7"), "queries[2].elsewhere");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");
 }

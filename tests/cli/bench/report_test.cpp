@@ -15,7 +15,7 @@ Outcome outcome(FixStatus status, double error_m, double heading_error_deg) {
   answer.status = status;
   answer.best =
       GeoPose{kZone.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
-  return judged("q", {kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
+  return judged("q", GeoPose{kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
 }
 
 TEST(Figures, CountRecallOverAllAndErrorsOverTheAnswered) {

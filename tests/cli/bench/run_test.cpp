@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -106,6 +107,36 @@ TEST_F(BenchRun, PlacesSimulatedFeatureMapsAndRealFrames) {
   EXPECT_EQ(results[1].outcomes.at(0).id, "frame.png");
   EXPECT_LT(*results[1].outcomes.at(0).error_m, 3.0);
   EXPECT_LT(*results[1].outcomes.at(0).heading_error_deg, 1.0);
+}
+
+TEST_F(BenchRun, CountsEveryFixOfGroundThatIsNotOnTheMapAsFalse) {
+  const Manifest manifest = parse_manifest(R"({
+    "maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}]},
+             {"name": "other", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "from": "other", "elsewhere": true, "image": null, "count": 2, "footprint_m": [200, 200]},
+                {"map": "other", "image": null, "count": 2, "footprint_m": [400, 400]}],
+    "methods": ["roads"]})",
+                                           folder.path());
+  const auto results = bench::run(manifest, options);
+  ASSERT_EQ(results.size(), 2u);
+  for (const Outcome& outcome : results[0].outcomes) {
+    EXPECT_FALSE(outcome.truth);
+    EXPECT_TRUE(!outcome.error_m || std::isinf(*outcome.error_m));
+  }
+  const Figures elsewhere = figures(results[0].outcomes);
+  EXPECT_EQ(elsewhere.recall_50, 0.0);
+  EXPECT_EQ(elsewhere.false_fixes, elsewhere.answered);
+  EXPECT_EQ(figures(results[1].outcomes).recall_5, 1.0);
+}
+
+TEST_F(BenchRun, RefusesToLookForAPlaceOfAnotherZone) {
+  const Manifest manifest = parse_manifest(R"({
+    "maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}]},
+             {"name": "other", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "from": "other", "image": null, "count": 2, "footprint_m": [200, 200]}],
+    "methods": ["roads"]})",
+                                           folder.path());
+  EXPECT_THAT([&] { bench::run(manifest, options); }, ThrowsMessage<InvalidInput>(HasSubstr("UTM zones")));
 }
 
 TEST_F(BenchRun, GivesTheSameAnswersWithAnotherNumberOfJobsAndAFoundMap) {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Turns a checkpoint of models/train.py into ONNX and the JSON beside it, calibrated on held-out pairs.
+"""Turns a checkpoint of models/train.py, or several, into ONNX and the JSON beside it, calibrated on held-out pairs.
 
 Example: python3 models/export.py --checkpoint build/roadnet/checkpoint.pt --out models/roadnet.onnx --data ../shared/data
 """
@@ -12,14 +12,15 @@ import torch
 from roadnet.data import load_pairs, read_sets
 from roadnet.export import difference, export, fit_calibration
 from roadnet.metrics import logits_and_labels
-from roadnet.network import RoadNet
+from roadnet.network import Ensemble, RoadNet
 from roadnet.predict import TorchNetwork
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     here = Path(__file__).resolve().parent
-    parser.add_argument("--checkpoint", default=Path("build/roadnet/checkpoint.pt"), type=Path)
+    parser.add_argument("--checkpoint", default=[Path("build/roadnet/checkpoint.pt")], type=Path, nargs="+",
+                        help="several become one network: the mean of their logits")
     parser.add_argument("--out", default=here / "roadnet.onnx", type=Path)
     parser.add_argument("--name", default="", help="name in the provenance of maps; the file's stem and the step by default")
     parser.add_argument("--data", default=here.parent / "../shared/data", type=Path)
@@ -33,17 +34,21 @@ def main():
     options = arguments()
     torch.set_num_threads(options.threads)
     cv2.setNumThreads(options.threads)
-    state = torch.load(options.checkpoint, map_location="cpu")
-    model = RoadNet()
-    model.load_state_dict(state["averaged"])
-    gsd_m = state["gsd_m"]
+    states = [torch.load(path, map_location="cpu") for path in options.checkpoint]
+    gsd_m = states[0]["gsd_m"]
+    if any(state["gsd_m"] != gsd_m for state in states):
+        raise SystemExit("the checkpoints see different metres per pixel: they cannot become one network")
+    members = [RoadNet() for _ in states]
+    for member, state in zip(members, states):
+        member.load_state_dict(state["averaged"])
+    model = Ensemble(members) if len(members) > 1 else members[0]
     held_out = [p for s in read_sets(options.sets, options.data) if s.share > 0 for p in load_pairs(s, options.data)[1]]
     scale, bias = 1.0, 0.0
     if held_out:
         scale, bias = fit_calibration(*logits_and_labels(TorchNetwork(model), held_out, gsd_m))
     else:
         print("no held-out pairs: the probabilities stay uncalibrated")
-    name = options.name or f"{options.out.stem}-{state['step']}"
+    name = options.name or "-".join([options.out.stem] + [str(state["step"]) for state in states])
     export(model, gsd_m, options.out, name, scale, bias, options.licence)
     worst = difference(model, options.out)
     print(f"{options.out}: {options.out.stat().st_size} bytes, calibration scale {scale:.3f} bias {bias:.3f}, "

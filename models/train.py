@@ -19,8 +19,9 @@ def arguments():
     here = Path(__file__).resolve().parent
     parser.add_argument("--data", default=here.parent / "../shared/data", type=Path, help="folder that the manifest's paths start from")
     parser.add_argument("--sets", default=here / "datasets.json", type=Path, help="manifest of sets (%(default)s)")
-    parser.add_argument("--pairs", action="append", default=[], metavar="DIR=GSD_M",
-                        help="own pairs: DIR/images and DIR/masks with equal file stems; may be given again")
+    parser.add_argument("--pairs", action="append", default=[], metavar="DIR=GSD_M[:SHARE]",
+                        help="own pairs: DIR/images and DIR/masks with equal file stems, and their share of the crops "
+                             "(against those of the manifest); may be given again")
     parser.add_argument("--only-pairs", action="store_true", help="train on --pairs alone")
     parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
     parser.add_argument("--steps", default=3000, type=int)
@@ -35,6 +36,7 @@ def arguments():
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     parser.add_argument("--threads", default=2, type=int, help="CPU threads for the network")
     parser.add_argument("--workers", default=0, type=int, help="processes that prepare crops; 0 = in this one")
+    parser.add_argument("--bf16", action="store_true", help="half precision where the processor has it: about twice as fast")
     parser.add_argument("--restart", action="store_true", help="ignore an earlier checkpoint in --out")
     parser.add_argument("--report", default=20, type=int, help="steps between lines of progress")
     parser.add_argument("--save-every", default=100, type=int)
@@ -44,11 +46,13 @@ def arguments():
 
 def own_sets(texts):
     for text in texts:
-        folder, _, gsd = text.rpartition("=")
+        folder, _, rest = text.rpartition("=")
         if not folder:
-            raise SystemExit(f"--pairs {text}: write DIR=GSD_M, for example my-pairs=0.5")
+            raise SystemExit(f"--pairs {text}: write DIR=GSD_M or DIR=GSD_M:SHARE, for example my-pairs=0.5")
+        gsd, _, share = rest.partition(":")
         folder = Path(folder).resolve()
-        yield SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd))
+        yield SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd),
+                         share=float(share or 1.0), ignore_band_m=1.0)
 
 
 def main():

@@ -1,7 +1,7 @@
 """Labelled pairs (picture, road mask) and random training crops of them at the network's scale.
 
-Pictures are RGB uint8; labels are float32 in [0, 1]; weights are float32, 0 where a label says nothing
-(nodata, outside the tile, the uncertain band round a road's edge).
+Pictures are RGB uint8; labels and weights are uint8 0 to 255 in a pair and float32 in [0, 1] in a crop. A weight is 0
+where a label says nothing (nodata, outside the tile, the uncertain band round a road's edge).
 """
 import json
 import math
@@ -54,10 +54,14 @@ class Pair:
         seen = observed(image, options.nodata)
         image[seen == 0] = FILL
         label, weight = label_and_weight(mask, seen, options)
-        self.truth, self.seen = (label > 0.5) & (seen > 0), seen > 0
+        self.seen = seen > 0
         self.levels = [Level(options.gsd_m, image, label, weight)]
         while self.levels[-1].gsd_m < 0.8 and min(self.levels[-1].image.shape[:2]) > 64:
             self.levels.append(half(self.levels[-1]))
+
+    @property
+    def truth(self):
+        return (self.levels[0].label > 127) & self.seen
 
     def level_for(self, gsd_m):
         fitting = [level for level in self.levels if level.gsd_m <= gsd_m * 1.25]
@@ -91,9 +95,9 @@ def label_and_weight(mask, seen, options):
     if options.label == "surface":
         # A drawn edge is off by a pixel or two on both sides; the middle of a road stays certain.
         unsure |= (road > 0) & (inside < min(options.ignore_band_m, 1.0) * 0.5)
-    weight = seen.astype(np.float32)
-    weight[unsure] *= 0.0
-    return road.astype(np.float32), weight
+    weight = seen * np.uint8(255)
+    weight[unsure] = 0
+    return road * np.uint8(255), weight
 
 
 def read_sets(manifest, root):
@@ -108,13 +112,20 @@ def read_sets(manifest, root):
     return found
 
 
+def place_of(path):
+    """Pictures of one place on several days (NAME_pre, NAME_post) are held out together."""
+    return path.stem.removesuffix("_pre").removesuffix("_post")
+
+
 def load_pairs(options, root):
     """All pairs of a set, in the order of their names, as (training, held-out)."""
     images, masks = Path(root) / options.images, Path(root) / options.masks
     by_stem = {p.stem: p for p in masks.iterdir() if p.suffix.lower() in EXTENSIONS}
     training, held_out = [], []
     paths = sorted(p for p in images.iterdir() if p.suffix.lower() in EXTENSIONS and p.stem in by_stem)
-    for index, path in enumerate(paths):
+    places = {place: number for number, place in enumerate(sorted({place_of(p) for p in paths}))}
+    for path in paths:
+        index = places[place_of(path)]
         image = cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
         mask = cv2.imread(str(by_stem[path.stem]), cv2.IMREAD_GRAYSCALE)
         if mask is None or mask.shape != image.shape[:2]:
@@ -135,7 +146,7 @@ def warp(level, gsd_m, size, angle, flip, centre):
     image = cv2.warpAffine(level.image, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
     label = cv2.warpAffine(level.label, matrix, (size, size), flags=how, borderValue=0)
     weight = cv2.warpAffine(level.weight, matrix, (size, size), flags=how, borderValue=0)
-    return image, label, (weight > 0.75).astype(np.float32)
+    return image, label.astype(np.float32) / 255, (weight > 191).astype(np.float32)
 
 
 class Crops:
@@ -153,7 +164,7 @@ class Crops:
             self.held_out += held_out
             print(f"{options.name}: {len(training)} pairs to train on, {len(held_out)} held out", flush=True)
         self.shares = np.array(shares) / sum(shares)
-        self.areas = [np.array([p.levels[0].weight.sum() * p.levels[0].gsd_m ** 2 for p in pairs]) for pairs in self.pairs]
+        self.areas = [np.array([p.levels[0].weight.mean() * p.seen.size * p.levels[0].gsd_m ** 2 for p in pairs]) for pairs in self.pairs]
 
     def __len__(self):
         return 1 << 40

@@ -78,7 +78,7 @@ def logits_and_labels(predict, pairs, gsd_m, each=20000, seed=1):
     for pair in pairs:
         image, truth, seen = at_scale(pair, gsd_m)
         size = image.shape[1::-1]
-        sure = cv2.resize(pair.levels[0].weight, size, interpolation=cv2.INTER_AREA) > 0.75
+        sure = cv2.resize(pair.levels[0].weight, size, interpolation=cv2.INTER_AREA) > 191
         cells = predict(image, seen)
         whole = cv2.resize(cells, (cells.shape[1] * 2, cells.shape[0] * 2), interpolation=cv2.INTER_LINEAR)
         rows, cols = np.nonzero(seen & sure)

@@ -56,7 +56,7 @@ def save(path, **state):
 def train(crops, options):
     torch.manual_seed(options.seed)
     device = torch.device(options.device)
-    model, averaged = RoadNet().to(device), RoadNet().to(device)
+    model, averaged = RoadNet().to(device, memory_format=torch.channels_last), RoadNet().to(device)
     averaged.load_state_dict(model.state_dict())
     for parameter in averaged.parameters():
         parameter.requires_grad_(False)
@@ -78,7 +78,9 @@ def train(crops, options):
         model.train()
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(step, share_done(step, started, options), options.rate, options.cool)
-        logits = model(image.to(device))
+        picture = image.to(device, memory_format=torch.channels_last)
+        with torch.autocast(device.type, torch.bfloat16, enabled=options.bf16):
+            logits = model(picture).float()
         loss = road_loss(logits, label.to(device), weight.to(device))
         optimizer.zero_grad(set_to_none=True)
         loss.backward()

@@ -78,9 +78,9 @@ class Parts(unittest.TestCase):
         mask[28:32] = 255
         options = data.SetOptions("own", "", "", 1.0, label="centreline", ignore_band_m=3.5)
         label, weight = data.label_and_weight(mask, np.ones_like(mask), options)
-        self.assertTrue((label[29] == 1).all() and (weight[29] == 1).all())
+        self.assertTrue((label[29] == 255).all() and (weight[29] == 255).all())
         self.assertTrue((weight[26] == 0).all())
-        self.assertTrue((weight[20] == 1).all() and (label[20] == 0).all())
+        self.assertTrue((weight[20] == 255).all() and (label[20] == 0).all())
 
     def test_augmentation_leaves_what_was_not_seen_at_the_fill(self):
         image = np.full((64, 64, 3), 60, np.uint8)

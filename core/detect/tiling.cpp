@@ -6,11 +6,20 @@
 
 namespace roadfix {
 
-std::vector<int> tile_starts(int length, const TilePlan& plan) {
+int tile_side(int length, const TilePlan& plan) {
   assert(plan.tile > 0 && 2 * plan.overlap <= plan.tile);
+  if (length <= plan.tile) return length;
+  const auto ceil_of = [](int a, int b) { return (a + b - 1) / b; };
+  const int count = ceil_of(length - plan.overlap, plan.tile - plan.overlap);
+  const int even = ceil_of(length + (count - 1) * plan.overlap, count);
+  return std::min(plan.tile, ceil_of(even, plan.multiple) * plan.multiple);
+}
+
+std::vector<int> tile_starts(int length, const TilePlan& plan) {
+  const int side = tile_side(length, plan);
   std::vector<int> starts{0};
-  while (starts.back() + plan.tile < length) {
-    starts.push_back(std::min(starts.back() + plan.tile - plan.overlap, length - plan.tile));
+  while (starts.back() + side < length) {
+    starts.push_back(std::min(starts.back() + side - plan.overlap, length - side));
   }
   return starts;
 }
@@ -45,9 +54,10 @@ cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::func
   const cv::Size cells(wanted.cols / plan.stride, wanted.rows / plan.stride);
   cv::Mat sum = cv::Mat::zeros(cells, CV_32FC1);
   cv::Mat weight_sum = cv::Mat::zeros(cells, CV_32FC1);
+  const cv::Size side(tile_side(wanted.cols, plan), tile_side(wanted.rows, plan));
   for (const int top : tile_starts(wanted.rows, plan)) {
     for (const int left : tile_starts(wanted.cols, plan)) {
-      const cv::Rect tile = cv::Rect(left, top, plan.tile, plan.tile) & cv::Rect(0, 0, wanted.cols, wanted.rows);
+      const cv::Rect tile({left, top}, side);
       const cv::Rect part = part_to_run(wanted, tile, plan.multiple);
       if (part.empty()) continue;
       const cv::Mat result = run(part);

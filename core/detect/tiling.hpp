@@ -8,11 +8,15 @@
 namespace roadfix {
 
 struct TilePlan {
-  int tile = 384;    ///< side of a tile in input pixels; a side of the picture that is shorter takes one short tile
+  int tile = 384;    ///< longest side of a tile in input pixels
   int overlap = 96;  ///< of neighbours, at most half a tile
   int stride = 2;    ///< input pixels per output cell; divides `multiple`
   int multiple = 2;  ///< divides tile, overlap, the picture's sides, and the sides of what is run
 };
+
+/// Side of the tiles along a side of `length` pixels: as few tiles as `tile` and `overlap` allow, all about as small as
+/// that many may be; `length` itself where it is no longer than a tile.
+int tile_side(int length, const TilePlan& plan);
 
 /// First pixels of the tiles along a side of `length` pixels. They cover it; the last one ends at its end.
 std::vector<int> tile_starts(int length, const TilePlan& plan);

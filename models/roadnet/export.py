@@ -27,7 +27,7 @@ def export(model, gsd_m, path, name, scale=1.0, bias=0.0, licence=""):
     torch.onnx.export(model, torch.zeros(1, 3, 256, 256), str(path), opset_version=11, input_names=["picture"],
                       output_names=["logits"], do_constant_folding=True)
     description = {
-        "name": name, "gsd_m": gsd_m, "stride": STRIDE, "multiple": 16, "tile_px": 640, "overlap_px": 80,
+        "name": name, "gsd_m": gsd_m, "stride": STRIDE, "multiple": 16, "tile_px": 1024, "overlap_px": 80,
         "channels": "rgb", "local_contrast": {"window_px": WINDOW, "floor": FLOOR}, "mean": [0, 0, 0], "std": [1, 1, 1], "output": "logits",
         "calibration": {"scale": round(scale, 6), "bias": round(bias, 6)},
         "licence": licence, "fnv1a64": fnv1a64(path.read_bytes())}

@@ -6,17 +6,24 @@ namespace roadfix {
 namespace {
 
 TEST(Tiling, TilesCoverASideAndOverlapByAtLeastTheOverlap) {
-  const TilePlan plan{64, 16, 2};
+  const TilePlan plan{64, 16, 2, 16};
   for (int length = 16; length <= 400; length += 16) {
     const auto starts = tile_starts(length, plan);
     EXPECT_EQ(starts.front(), 0);
-    if (length <= plan.tile) {
-      EXPECT_EQ(starts.size(), 1U);
-      continue;
-    }
-    EXPECT_EQ(starts.back() + plan.tile, length);
-    for (std::size_t i = 1; i < starts.size(); ++i) EXPECT_GE(starts[i - 1] + plan.tile - starts[i], plan.overlap);
+    const int side = tile_side(length, plan);
+    EXPECT_LE(side, plan.tile);
+    EXPECT_EQ(side % plan.multiple, 0);
+    EXPECT_EQ(starts.size() == 1U, length <= plan.tile);
+    EXPECT_EQ(starts.back() + side, length);
+    for (std::size_t i = 1; i < starts.size(); ++i) EXPECT_GE(starts[i - 1] + side - starts[i], plan.overlap);
   }
+}
+
+TEST(Tiling, ASideJustLongerThanATileTakesTwoOfHalfItsLength) {
+  const TilePlan plan{.tile = 1024, .overlap = 64, .stride = 2, .multiple = 16};
+  EXPECT_EQ(tile_side(1024, plan), 1024);
+  EXPECT_EQ(tile_side(1040, plan), 560);
+  EXPECT_EQ(tile_starts(1040, plan), (std::vector<int>{0, 480}));
 }
 
 TEST(Tiling, WeightsOfNeighboursSumToOneAcrossTheirOverlap) {

@@ -5,66 +5,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/grid/sampling.hpp"
+
 namespace roadfix {
 namespace {
 
 using CellPosition = GridGeometry::CellPosition;
-
-/// Accumulates observed cells by weight; unobserved ones only count as missing.
-class WeightedMean {
- public:
-  void add(Cell cell, double weight) {
-    total_ += weight;
-    if (!is_observed(cell)) return;
-    observed_ += weight;
-    sum_ += weight * cell;
-  }
-  Cell cell() const {
-    if (observed_ <= 0.0 || observed_ < 0.5 * total_) return kUnobserved;
-    return static_cast<Cell>(sum_ / observed_ + 0.5);
-  }
-
- private:
-  double sum_ = 0.0;
-  double observed_ = 0.0;
-  double total_ = 0.0;
-};
-
-Cell bilinear(const CellArray& cells, CellPosition p) {
-  const double x = p.col - 0.5;
-  const double y = p.row - 0.5;
-  if (!(x > -1.0 && y > -1.0 && x < cells.cols() && y < cells.rows())) return kUnobserved;
-  const int col = static_cast<int>(x + 1.0) - 1;  // floor, for x > -1
-  const int row = static_cast<int>(y + 1.0) - 1;
-  const double fx = x - col;
-  const double fy = y - row;
-  if (col >= 0 && row >= 0 && col + 1 < cells.cols() && row + 1 < cells.rows()) {
-    // Most cells have four observed neighbours; turning feature maps is what a search spends its time on.
-    const Cell* above = &cells.row(row)[static_cast<std::size_t>(col)];
-    const Cell* below = above + cells.cols();
-    if (is_observed(above[0]) && is_observed(above[1]) && is_observed(below[0]) && is_observed(below[1])) {
-      const double upper = above[0] + fx * (above[1] - above[0]);
-      const double lower = below[0] + fx * (below[1] - below[0]);
-      return static_cast<Cell>(upper + fy * (lower - upper) + 0.5);
-    }
-  }
-  WeightedMean mean;
-  mean.add(cells.get(col, row), (1.0 - fx) * (1.0 - fy));
-  mean.add(cells.get(col + 1, row), fx * (1.0 - fy));
-  mean.add(cells.get(col, row + 1), (1.0 - fx) * fy);
-  mean.add(cells.get(col + 1, row + 1), fx * fy);
-  return mean.cell();
-}
-
-/// Linear map from result cells to source cells: source = origin + col * right + row * down.
-struct Placement {
-  CellPosition origin;
-  CellPosition right;
-  CellPosition down;
-  CellPosition source_of(double col, double row) const {
-    return {origin.col + col * right.col + row * down.col, origin.row + col * right.row + row * down.row};
-  }
-};
 
 CellArray sampled(const CellArray& source, const Placement& placement, int cols, int rows) {
   // Each result cell averages n x n bilinear samples, n chosen so that no source cell is skipped.

@@ -1,0 +1,122 @@
+#include "core/grid/combine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/grid/sampling.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+using CellPosition = GridGeometry::CellPosition;
+
+/// In cells to the right of and behind the reference's nadir.
+struct Box {
+  double left = std::numeric_limits<double>::infinity();
+  double right = -left;
+  double front = left;
+  double back = -left;
+
+  void take(CellPosition p) {
+    left = std::min(left, p.col);
+    right = std::max(right, p.col);
+    front = std::min(front, p.row);
+    back = std::max(back, p.row);
+  }
+};
+
+CellPosition centre_of(const PlacedFeatures& part) {
+  return {part.offset.right_m / part.features.cell_m, -part.offset.forward_m / part.features.cell_m};
+}
+
+Box box_of(std::span<const PlacedFeatures> parts) {
+  Box box;
+  for (const PlacedFeatures& part : parts) {
+    const double c = cos(part.offset.turn);
+    const double s = sin(part.offset.turn);
+    const CellPosition centre = centre_of(part);
+    const auto cols = static_cast<double>(part.features.cells.cols());
+    const auto rows = static_cast<double>(part.features.cells.rows());
+    for (const CellPosition corner : std::array<CellPosition, 4>{{{0, 0}, {cols, 0}, {0, rows}, {cols, rows}}}) {
+      const double right = corner.col - part.features.nadir.col;
+      const double back = corner.row - part.features.nadir.row;
+      box.take({centre.col + c * right - s * back, centre.row + s * right + c * back});
+    }
+  }
+  return box;
+}
+
+/// Sum and number of log-odds of each cell.
+struct Evidence {
+  std::vector<float> sum;
+  std::vector<std::uint8_t> count;
+};
+
+float log_odds(Cell cell) {
+  constexpr double kLeast = 0.25 / kRoad;
+  const double p = std::clamp(probability(cell), kLeast, 1.0 - kLeast);
+  return static_cast<float>(std::log(p / (1.0 - p)));
+}
+
+void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Evidence& evidence) {
+  const double c = cos(part.offset.turn);
+  const double s = sin(part.offset.turn);
+  const CellPosition centre = centre_of(part);
+  const double right = -nadir.col - centre.col;
+  const double back = -nadir.row - centre.row;
+  const Placement placement{
+      {part.features.nadir.col + c * right + s * back, part.features.nadir.row - s * right + c * back},
+      {c, -s},
+      {s, c}};
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
+      if (!is_observed(cell)) continue;
+      const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(col);
+      evidence.sum[i] += log_odds(cell);
+      ++evidence.count[i];
+    }
+  }
+}
+
+}  // namespace
+
+FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
+  assert(!parts.empty() && parts.size() < 256);
+  const double cell_m = parts.front().features.cell_m;
+  const Box box = box_of(parts);
+  const double width = std::ceil(box.right - box.left - 1e-9);
+  const double height = std::ceil(box.back - box.front - 1e-9);
+  if (!(width * height <= max_cells)) {
+    throw LimitExceeded("frames-too-far-apart",
+                        fmt::format("together the frames cover {:.0f} x {:.0f} m, {:.0f} cells of {} m; at most {:.0f} "
+                                    "are allowed: check their offsets, or leave the farthest out",
+                                    width * cell_m, height * cell_m, width * height, cell_m, max_cells));
+  }
+  const int cols = std::max(1, static_cast<int>(width));
+  const int rows = std::max(1, static_cast<int>(height));
+  const CellPosition nadir{-box.left, -box.front};
+  FeatureMap result{CellArray(cols, rows), cell_m, nadir};
+  Evidence evidence{std::vector<float>(result.cells.cells().size()),
+                    std::vector<std::uint8_t>(result.cells.cells().size())};
+  for (const PlacedFeatures& part : parts) {
+    assert(part.features.cell_m == cell_m);
+    add(part, nadir, cols, rows, evidence);
+  }
+  const auto cells = result.cells.cells();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (evidence.count[i] == 0) continue;
+    const double mean = double{evidence.sum[i]} / evidence.count[i];
+    cells[i] = cell_from_probability(1.0 / (1.0 + std::exp(-mean)));
+  }
+  return result;
+}
+
+}  // namespace roadfix

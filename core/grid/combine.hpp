@@ -1,0 +1,30 @@
+// Feature maps of several frames, laid together along the odometry between them into one that sees more.
+#pragma once
+
+#include <span>
+
+#include "core/grid/feature_map.hpp"
+#include "core/units/angle.hpp"
+
+namespace roadfix {
+
+/// Where another frame was taken, seen from the UAV at the reference frame: metres ahead and to the right of it, and
+/// how far its nose pointed to the right of the reference's.
+struct BodyOffset {
+  double forward_m = 0.0;
+  double right_m = 0.0;
+  Angle turn;
+};
+
+struct PlacedFeatures {
+  FeatureMap features;
+  BodyOffset offset;  ///< zero for the reference frame
+};
+
+/// One feature map in the body frame of the reference, its nadir the reference's, just large enough for all parts.
+/// Where several parts saw a cell it holds the mean of their log-odds: they err alike, so agreement is not counted
+/// twice. `parts` is not empty and all have cells of one size. Throws LimitExceeded ("frames-too-far-apart") when the
+/// result would have more than `max_cells`.
+FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells);
+
+}  // namespace roadfix

@@ -1,0 +1,101 @@
+#include "core/grid/combine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/ascii_map.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::from_ascii;
+using testing::to_ascii;
+
+constexpr double kPlenty = 1e6;
+
+FeatureMap map_of(const char* rows, double cell_m = 2.0) { return FeatureMap::centred(from_ascii(rows), cell_m); }
+
+TEST(Combined, OneFrameStaysAsItIs) {
+  const FeatureMap map = map_of("#.? .#. ?.#");
+  const PlacedFeatures alone{map, {}};
+  const FeatureMap result = combined({&alone, 1}, kPlenty);
+  EXPECT_EQ(to_ascii(result.cells), to_ascii(map.cells));
+  EXPECT_EQ(result.nadir.col, 1.5);
+  EXPECT_EQ(result.nadir.row, 1.5);
+}
+
+TEST(Combined, AFrameFromAheadExtendsTheReferenceForward) {
+  const PlacedFeatures parts[] = {{map_of("#.. #.. #.."), {}}, {map_of("### ... ..."), {4.0, 0.0, {}}}};
+  const FeatureMap result = combined(parts, kPlenty);
+  EXPECT_EQ(to_ascii(result.cells), "###\n...\n5..\n#..\n#..\n");
+  EXPECT_EQ(result.nadir.row, 3.5);
+}
+
+TEST(Combined, AFrameTurnedRightPutsItsForwardEdgeToTheRight) {
+  const PlacedFeatures parts[] = {{map_of("... ... ..."), {}}, {map_of("### ... ..."), {0.0, 6.0, Angle::degrees(90)}}};
+  EXPECT_EQ(to_ascii(combined(parts, kPlenty).cells), ".....#\n.....#\n.....#\n");
+}
+
+TEST(Combined, WhatNoFrameSawStaysUnobserved) {
+  const PlacedFeatures parts[] = {{map_of("#? .."), {}}, {map_of(".? ?#"), {4.0, 4.0, {}}}};
+  EXPECT_EQ(to_ascii(combined(parts, kPlenty).cells), "??.?\n???#\n#???\n..??\n");
+}
+
+TEST(Combined, TakesTheMeanOfTheLogOddsWhereFramesOverlap) {
+  FeatureMap sure{CellArray(1, 1, cell_from_probability(0.9)), 2.0, {0.5, 0.5}};
+  FeatureMap unsure{CellArray(1, 1, cell_from_probability(0.5)), 2.0, {0.5, 0.5}};
+  const PlacedFeatures parts[] = {{sure, {}}, {unsure, {}}};
+  const double odds = std::sqrt(9.0);
+  EXPECT_NEAR(probability(combined(parts, kPlenty).cells.at(0, 0)), odds / (1.0 + odds), 0.01);
+}
+
+TEST(Combined, FramesCutFromAMapAlongAFlightGiveTheMapBack) {
+  const RoadGrid town = testing::street_map(3, {2.0, {1000, 2000}, 200, 200});
+  const GridPoint middle{town.geometry.box().min.east_m + 0.5 * town.geometry.box().width_m(),
+                         town.geometry.box().min.north_m + 0.5 * town.geometry.box().height_m()};
+  const GridPose reference{middle, Angle::degrees(33)};
+  std::vector<PlacedFeatures> parts;
+  for (const BodyOffset offset : {BodyOffset{}, BodyOffset{-30.0, 12.0, Angle::degrees(-20)}}) {
+    const double c = cos(reference.heading);
+    const double s = sin(reference.heading);
+    const GridPose pose{{middle.east_m + s * offset.forward_m + c * offset.right_m,
+                         middle.north_m + c * offset.forward_m - s * offset.right_m},
+                        reference.heading + offset.turn};
+    parts.push_back({cut_out(town, pose, 60, 60, town.geometry.cell_m), offset});
+  }
+  const FeatureMap result = combined(parts, kPlenty);
+  EXPECT_GT(result.cells.observed_count(), 3600U);
+  // Two frames resampled once more each: cells at the edge of a street may differ, the streets may not.
+  const FeatureMap truth = cut_out(town, reference, 61, 61, town.geometry.cell_m);
+  double difference = 0.0;
+  int count = 0;
+  for (int row = -30; row < 30; ++row) {
+    for (int col = -30; col < 30; ++col) {
+      const Cell ours = result.cells.get(static_cast<int>(std::floor(result.nadir.col)) + col,
+                                         static_cast<int>(std::floor(result.nadir.row)) + row);
+      const Cell theirs = truth.cells.get(30 + col, 30 + row);
+      if (!is_observed(ours) || !is_observed(theirs)) continue;
+      difference += std::abs(probability(ours) - probability(theirs));
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 3000);
+  EXPECT_LT(difference / count, 0.08);
+}
+
+TEST(Combined, RefusesFramesThatWouldNeedMoreCellsThanAllowed) {
+  const PlacedFeatures parts[] = {{map_of("#. .."), {}}, {map_of("#. .."), {1e5, 1e5, {}}}};
+  try {
+    combined(parts, 1e6);
+    FAIL() << "50,000 x 50,000 cells";
+  } catch (const LimitExceeded& error) {
+    EXPECT_EQ(error.code(), "frames-too-far-apart");
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,16 +1,89 @@
 #include "cli/feature_input.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/detector_options.hpp"
 #include "core/detect/image_codec.hpp"
+#include "core/grid/combine.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
+namespace {
+
+constexpr double kMostCells = 25e6;
+constexpr std::size_t kMostFrames = 64;
+
+struct Another {
+  std::string path;
+  BodyOffset offset;
+};
+
+[[noreturn]] void refuse_also(const std::string& text) {
+  throw InvalidInput("also-unreadable", fmt::format("--also {}: write FILE,FORWARD,RIGHT,TURN: metres ahead and to the "
+                                                    "right of the input's UAV, degrees turned to the right",
+                                                    text));
+}
+
+/// The file's name may hold commas; the last three are the offset's.
+Another parse_also(const std::string& text) {
+  std::string_view rest = text;
+  std::array<double, 3> values{};
+  for (std::size_t i = values.size(); i-- > 0;) {
+    const auto comma = rest.rfind(',');
+    if (comma == std::string_view::npos) refuse_also(text);
+    const std::string_view number = rest.substr(comma + 1);
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), values[i]);
+    if (error != std::errc() || end != number.data() + number.size() || !(std::abs(values[i]) < 1e6)) refuse_also(text);
+    rest = rest.substr(0, comma);
+  }
+  if (rest.empty()) refuse_also(text);
+  return {std::string(rest), {values[0], values[1], Angle::degrees(values[2])}};
+}
+
+/// `detector` is null for feature maps.
+FeatureMap features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
+                       double map_cell_m) {
+  const std::vector<std::uint8_t> bytes = bytes_of(path);
+  if (detector == nullptr) return FeatureMap::centred(decode_feature_map(bytes, kMostPixels), options.cell_m);
+  const GroundView view = ground_seen(options.frame, decode_image(bytes, kMostPixels), *detector);
+  return detect_features(*detector, view, map_cell_m, options.seed);
+}
+
+FeatureMap all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
+  FeatureMap features = features_in(options.path, options, detector, map_cell_m);
+  if (options.also.empty()) return features;
+  if (options.also.size() >= kMostFrames) {
+    throw LimitExceeded("too-many-frames",
+                        fmt::format("{} frames are more than {}", options.also.size() + 1, kMostFrames));
+  }
+  std::vector<PlacedFeatures> parts{{std::move(features), {}}};
+  for (const std::string& text : options.also) {
+    const Another another = parse_also(text);
+    parts.push_back({features_in(another.path, options, detector, map_cell_m), another.offset});
+  }
+  return combined(parts, kMostCells);
+}
+
+}  // namespace
 
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   command.add_option("input", o.path, "Feature map (PNG: grey = probability of road, alpha = observed) or frame")
       ->required();
+  command
+      .add_option("--also", o.also,
+                  "Another frame or feature map, taken FORWARD m ahead and RIGHT m to the right of the input's place, "
+                  "TURN degrees to its right; may be given again")
+      ->type_name("FILE,FORWARD,RIGHT,TURN")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* cell = command.add_option("--cell,--cell-m", o.cell_m, "The input is a feature map: its cell size in metres")
                    ->check(CLI::PositiveNumber);
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell);
@@ -23,14 +96,10 @@ FeatureInput read_feature_input(const FeatureInputOptions& options, double map_c
     throw InvalidInput("input-kind-missing",
                        "say what the input is: --cell for a feature map, --gsd or --fov and --agl for a frame");
   }
-  const std::vector<std::uint8_t> bytes = bytes_of(options.path);
-  if (options.cell_m > 0.0) {
-    return {FeatureMap::centred(decode_feature_map(bytes, kMostPixels), options.cell_m), {}};
-  }
+  if (options.cell_m > 0.0) return {all_features(options, nullptr, map_cell_m), {}};
   const auto detector = make_detector(options.detector);
   const auto start = std::chrono::steady_clock::now();
-  const GroundView view = ground_seen(options.frame, decode_image(bytes, kMostPixels), *detector);
-  FeatureMap features = detect_features(*detector, view, map_cell_m, options.seed);
+  FeatureMap features = all_features(options, detector.get(), map_cell_m);
   return {std::move(features), std::chrono::steady_clock::now() - start};
 }
 

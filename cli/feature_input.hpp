@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/frame_options.hpp"
@@ -15,7 +16,8 @@ namespace roadfix::cli {
 
 struct FeatureInputOptions {
   std::string path;
-  double cell_m = 0.0;  ///< of a feature map; 0 = the input is a frame
+  std::vector<std::string> also;  ///< FILE,FORWARD,RIGHT,TURN: more of the same kind, and where they were taken
+  double cell_m = 0.0;            ///< of a feature map; 0 = the input is a frame
   FrameOptions frame;
   std::uint64_t seed = 1;
   DetectorChoice detector;
@@ -23,13 +25,14 @@ struct FeatureInputOptions {
 
 struct FeatureInput {
   FeatureMap features;
-  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
+  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of the frames
 };
 
 /// Adds the input file and its options; `options` must live as long as the command.
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
 
-/// Roads of a frame come in cells of `map_cell_m`. Throws InvalidInput when it is not clear what the input is.
+/// Roads of a frame come in cells of `map_cell_m`; several frames are laid together. Throws InvalidInput when it is not
+/// clear what the input is.
 FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m);
 
 }  // namespace roadfix::cli

@@ -22,10 +22,14 @@ class LocalizeCommands : public ::testing::Test {
  protected:
   LocalizeCommands() {
     testing::write_map_file(map, town, 0.0);
+    save_what_is_seen(truth, 160, window);
+  }
+
+  void save_what_is_seen(const GridPose& pose, int side, const std::filesystem::path& file) const {
     std::mt19937_64 random(42);
-    const FeatureMap seen = testing::observed_at(town, truth, 160, 160, 2.0, {0.1, 0.1}, random);
+    const FeatureMap seen = testing::observed_at(town, pose, side, side, 2.0, {0.1, 0.1}, random);
     const std::vector<std::uint8_t> png = encode_feature_map(seen.cells);
-    std::ofstream(window, std::ios::binary)
+    std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   }
 
@@ -85,6 +89,31 @@ TEST_F(LocalizeCommands, FixTakesAPrior) {
   EXPECT_EQ(roadfix("fix " + input + "--bbox 1,2,3").code, 2);
   const Result box = roadfix("fix " + input + "--bbox 20,50,21,51");
   EXPECT_THAT(box.err, HasSubstr("prior-outside-map"));
+}
+
+TEST_F(LocalizeCommands, FixLaysWindowsAlongAFlightTogether) {
+  std::string also;
+  for (const double forward_m : {-80.0, -160.0}) {
+    const GridPose earlier{{truth.position.east_m + sin(truth.heading) * forward_m,
+                            truth.position.north_m + cos(truth.heading) * forward_m},
+                           truth.heading + Angle::degrees(10)};
+    const auto file = folder / ("window" + std::to_string(forward_m) + ".png");
+    save_what_is_seen(earlier, 80, file);
+    also += " --also " + file.string() + "," + std::to_string(forward_m) + ",0,10";
+  }
+  save_what_is_seen(truth, 80, window);
+  const Result alone = roadfix("fix --json " + input);
+  const Result together = roadfix("fix --json " + input + also);
+  ASSERT_EQ(together.code, 0) << together.err;
+  const auto answer = nlohmann::json::parse(together.out);
+  const auto cells = [](const nlohmann::json& json) { return json["modes"][0]["observed_cells"].get<int>(); };
+  EXPECT_GT(cells(answer), 1.5 * cells(nlohmann::json::parse(alone.out)));
+  const auto& best = answer["modes"][0];
+  EXPECT_NEAR(best["pose"]["lat"].get<double>(), place.lat_deg, 3e-5);
+  EXPECT_NEAR(best["pose"]["lon"].get<double>(), place.lon_deg, 5e-5);
+  EXPECT_THAT(roadfix("fix " + input + "--also " + window.string() + ",1,2").err, HasSubstr("[also-unreadable]"));
+  EXPECT_THAT(roadfix("fix " + input + "--also " + window.string() + ",9e5,0,0").err,
+              HasSubstr("[frames-too-far-apart]"));
 }
 
 TEST_F(LocalizeCommands, FixRefusesWhatItCannotRead) {

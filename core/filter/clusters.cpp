@@ -1,0 +1,128 @@
+#include "core/filter/clusters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace roadfix {
+namespace {
+
+using Bin = std::array<std::int64_t, 3>;
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+struct Binning {
+  std::vector<Bin> bins;            ///< sorted, distinct
+  std::vector<std::size_t> bin_of;  ///< for each of the particles with weight
+};
+
+Binning binned(const Particles& particles, const std::vector<std::size_t>& members, const ClusterOptions& options,
+               std::int64_t turn_bins) {
+  std::vector<Bin> of_member;
+  for (const std::size_t i : members) {
+    const double turned = Angle::radians(particles.heading_rad[i]).compass_degrees() / 360.0;
+    of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / options.bin_m)),
+                         static_cast<std::int64_t>(std::floor(particles.north_m[i] / options.bin_m)),
+                         static_cast<std::int64_t>(turned * static_cast<double>(turn_bins)) % turn_bins});
+  }
+  Binning result{of_member, {}};
+  std::ranges::sort(result.bins);
+  result.bins.erase(std::unique(result.bins.begin(), result.bins.end()), result.bins.end());
+  for (const Bin& bin : of_member) {
+    result.bin_of.push_back(static_cast<std::size_t>(std::ranges::lower_bound(result.bins, bin) - result.bins.begin()));
+  }
+  return result;
+}
+
+/// Joins each bin with those of its 26 neighbours that hold particles; headings go round.
+UnionFind joined(const std::vector<Bin>& bins, std::int64_t turn_bins) {
+  UnionFind groups(bins.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    for (int k = 0; k < 27; ++k) {
+      const Bin near{bins[i][0] + k % 3 - 1, bins[i][1] + k / 3 % 3 - 1,
+                     (bins[i][2] + k / 9 - 1 + turn_bins) % turn_bins};
+      const auto found = std::ranges::lower_bound(bins, near);
+      if (found != bins.end() && *found == near) groups.join(i, static_cast<std::size_t>(found - bins.begin()));
+    }
+  }
+  return groups;
+}
+
+Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
+  Cluster cluster;
+  cluster.particles = members.size();
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (const std::size_t i : members) {
+    const double w = p.weight[i];
+    cluster.weight += w;
+    cluster.mean.position.east_m += w * p.east_m[i];
+    cluster.mean.position.north_m += w * p.north_m[i];
+    sine += w * std::sin(p.heading_rad[i]);
+    cosine += w * std::cos(p.heading_rad[i]);
+  }
+  cluster.mean.position.east_m /= cluster.weight;
+  cluster.mean.position.north_m /= cluster.weight;
+  cluster.mean.heading = Angle::radians(std::atan2(sine, cosine));
+  std::vector<std::pair<double, double>> distances;
+  for (const std::size_t i : members) {
+    const std::array<double, 3> off{p.east_m[i] - cluster.mean.position.east_m,
+                                    p.north_m[i] - cluster.mean.position.north_m,
+                                    (Angle::radians(p.heading_rad[i]) - cluster.mean.heading).wrapped().radians()};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) cluster.covariance[a][b] += p.weight[i] / cluster.weight * off[a] * off[b];
+    }
+    distances.emplace_back(std::hypot(off[0], off[1]), p.weight[i]);
+  }
+  std::ranges::sort(distances);
+  double within = 0.0;
+  for (const auto& [distance, weight] : distances) {
+    cluster.radius95_m = distance;
+    within += weight;
+    if (within >= 0.95 * cluster.weight) break;
+  }
+  return cluster;
+}
+
+}  // namespace
+
+double Cluster::sigma_m() const {
+  const double mean2 = 0.5 * (covariance[0][0] + covariance[1][1]);
+  return std::sqrt(mean2 + std::hypot(0.5 * (covariance[0][0] - covariance[1][1]), covariance[0][1]));
+}
+
+std::vector<Cluster> clusters_of(const Particles& particles, const ClusterOptions& options) {
+  std::vector<std::size_t> members;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (particles.weight[i] > 0.0) members.push_back(i);
+  }
+  const auto turn_bins = std::max<std::int64_t>(1, std::llround(360.0 / options.bin_heading.degrees()));
+  const Binning binning = binned(particles, members, options, turn_bins);
+  UnionFind groups = joined(binning.bins, turn_bins);
+  std::vector<std::vector<std::size_t>> of_root(binning.bins.size());
+  for (std::size_t m = 0; m < members.size(); ++m) of_root[groups.root(binning.bin_of[m])].push_back(members[m]);
+  std::vector<Cluster> clusters;
+  for (const auto& group : of_root) {
+    if (!group.empty()) clusters.push_back(summary(particles, group));
+  }
+  std::ranges::stable_sort(clusters, std::ranges::greater{}, &Cluster::weight);
+  return clusters;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,31 @@
+// The hypotheses in a set of particles: groups that hang together in place and heading.
+#pragma once
+
+#include <vector>
+
+#include "core/filter/cholesky.hpp"
+#include "core/filter/particles.hpp"
+
+namespace roadfix {
+
+struct ClusterOptions {
+  double bin_m = 20.0;  ///< particles in bins that touch belong together
+  Angle bin_heading = Angle::degrees(15.0);
+};
+
+struct Cluster {
+  GridPose mean;        ///< the heading is the circular mean
+  double weight = 0.0;  ///< share of all weight
+  /// Of east (m), north (m), heading (rad, clockwise), about the mean.
+  Matrix3 covariance{};
+  double radius95_m = 0.0;  ///< holds 95 % of the cluster's weight
+  std::size_t particles = 0;
+
+  /// 1 sigma along the major axis.
+  double sigma_m() const;
+};
+
+/// Heaviest first. Particles without weight are left out.
+std::vector<Cluster> clusters_of(const Particles& particles, const ClusterOptions& options);
+
+}  // namespace roadfix

@@ -1,0 +1,202 @@
+#include "core/filter/filter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace roadfix {
+namespace {
+
+/// Returns false, and leaves the weights, where they sum to nothing.
+bool normalise(std::vector<double>& weights) {
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!(sum > 0.0) || !std::isfinite(sum)) return false;
+  for (double& w : weights) w /= sum;
+  return true;
+}
+
+class ProposalDraw {
+ public:
+  explicit ProposalDraw(std::span<const Proposal> proposals) : proposals_(proposals) {
+    for (const Proposal& proposal : proposals) {
+      total_ += proposal.weight;
+      const auto factor = cholesky(proposal.covariance);
+      assert(factor);
+      factors_.push_back(*factor);
+    }
+  }
+
+  ParticleState operator()(RandomStream& random) const {
+    double left = total_ * random.uniform();
+    std::size_t k = 0;
+    while (k + 1 < proposals_.size() && left >= proposals_[k].weight) left -= proposals_[k++].weight;
+    const GridPose& mean = proposals_[k].mean;
+    const Matrix3& l = factors_[k];
+    const double a = random.normal();
+    const double b = random.normal();
+    const double c = random.normal();
+    return {mean.position.east_m + l[0][0] * a, mean.position.north_m + l[1][0] * a + l[1][1] * b,
+            (mean.heading + Angle::radians(l[2][0] * a + l[2][1] * b + l[2][2] * c)).wrapped().radians()};
+  }
+
+ private:
+  std::span<const Proposal> proposals_;
+  std::vector<Matrix3> factors_;
+  double total_ = 0.0;
+};
+
+}  // namespace
+
+FilterOptions FilterOptions::paper(int particles) {
+  FilterOptions options;
+  options.min_particles = particles;
+  options.max_particles = particles;
+  options.adapts_count = false;
+  options.effective_share = 1.0;
+  options.injection = Injection::kFixedShare;
+  options.roughening_m = 0.0;
+  options.roughening_heading = Angle();
+  return options;
+}
+
+Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, std::uint64_t seed, int threads)
+    : options_(options), region_(region), threads_(threads) {
+  state_.seed = seed;
+}
+
+Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, FilterState state, int threads)
+    : options_(options), region_(region), threads_(threads), state_(std::move(state)), started_(true) {}
+
+void Filter::start_uniformly(const AcceptanceRegion& over) { start_from({}, 1.0, over); }
+
+void Filter::start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over) {
+  if (std::exchange(started_, true)) ++state_.resets;
+  ++state_.step;
+  state_.slow_support = state_.fast_support = 0.5;
+  const ProposalDraw around(proposals);
+  const auto count = static_cast<std::size_t>(options_.max_particles);
+  const auto uniform = proposals.empty() ? count : static_cast<std::size_t>(uniform_share * static_cast<double>(count));
+  state_.particles.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    RandomStream random(Draw::kStart, {state_.seed, state_.step, i});
+    state_.particles.set(i, i < uniform ? over.draw(random) : around(random));
+    state_.particles.weight[i] = 1.0 / static_cast<double>(count);
+  }
+}
+
+void Filter::begin_step() {
+  assert(started_);
+  ++state_.step;
+  if (options_.injection != Injection::kFixedShare) return;
+  const auto count = static_cast<double>(state_.particles.size());
+  replace_some(static_cast<std::size_t>(options_.injected_share * count),
+               [this](RandomStream& random) { return region_.draw(random); });
+}
+
+bool Filter::keep_within_region() {
+  Particles& p = state_.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!region_.contains({p.east_m[i], p.north_m[i]})) p.weight[i] = 0.0;
+  }
+  if (normalise(p.weight)) return true;
+  start_uniformly(region_);
+  return false;
+}
+
+Correction Filter::correct(std::span<const double> log_likelihoods) {
+  Particles& p = state_.particles;
+  assert(log_likelihoods.size() == p.size());
+  Correction result;
+  const double largest = *std::ranges::max_element(log_likelihoods);
+  if (!std::isfinite(largest)) return result;
+  std::vector<double> weights(p.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    weights[i] = p.weight[i] * std::exp(log_likelihoods[i] - largest);
+    sum += weights[i];
+  }
+  if (!normalise(weights)) return result;
+  p.weight = std::move(weights);
+  result.usable = true;
+  result.mean_likelihood = sum * std::exp(largest);
+  // Odds of the belief against chance, as a probability: one lucky or useless frame cannot swamp the averages.
+  const double support = result.mean_likelihood / (1.0 + result.mean_likelihood);
+  state_.slow_support += options_.slow_rate * (support - state_.slow_support);
+  state_.fast_support += options_.fast_rate * (support - state_.fast_support);
+  const double effective = effective_sample_size(p.weight) / static_cast<double>(p.size());
+  result.resampled =
+      options_.effective_share >= 1.0 || effective < options_.effective_share || share_to_inject() > 0.01;
+  if (result.resampled) resample();
+  return result;
+}
+
+double Filter::doubt() const { return std::clamp(1.0 - state_.fast_support / state_.slow_support, 0.0, 1.0); }
+
+double Filter::share_to_inject() const {
+  if (options_.injection == Injection::kFixedShare) return 0.0;
+  return std::min(doubt(), options_.injected_share);
+}
+
+void Filter::resample() {
+  ++state_.step;
+  Particles& p = state_.particles;
+  RandomStream random(Draw::kResample, {state_.seed, state_.step, 0});
+  const double offset = random.uniform();
+  auto count = static_cast<std::size_t>(options_.max_particles);
+  std::vector<std::size_t> ancestors = systematic_ancestors(p.weight, count, offset);
+  if (options_.adapts_count) {
+    const double wanted = kld_sample_count(occupied_bins(p, ancestors, options_.kld), options_.kld);
+    count = static_cast<std::size_t>(
+        std::clamp(std::ceil(wanted), static_cast<double>(options_.min_particles), static_cast<double>(count)));
+    if (count != ancestors.size()) ancestors = systematic_ancestors(p.weight, count, offset);
+  }
+  Particles drawn;
+  drawn.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    drawn.set(k, p.at(ancestors[k]));
+    drawn.weight[k] = 1.0 / static_cast<double>(count);
+  }
+  p = std::move(drawn);
+  roughen(ancestors);
+  replace_some(static_cast<std::size_t>(share_to_inject() * static_cast<double>(count)),
+               [this](RandomStream& stream) { return region_.draw(stream); });
+}
+
+void Filter::roughen(std::span<const std::size_t> ancestors) {
+  if (options_.roughening_m <= 0.0) return;
+  Particles& p = state_.particles;
+  for (std::size_t k = 1; k < ancestors.size(); ++k) {
+    if (ancestors[k] != ancestors[k - 1]) continue;
+    RandomStream random(Draw::kRoughen, {state_.seed, state_.step, k});
+    p.east_m[k] += options_.roughening_m * random.normal();
+    p.north_m[k] += options_.roughening_m * random.normal();
+    const double turn = options_.roughening_heading.radians() * random.normal();
+    p.heading_rad[k] = Angle::radians(p.heading_rad[k] + turn).wrapped().radians();
+  }
+}
+
+void Filter::inject(std::span<const Proposal> proposals, double share) {
+  if (proposals.empty()) return;
+  ++state_.step;
+  replace_some(static_cast<std::size_t>(share * static_cast<double>(state_.particles.size())), ProposalDraw(proposals));
+}
+
+template <typename DrawState>
+void Filter::replace_some(std::size_t count, DrawState draw) {
+  if (count == 0) return;
+  Particles& p = state_.particles;
+  std::vector<std::size_t> places(p.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  RandomStream choice(Draw::kChoice, {state_.seed, state_.step, 0});
+  for (std::size_t k = 0; k < count; ++k) {
+    std::swap(places[k], places[k + choice.next() % (places.size() - k)]);
+    RandomStream random(Draw::kInject, {state_.seed, state_.step, k});
+    p.set(places[k], draw(random));
+    p.weight[places[k]] = 1.0 / static_cast<double>(p.size());
+  }
+  normalise(p.weight);
+}
+
+}  // namespace roadfix

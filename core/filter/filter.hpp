@@ -1,0 +1,124 @@
+// Monte Carlo localization (method.md section 4): particles that are moved, weighted and drawn anew. Knows no map:
+// whoever weights the particles says how likely the measurement is from each of them.
+//
+// The same seed and inputs give the same particles, with any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/filter/motion.hpp"
+#include "core/filter/particles.hpp"
+#include "core/filter/ranges.hpp"
+#include "core/filter/region.hpp"
+#include "core/filter/resampling.hpp"
+
+namespace roadfix {
+
+enum class Injection {
+  kFixedShare,          ///< the paper: a fixed share is drawn uniformly in every step
+  kLikelihoodAverages,  ///< as much as the measurements of late fit worse than they used to (Thrun et al.,
+                        ///< Probabilistic Robotics, table 8.3)
+};
+
+struct FilterOptions {
+  int min_particles = 1'000;
+  int max_particles = 10'000;
+  bool adapts_count = true;  ///< by KLD sampling; else always max_particles
+  KldOptions kld;
+  double effective_share = 0.5;  ///< resample when fewer are effective; 1 = after every measurement
+  Injection injection = Injection::kLikelihoodAverages;
+  double injected_share = 0.15;  ///< of kFixedShare; the most of kLikelihoodAverages
+  double slow_rate = 0.02;
+  double fast_rate = 0.2;
+  double roughening_m = 1.0;  ///< 1 sigma by which copies of a particle are moved apart
+  Angle roughening_heading = Angle::degrees(0.5);
+
+  /// The paper's: a fixed number, resampling after every measurement, 15 % drawn uniformly in every step, copies stay
+  /// copies.
+  static FilterOptions paper(int particles);
+};
+
+/// A place that a search found, to draw particles around.
+struct Proposal {
+  GridPose mean;
+  Matrix3 covariance{};  ///< of east (m), north (m), heading (rad, clockwise)
+  double weight = 1.0;
+};
+
+/// All that a filter is between two steps.
+struct FilterState {
+  Particles particles;
+  std::uint64_t seed = 0;
+  std::uint64_t step = 0;     ///< predictions and draws so far: addresses the random numbers
+  std::uint64_t resets = 0;   ///< times that the belief was thrown away
+  double slow_support = 0.5;  ///< averages of the support that measurements gave the belief
+  double fast_support = 0.5;
+  friend bool operator==(const FilterState&, const FilterState&) = default;
+};
+
+struct Correction {
+  /// Mean likelihood under the belief. Where likelihoods are ratios to chance, 1 says that the measurement fits the
+  /// belief as well as any place.
+  double mean_likelihood = 0.0;
+  bool usable = false;  ///< some particle could explain the measurement; else the weights stay
+  bool resampled = false;
+};
+
+class Filter {
+ public:
+  Filter(const FilterOptions& options, const AcceptanceRegion& region, std::uint64_t seed, int threads = 1);
+  Filter(const FilterOptions& options, const AcceptanceRegion& region, FilterState state, int threads = 1);
+
+  /// The uniform belief of the paper over a region. Counts as a reset unless it is the first.
+  void start_uniformly(const AcceptanceRegion& over);
+  /// Draws around the proposals by their weights, and the rest uniformly.
+  void start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
+
+  /// Moves the particles; those that leave the region lose their weight. Returns false where none was left and the
+  /// belief became uniform over the region.
+  template <MotionModel Motion>
+  bool predict(const Motion& motion) {
+    begin_step();
+    Particles& particles = state_.particles;
+    for_ranges(particles.size(), threads_, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        RandomStream random(Draw::kMotion, {state_.seed, state_.step, i});
+        ParticleState moved = particles.at(i);
+        motion(moved, random);
+        particles.set(i, moved);
+      }
+    });
+    return keep_within_region();
+  }
+
+  /// Weights the particles by the measurement's log-likelihood from each of them (-inf = impossible), then resamples as
+  /// the options say.
+  Correction correct(std::span<const double> log_likelihoods);
+
+  /// Replaces a share of the particles by draws around the proposals.
+  void inject(std::span<const Proposal> proposals, double share);
+  /// How much worse late measurements fit than earlier ones, in [0, 1].
+  double doubt() const;
+
+  const Particles& particles() const { return state_.particles; }
+  const FilterState& state() const { return state_; }
+
+ private:
+  void begin_step();
+  bool keep_within_region();
+  void resample();
+  void roughen(std::span<const std::size_t> ancestors);
+  double share_to_inject() const;
+  template <typename DrawState>
+  void replace_some(std::size_t count, DrawState draw);
+
+  FilterOptions options_;
+  AcceptanceRegion region_;
+  int threads_;
+  FilterState state_;
+  bool started_ = false;
+};
+
+}  // namespace roadfix

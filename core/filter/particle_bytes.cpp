@@ -1,0 +1,87 @@
+#include "core/filter/particle_bytes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x3130'5346'4652ULL;  // "RFFS01"
+constexpr std::size_t kMaxParticles = 10'000'000;
+constexpr std::size_t kColumns = 6;
+constexpr std::size_t kHeaderWords = 7;
+static_assert(std::endian::native == std::endian::little);
+
+void put(std::vector<std::byte>& bytes, std::uint64_t word) {
+  const auto* first = reinterpret_cast<const std::byte*>(&word);
+  bytes.insert(bytes.end(), first, first + sizeof word);
+}
+
+std::uint64_t word_at(std::span<const std::byte> bytes, std::size_t index) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, bytes.data() + index * sizeof word, sizeof word);
+  return word;
+}
+
+auto columns_of(auto& p) {
+  return std::array{&p.east_m, &p.north_m, &p.heading_rad, &p.drift_east_m_s, &p.drift_north_m_s, &p.weight};
+}
+
+[[noreturn]] void refuse(const char* what) {
+  throw CorruptData("filter-state-corrupt",
+                    std::string("the stored state of a filter ") + what + ": delete the track and begin a new one");
+}
+
+}  // namespace
+
+std::vector<std::byte> to_bytes(const FilterState& state) {
+  std::vector<std::byte> bytes;
+  const std::size_t count = state.particles.size();
+  bytes.reserve(sizeof(std::uint64_t) * (kHeaderWords + kColumns * count));
+  for (const std::uint64_t word :
+       {kMagic, std::uint64_t{count}, state.seed, state.step, state.resets,
+        std::bit_cast<std::uint64_t>(state.slow_support), std::bit_cast<std::uint64_t>(state.fast_support)}) {
+    put(bytes, word);
+  }
+  for (const auto* column : columns_of(state.particles)) {
+    const auto data = std::as_bytes(std::span(*column));
+    bytes.insert(bytes.end(), data.begin(), data.end());
+  }
+  return bytes;
+}
+
+FilterState filter_state_of(std::span<const std::byte> bytes) {
+  constexpr std::size_t kWord = sizeof(std::uint64_t);
+  if (bytes.size() < kWord * kHeaderWords || word_at(bytes, 0) != kMagic) refuse("is of no known version");
+  const std::uint64_t count = word_at(bytes, 1);
+  if (count == 0 || count > kMaxParticles || bytes.size() != kWord * (kHeaderWords + kColumns * count)) {
+    refuse("is not whole");
+  }
+  FilterState state;
+  state.seed = word_at(bytes, 2);
+  state.step = word_at(bytes, 3);
+  state.resets = word_at(bytes, 4);
+  state.slow_support = std::bit_cast<double>(word_at(bytes, 5));
+  state.fast_support = std::bit_cast<double>(word_at(bytes, 6));
+  state.particles.resize(count);
+  std::size_t at = kWord * kHeaderWords;
+  for (auto* column : columns_of(state.particles)) {
+    std::memcpy(column->data(), bytes.data() + at, kWord * count);
+    at += kWord * count;
+    if (!std::ranges::all_of(*column, [](double x) { return std::isfinite(x); })) refuse("holds what is no number");
+  }
+  const auto is_support = [](double x) { return x >= 0.0 && x <= 1.0; };
+  const bool has_weights = std::ranges::all_of(state.particles.weight, [](double w) { return w >= 0.0 && w <= 1.0; });
+  if (!is_support(state.slow_support) || !is_support(state.fast_support) || !has_weights) {
+    refuse("holds values that no filter has");
+  }
+  return state;
+}
+
+}  // namespace roadfix

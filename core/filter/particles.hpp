@@ -1,0 +1,52 @@
+// Weighted samples of where the UAV may be, as a structure of arrays.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/units/planar.hpp"
+
+namespace roadfix {
+
+/// Metres on the grid, radians clockwise from grid north. The drift is the velocity over ground that the motion input
+/// does not tell: wind for planar motion and odometry, the whole velocity where nothing is told.
+struct ParticleState {
+  double east_m = 0.0;
+  double north_m = 0.0;
+  double heading_rad = 0.0;
+  double drift_east_m_s = 0.0;
+  double drift_north_m_s = 0.0;
+
+  GridPose pose() const { return {{east_m, north_m}, Angle::radians(heading_rad)}; }
+  friend bool operator==(const ParticleState&, const ParticleState&) = default;
+};
+
+/// Invariant: all columns are equally long.
+struct Particles {
+  std::vector<double> east_m;
+  std::vector<double> north_m;
+  std::vector<double> heading_rad;  ///< in (-pi, pi]
+  std::vector<double> drift_east_m_s;
+  std::vector<double> drift_north_m_s;
+  std::vector<double> weight;  ///< sum to 1
+
+  std::size_t size() const { return weight.size(); }
+  void resize(std::size_t count) {
+    for (auto* column : {&east_m, &north_m, &heading_rad, &drift_east_m_s, &drift_north_m_s, &weight}) {
+      column->resize(count);
+    }
+  }
+  ParticleState at(std::size_t i) const {
+    return {east_m[i], north_m[i], heading_rad[i], drift_east_m_s[i], drift_north_m_s[i]};
+  }
+  void set(std::size_t i, const ParticleState& state) {
+    east_m[i] = state.east_m;
+    north_m[i] = state.north_m;
+    heading_rad[i] = state.heading_rad;
+    drift_east_m_s[i] = state.drift_east_m_s;
+    drift_north_m_s[i] = state.drift_north_m_s;
+  }
+  friend bool operator==(const Particles&, const Particles&) = default;
+};
+
+}  // namespace roadfix

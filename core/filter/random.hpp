@@ -1,0 +1,36 @@
+// Random numbers addressed by what they are for: the same seed, step and particle give the same numbers, whichever
+// thread asks and in whatever order.
+#pragma once
+
+#include <cstdint>
+
+namespace roadfix {
+
+/// What a stream is drawn for; streams of different purposes are independent.
+enum class Draw : std::uint64_t { kStart = 1, kMotion, kResample, kInject, kChoice, kRoughen };
+
+class RandomStream {
+ public:
+  struct Address {
+    std::uint64_t seed = 0;
+    std::uint64_t step = 0;
+    std::uint64_t index = 0;  ///< of the particle
+  };
+  RandomStream(Draw purpose, const Address& address);
+
+  /// SplitMix64 (Steele, Lea and Flood, 2014).
+  std::uint64_t next();
+  /// In [0, 1).
+  double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+  /// In [low, high).
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Standard normal by Box and Muller: std::normal_distribution differs between libraries.
+  double normal();
+
+ private:
+  std::uint64_t state_;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
+};
+
+}  // namespace roadfix

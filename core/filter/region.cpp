@@ -1,0 +1,35 @@
+#include "core/filter/region.hpp"
+
+#include <algorithm>
+
+namespace roadfix {
+namespace {
+
+/// The part of the box that a circle can reach.
+GridBox clipped(const GridBox& box, const AcceptanceRegion::Circle& circle) {
+  const auto [centre, radius] = circle;
+  return {{std::max(box.min.east_m, centre.east_m - radius), std::max(box.min.north_m, centre.north_m - radius)},
+          {std::min(box.max.east_m, centre.east_m + radius), std::min(box.max.north_m, centre.north_m + radius)}};
+}
+
+}  // namespace
+
+bool AcceptanceRegion::contains(GridPoint point) const {
+  return box.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m);
+}
+
+ParticleState AcceptanceRegion::draw(RandomStream& random) const {
+  const GridBox within = circle ? clipped(box, *circle) : box;
+  ParticleState state;
+  constexpr int kMostTries = 1000;  // a circle that only grazes the box
+  for (int i = 0; i < kMostTries; ++i) {
+    state.east_m = random.uniform(within.min.east_m, within.max.east_m);
+    state.north_m = random.uniform(within.min.north_m, within.max.north_m);
+    if (contains({state.east_m, state.north_m})) break;
+  }
+  const double half_rad = heading_half_width.radians();
+  state.heading_rad = (heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
+  return state;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,27 @@
+// Where particles may live (the paper's acceptance region), and where new ones are drawn uniformly.
+#pragma once
+
+#include <optional>
+
+#include "core/filter/particles.hpp"
+#include "core/filter/random.hpp"
+
+namespace roadfix {
+
+struct AcceptanceRegion {
+  struct Circle {
+    GridPoint centre;
+    double radius_m = 0.0;
+  };
+
+  GridBox box;                   ///< not empty
+  std::optional<Circle> circle;  ///< intersects the box in more than a point
+  Angle heading;                 ///< centre of the range
+  Angle heading_half_width = Angle::degrees(180.0);
+
+  bool contains(GridPoint point) const;
+  /// Uniform over the region and its headings, without drift.
+  ParticleState draw(RandomStream& random) const;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,62 @@
+#include "core/filter/clusters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/filter/random.hpp"
+
+namespace roadfix {
+namespace {
+
+struct Blob {
+  double east_m, north_m, heading_deg, sigma_m, sigma_deg, weight;
+};
+
+Particles particles_of(const std::vector<Blob>& blobs, int each) {
+  Particles p;
+  p.resize(blobs.size() * static_cast<std::size_t>(each));
+  std::size_t i = 0;
+  for (const Blob& blob : blobs) {
+    for (int k = 0; k < each; ++k, ++i) {
+      RandomStream random(Draw::kStart, {5, 0, i});
+      const Angle heading = Angle::degrees(blob.heading_deg + blob.sigma_deg * random.normal());
+      p.set(i, {blob.east_m + blob.sigma_m * random.normal(), blob.north_m + blob.sigma_m * random.normal(),
+                heading.wrapped().radians()});
+      p.weight[i] = blob.weight / each;
+    }
+  }
+  return p;
+}
+
+TEST(Clusters, SeparatePlacesAndHeadingsHeaviestFirst) {
+  const auto clusters =
+      clusters_of(particles_of({{0, 0, 90, 5, 2, 0.2}, {500, 0, 90, 5, 2, 0.5}, {0, 0, -90, 5, 2, 0.3}}, 2000), {});
+  ASSERT_EQ(clusters.size(), 3U);
+  EXPECT_NEAR(clusters[0].weight, 0.5, 1e-9);
+  EXPECT_NEAR(clusters[0].mean.position.east_m, 500.0, 0.6);
+  EXPECT_NEAR(clusters[1].mean.heading.degrees(), -90.0, 0.3);
+  EXPECT_NEAR(clusters[2].weight, 0.2, 1e-9);
+}
+
+TEST(Clusters, GoRoundSouth) {
+  const auto clusters = clusters_of(particles_of({{0, 0, 179.0, 3, 8, 1.0}}, 3000), {});
+  ASSERT_EQ(clusters.size(), 1U);
+  EXPECT_NEAR(std::abs(clusters[0].mean.heading.degrees()), 179.0, 1.5);
+  EXPECT_NEAR(Angle::radians(std::sqrt(clusters[0].covariance[2][2])).degrees(), 8.0, 0.6);
+}
+
+TEST(Clusters, TellSpreadAndThe95PercentRadius) {
+  const auto clusters = clusters_of(particles_of({{1e6, 4e6, 0, 6, 1, 1.0}}, 20'000), {});
+  ASSERT_EQ(clusters.size(), 1U);
+  EXPECT_NEAR(clusters[0].sigma_m(), 6.0, 0.2);
+  EXPECT_NEAR(clusters[0].radius95_m, 6.0 * std::sqrt(5.991), 0.4) << "chi-square of two degrees of freedom";
+}
+
+TEST(Clusters, LeaveOutWhatHasNoWeight) {
+  const auto clusters = clusters_of(particles_of({{0, 0, 0, 5, 1, 1.0}, {900, 0, 0, 5, 1, 0.0}}, 100), {});
+  EXPECT_EQ(clusters.size(), 1U);
+}
+
+}  // namespace
+}  // namespace roadfix

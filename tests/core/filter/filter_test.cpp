@@ -1,0 +1,194 @@
+#include "core/filter/filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/filter/clusters.hpp"
+#include "core/filter/particle_bytes.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+const AcceptanceRegion kSquare{{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)};
+
+/// Log-likelihood of seeing the place with an error of `sigma_m` per axis.
+std::vector<double> seen_at(const Particles& p, GridPoint place, double sigma_m) {
+  std::vector<double> log_likelihoods;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double off = distance_m({p.east_m[i], p.north_m[i]}, place) / sigma_m;
+    log_likelihoods.push_back(-0.5 * off * off);
+  }
+  return log_likelihoods;
+}
+
+struct Moments {
+  GridPoint mean;
+  double variance_east = 0.0;
+};
+
+Moments moments(const Particles& p) {
+  Moments m;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    m.mean.east_m += p.weight[i] * p.east_m[i];
+    m.mean.north_m += p.weight[i] * p.north_m[i];
+  }
+  for (std::size_t i = 0; i < p.size(); ++i) m.variance_east += p.weight[i] * std::pow(p.east_m[i] - m.mean.east_m, 2);
+  return m;
+}
+
+TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
+  FilterOptions options;
+  options.max_particles = options.min_particles = 20'000;
+  options.injection = Injection::kLikelihoodAverages;
+  options.injected_share = 0.0;
+  options.roughening_m = 0.0;
+  Filter filter(options, kSquare, 11);
+  const Proposal start{{{300.0, 400.0}, Angle()}, {{{100.0, 0, 0}, {0, 100.0, 0}, {0, 0, 0}}}, 1.0};
+  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  double mean = 300.0;
+  double variance = 100.0;
+  for (int step = 0; step < 10; ++step) {
+    // Heading north: 5 m to the right is 5 m east.
+    filter.predict(OdometryMotion({20.0, 5.0, Angle()}, {{{4.0, 0, 0}, {0, 9.0, 0}, {0, 0, 0}}}));
+    mean += 5.0;
+    variance += 9.0;
+    const double seen_east = 308.0 + 5.0 * step;
+    filter.correct(seen_at(filter.particles(), {seen_east, 421.0 + 20.0 * step}, 8.0));
+    const double gain = variance / (variance + 64.0);
+    mean += gain * (seen_east - mean);
+    variance *= 1.0 - gain;
+    const Moments m = moments(filter.particles());
+    EXPECT_NEAR(m.mean.east_m, mean, 0.3) << "step " << step;
+    EXPECT_NEAR(m.variance_east, variance, 0.08 * variance) << "step " << step;
+  }
+}
+
+TEST(Filter, ThePapersDrawsFifteenPercentUniformlyInEveryStepAndKeepsItsNumber) {
+  Filter filter(FilterOptions::paper(2000), kSquare, 3);
+  const Proposal far{{{10.0, 10.0}, Angle()}, {}, 1.0};
+  filter.start_from(std::span(&far, 1), 0.0, kSquare);
+  filter.predict(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 1.0});
+  const auto moved_away = [&] {
+    const Particles& p = filter.particles();
+    int count = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) count += p.east_m[i] != 10.0 ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(moved_away(), 300);
+  EXPECT_EQ(filter.particles().size(), 2000U);
+  EXPECT_TRUE(filter.correct(std::vector<double>(2000, 0.0)).resampled);
+}
+
+TEST(Filter, GivesTheSameParticlesFromTheSameSeedWithAnyNumberOfThreads) {
+  const auto run = [](std::uint64_t seed, int threads) {
+    Filter filter({}, kSquare, seed, threads);
+    filter.start_uniformly(kSquare);
+    for (int step = 0; step < 5; ++step) {
+      filter.predict(PlanarMotion{{20.0, 2.0}, {0.0, 0.05}, 1.0, 0.1});
+      filter.correct(seen_at(filter.particles(), {500.0, 300.0 + 20.0 * step}, 30.0));
+    }
+    return filter.state();
+  };
+  EXPECT_EQ(run(1, 1), run(1, 4));
+  EXPECT_NE(run(1, 1), run(2, 1));
+}
+
+TEST(Filter, NeedsFewerParticlesOnceItKnowsWhereItIs) {
+  Filter filter({}, kSquare, 1);
+  filter.start_uniformly(kSquare);
+  EXPECT_EQ(filter.particles().size(), 10'000U);
+  for (int step = 0; step < 5; ++step) {
+    filter.predict(PlanarMotion{{0.0, 0.5}, {0.0, 0.01}, 1.0});
+    filter.correct(seen_at(filter.particles(), {500.0, 300.0}, 15.0));
+  }
+  EXPECT_EQ(filter.particles().size(), 1'000U);
+}
+
+TEST(Filter, TakesParticlesThatLeaveTheRegionOutOfTheBelief) {
+  Filter filter({}, kSquare, 1);
+  const Proposal at_edge{{{990.0, 500.0}, Angle::degrees(90.0)}, {{{100.0, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, 1.0};
+  filter.start_from(std::span(&at_edge, 1), 0.0, kSquare);
+  EXPECT_TRUE(filter.predict(OdometryMotion({5.0, 0.0, Angle()}, {})));
+  double within = 0.0;
+  const Particles& p = filter.particles();
+  for (std::size_t i = 0; i < p.size(); ++i) within += p.east_m[i] <= 1000.0 ? p.weight[i] : 0.0;
+  EXPECT_NEAR(within, 1.0, 1e-9);
+  EXPECT_FALSE(filter.predict(OdometryMotion({5000.0, 0.0, Angle()}, {}))) << "nobody is left";
+  EXPECT_EQ(filter.state().resets, 1U);
+  EXPECT_NEAR(moments(filter.particles()).mean.east_m, 500.0, 20.0) << "the belief is uniform again";
+}
+
+TEST(Filter, KeepsItsBeliefWhereNothingCouldExplainTheMeasurement) {
+  Filter filter({}, kSquare, 1);
+  filter.start_uniformly(kSquare);
+  const FilterState before = filter.state();
+  const std::vector<double> impossible(before.particles.size(), -std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(filter.correct(impossible).usable);
+  EXPECT_EQ(filter.state(), before);
+}
+
+TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
+  Filter filter({}, kSquare, 1);
+  const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
+  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  const auto feed = [&](double log_ratio, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      filter.predict(PlanarMotion{{0.0, 0.1}, {0.0, 0.01}, 1.0});
+      filter.correct(std::vector<double>(filter.particles().size(), log_ratio));
+    }
+  };
+  feed(4.0, 60);
+  EXPECT_LT(filter.doubt(), 0.05);
+  EXPECT_EQ(clusters_of(filter.particles(), {}).size(), 1U);
+  feed(-3.0, 15);
+  EXPECT_GT(filter.doubt(), 0.3);
+  EXPECT_GT(clusters_of(filter.particles(), {}).size(), 20U);
+}
+
+TEST(Filter, InjectsProposalsOfASearch) {
+  Filter filter({}, kSquare, 1);
+  const Proposal here{{{300.0, 300.0}, Angle()}, {}, 1.0};
+  filter.start_from(std::span(&here, 1), 0.0, kSquare);
+  const Proposal there{{{800.0, 700.0}, Angle::degrees(45.0)}, {{{4.0, 0, 0}, {0, 4.0, 0}, {0, 0, 1e-4}}}, 1.0};
+  filter.inject(std::span(&there, 1), 0.25);
+  const auto clusters = clusters_of(filter.particles(), {});
+  ASSERT_EQ(clusters.size(), 2U);
+  EXPECT_NEAR(clusters[1].weight, 0.25, 1e-9);
+  EXPECT_NEAR(clusters[1].mean.position.east_m, 800.0, 1.0);
+}
+
+TEST(FilterState, ComesBackFromItsBytesAndGoesOnTheSame) {
+  Filter filter({}, kSquare, 5);
+  filter.start_uniformly(kSquare);
+  const auto step = [](Filter& f) {
+    f.predict(PlanarMotion{{20.0, 2.0}, {0.0, 0.05}, 1.0, 0.1});
+    f.correct(seen_at(f.particles(), {500.0, 300.0}, 30.0));
+  };
+  step(filter);
+  Filter copy({}, kSquare, filter_state_of(to_bytes(filter.state())));
+  EXPECT_EQ(copy.state(), filter.state());
+  step(filter);
+  step(copy);
+  EXPECT_EQ(copy.state(), filter.state());
+}
+
+TEST(FilterState, RefusesBytesThatAreCutOrDamaged) {
+  Filter filter({}, kSquare, 5);
+  filter.start_uniformly(kSquare);
+  const std::vector<std::byte> whole = to_bytes(filter.state());
+  for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{60}, whole.size() - 1}) {
+    EXPECT_THROW(filter_state_of(std::span(whole).first(size)), CorruptData) << size;
+  }
+  for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{47}, whole.size() - 1}) {
+    std::vector<std::byte> damaged = whole;
+    damaged[at] = std::byte{0x7f};
+    damaged[at - at % 8 + 6] = std::byte{0xf8};
+    EXPECT_THROW(filter_state_of(damaged), CorruptData) << at;
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,141 @@
+#include "core/filter/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+ParticleState moved(const auto& motion, ParticleState state = {}, std::uint64_t index = 0) {
+  RandomStream random(Draw::kMotion, {7, 1, index});
+  motion(state, random);
+  return state;
+}
+
+struct Moments {
+  std::array<double, 3> mean{};
+  Matrix3 covariance{};
+};
+
+constexpr int kSamples = 40'000;
+
+/// Of east, north and heading over many particles.
+Moments moments(const auto& motion) {
+  std::vector<std::array<double, 3>> ends;
+  Moments m;
+  for (int i = 0; i < kSamples; ++i) {
+    const ParticleState s = moved(motion, {}, static_cast<std::uint64_t>(i));
+    ends.push_back({s.east_m, s.north_m, s.heading_rad});
+    for (std::size_t a = 0; a < 3; ++a) m.mean[a] += ends.back()[a] / kSamples;
+  }
+  for (const auto& end : ends) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) m.covariance[a][b] += (end[a] - m.mean[a]) * (end[b] - m.mean[b]) / kSamples;
+    }
+  }
+  return m;
+}
+
+TEST(PlanarMotion, FollowsEquation4AsManySmallEulerStepsDo) {
+  const double v = 20.0;
+  const double w = 0.3;
+  const double seconds = 4.0;
+  const ParticleState end = moved(PlanarMotion{{v, 0.0}, {w, 0.0}, seconds}, {5.0, -3.0, 0.7});
+  ParticleState euler{5.0, -3.0, 0.7};
+  const int steps = 1'000'000;
+  for (int i = 0; i < steps; ++i) {
+    const double dt = seconds / steps;
+    euler.east_m += dt * v * std::sin(euler.heading_rad);
+    euler.north_m += dt * v * std::cos(euler.heading_rad);
+    euler.heading_rad += dt * w;
+  }
+  EXPECT_NEAR(end.east_m, euler.east_m, 1e-3);
+  EXPECT_NEAR(end.north_m, euler.north_m, 1e-3);
+  EXPECT_NEAR(end.heading_rad, euler.heading_rad, 1e-9);
+}
+
+TEST(PlanarMotion, TurnsOnTheSpot) {
+  const ParticleState end = moved(PlanarMotion{{0.0, 0.0}, {kPi / 2.0, 0.0}, 1.0}, {1.0, 2.0, 0.0});
+  EXPECT_NEAR(end.east_m, 1.0, 1e-12);
+  EXPECT_NEAR(end.north_m, 2.0, 1e-12);
+  EXPECT_NEAR(end.heading_rad, kPi / 2.0, 1e-12);
+}
+
+TEST(PlanarMotion, SpreadsSpeedAndTurnRateNormally) {
+  const Moments m = moments(PlanarMotion{{10.0, 2.0}, {0.0, 0.01}, 3.0});
+  // Sampling error of a mean is sigma / sqrt(n), of a variance sigma^2 sqrt(2 / n): five times that.
+  const double n = kSamples;
+  EXPECT_NEAR(m.mean[1], 30.0, 5.0 * 6.0 / std::sqrt(n) + 0.01);
+  EXPECT_NEAR(m.covariance[1][1], 36.0, 36.0 * 5.0 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(m.covariance[2][2], 0.0009, 0.0009 * 5.0 * std::sqrt(2.0 / n));
+}
+
+TEST(PlanarMotion, CarriesParticlesWithTheirWind) {
+  const ParticleState end = moved(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 2.0}, {0, 0, 0, 3.0, -1.0});
+  EXPECT_NEAR(end.east_m, 6.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -2.0, 1e-12);
+}
+
+TEST(OdometryMotion, MovesInTheBodyFrame) {
+  const ParticleState end =
+      moved(OdometryMotion({10.0, 2.0, Angle::degrees(30.0)}, {}), {0.0, 0.0, Angle::degrees(90.0).radians()});
+  EXPECT_NEAR(end.east_m, 10.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -2.0, 1e-12);
+  EXPECT_NEAR(Angle::radians(end.heading_rad).degrees(), 120.0, 1e-9);
+}
+
+TEST(OdometryMotion, SpreadsAsItsCovarianceSays) {
+  const OdometryCovariance covariance{{{4.0, 1.0, 0.02}, {1.0, 1.0, -0.03}, {0.02, -0.03, 0.01}}};
+  const Moments m = moments(OdometryMotion({50.0, 0.0, Angle()}, covariance));
+  // Heading 0: east is right, north is forward.
+  const double tolerance = 5.0 * std::sqrt(2.0 / kSamples);
+  EXPECT_NEAR(m.covariance[1][1], 4.0, 4.0 * tolerance);
+  EXPECT_NEAR(m.covariance[0][0], 1.0, tolerance);
+  EXPECT_NEAR(m.covariance[0][1], 1.0, 2.0 * tolerance);
+  EXPECT_NEAR(m.covariance[1][2], 0.02, 0.2 * tolerance);
+  EXPECT_NEAR(m.covariance[0][2], -0.03, 0.1 * tolerance);
+}
+
+TEST(OdometryMotion, TakesACovarianceThatLeavesADirectionWithoutError) {
+  const OdometryCovariance rank1{{{4.0, 2.0, 0.0}, {2.0, 1.0, 0.0}, {0.0, 0.0, 0.0}}};
+  const ParticleState end = moved(OdometryMotion({0.0, 0.0, Angle()}, rank1));
+  EXPECT_NEAR(end.north_m, 2.0 * end.east_m, 1e-9);
+  EXPECT_EQ(end.heading_rad, 0.0);
+}
+
+std::string refusal(const Odometry& odometry, const OdometryCovariance& covariance) {
+  try {
+    const OdometryMotion motion(odometry, covariance);
+  } catch (const InvalidInput& error) {
+    return error.code();
+  }
+  return "taken";
+}
+
+TEST(OdometryMotion, RefusesWhatIsNoCovarianceAndNoNumber) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal({}, {{{-1.0, 0, 0}, {0, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive");
+  EXPECT_EQ(refusal({}, {{{1.0, 2.0, 0}, {2.0, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive");
+  EXPECT_EQ(refusal({}, {{{1.0, 0.5, 0}, {0.0, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive") << "not symmetric";
+  EXPECT_EQ(refusal({}, {{{0.0, 0.5, 0}, {0.5, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive");
+  EXPECT_EQ(refusal({kNaN, 0.0, Angle()}, {}), "odometry-not-finite");
+  EXPECT_EQ(refusal({}, {{{kNaN, 0, 0}, {0, 1.0, 0}, {0, 0, 1.0}}}), "odometry-not-finite");
+  EXPECT_EQ(refusal({}, {}), "taken");
+}
+
+TEST(ConstantVelocityMotion, GoesOnAsItWent) {
+  const ParticleState end = moved(ConstantVelocityMotion{2.0, 0.0, 0.0}, {1.0, 1.0, 0.5, 10.0, -4.0});
+  EXPECT_NEAR(end.east_m, 21.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -7.0, 1e-12);
+  EXPECT_EQ(end.heading_rad, 0.5);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/units/error.hpp"
@@ -29,6 +30,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 struct Columns {
   std::array<std::size_t, 5> place{};
+  std::optional<std::size_t> sequence;
   static constexpr std::array<std::string_view, 5> kNames{"file", "lat", "lon", "heading_deg", "gsd_m"};
 
   static Columns of(std::string_view header) {
@@ -39,6 +41,8 @@ struct Columns {
       if (found == names.end()) refuse(1, fmt::format("the column '{}' is missing", kNames[i]));
       columns.place[i] = static_cast<std::size_t>(found - names.begin());
     }
+    const auto found = std::ranges::find(names, "sequence");
+    if (found != names.end()) columns.sequence = static_cast<std::size_t>(found - names.begin());
     return columns;
   }
 };
@@ -60,7 +64,8 @@ FrameTruth parse_line(std::string_view text, int line, const Columns& columns) {
   };
   return {std::string(fields[columns.place[0]]),
           {{value(1, -90.0, 90.0), value(2, -180.0, 180.0)}, Angle::degrees(value(3, -360.0, 360.0))},
-          value(4, 1e-3, 1e3)};
+          value(4, 1e-3, 1e3),
+          columns.sequence && *columns.sequence < fields.size() ? std::string(fields[*columns.sequence]) : ""};
 }
 
 }  // namespace

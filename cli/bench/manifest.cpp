@@ -145,7 +145,7 @@ void parse_footprint_and_count(const Field& field, QuerySet& set) {
 
 QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
   field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved", "from",
-                    "elsewhere"});
+                    "elsewhere", "together"});
   QuerySet set;
   const auto map_name = [&](const std::string& key) {
     std::string name = field.at(key).text();
@@ -170,6 +170,10 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
   if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
   if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
   if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
+  if (field.has("together")) {
+    if (set.kind != QuerySet::Kind::kFrames) field.at("together").refuse("needs 'frames'");
+    set.together = static_cast<int>(field.at("together").number(1.0, 64.0));
+  }
   if (field.has("prior") && field.at("prior").is_object()) {
     field.at("prior").allow_only({"radius_m"});
     set.prior_radius_m = field.at("prior").at("radius_m").number(1.0, 1e6);

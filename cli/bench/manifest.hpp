@@ -51,6 +51,7 @@ struct QuerySet {
   std::string from;        ///< map that simulated feature maps are cut out of; `map` by default
   bool elsewhere = false;  ///< the queries show ground that is not on the map: every fix is a false one
   bool black_is_unobserved = false;
+  int together = 1;  ///< each frame with so many less one of its sequence before it, laid together by their true poses
   std::optional<double> prior_radius_m;  ///< nullopt = the whole map
 };
 

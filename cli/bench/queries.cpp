@@ -92,7 +92,7 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}};
+    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
     query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map.zone, random);
     queries.push_back(std::move(query));
@@ -118,7 +118,7 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("simulated/{:04}", i), {}, {}, truth_of(pose, set, map.zone), {}};
+    Query query{fmt::format("simulated/{:04}", i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
     const FeatureQuality quality = draw(set.noise, random);
     query.features =
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
@@ -128,6 +128,36 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
   return queries;
 }
 
+GroundImage picture_of(const FrameTruth& frame, const QuerySet& set) {
+  const cv::Mat decoded = cv::imread((set.path.parent_path() / frame.file).string(), cv::IMREAD_UNCHANGED);
+  if (decoded.empty())
+    throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
+  return frame_image(decoded, frame.gsd_m, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
+}
+
+/// As odometry without error would tell it.
+BodyOffset offset_of(const GeoPose& earlier, const GeoPose& reference, const UtmZone& zone) {
+  const GridPoint from = zone.project(reference.position);
+  const GridPoint to = zone.project(earlier.position);
+  const Angle heading = zone.grid_from_true(reference.heading, from);
+  const double east = to.east_m - from.east_m;
+  const double north = to.north_m - from.north_m;
+  return {east * sin(heading) + north * cos(heading), east * cos(heading) - north * sin(heading),
+          zone.grid_from_true(earlier.heading, to) - heading};
+}
+
+std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
+                                        const UtmZone& zone) {
+  std::vector<EarlierFrame> earlier;
+  const FrameTruth& reference = frames[index];
+  while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
+    const FrameTruth& frame = frames[--index];
+    if (frame.sequence != reference.sequence) break;
+    earlier.push_back({picture_of(frame, set), offset_of(frame.pose, reference.pose, zone)});
+  }
+  return earlier;
+}
+
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
   std::ifstream in(set.path, std::ios::binary);
   if (!in) throw NotFound("frames-missing", fmt::format("{} cannot be opened", set.path.string()));
@@ -135,15 +165,13 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
-    const cv::Mat decoded = cv::imread((set.path.parent_path() / frame.file).string(), cv::IMREAD_UNCHANGED);
-    if (decoded.empty())
-      throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
-    Query query{frame.file.string(), {}, {}, frame.pose, {}};
+    Query query{frame.file.string(), {}, {}, frame.pose, {}, {}};
     if (set.elsewhere) query.truth.reset();
-    query.picture = frame_image(decoded, frame.gsd_m, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
+    query.picture = picture_of(frame, set);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position), set,
                                map.zone, random);
+    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, map.zone);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -165,7 +193,10 @@ std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const M
 }
 
 std::string describe(const QuerySet& set) {
-  if (set.kind == QuerySet::Kind::kFrames) return set.path.filename().string();
+  if (set.kind == QuerySet::Kind::kFrames) {
+    const std::string name = set.path.filename().string();
+    return set.together > 1 ? fmt::format("{} {} together", name, set.together) : name;
+  }
   const std::string what = set.kind == QuerySet::Kind::kSimulated ? "simulated" : set.path.filename().string();
   return fmt::format("{} {}x{} m", what, set.footprint.width_m, set.footprint.height_m);
 }

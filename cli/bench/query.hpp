@@ -3,11 +3,19 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/detect/orthoimage.hpp"
+#include "core/grid/combine.hpp"
 #include "core/locate/fix.hpp"
 
 namespace roadfix::bench {
+
+/// A frame taken before the one that is asked about, and where.
+struct EarlierFrame {
+  GroundImage picture;
+  BodyOffset offset;
+};
 
 struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
@@ -15,6 +23,7 @@ struct Query {
   std::optional<FeatureMap> features;  ///< instead of a picture where the query is simulated
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
+  std::vector<EarlierFrame> earlier;  ///< to be laid together with `picture`
 };
 
 struct Answer {

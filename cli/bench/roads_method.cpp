@@ -14,10 +14,7 @@ class RoadsMethod : public Method {
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
-    const FeatureMap features =
-        query.features ? *query.features
-                       : detect_features(detector_, rectified(*query.picture), options_.cell_m, options_.seed);
-    const Fix fix = locate(map_, features, query.prior, options_.fix);
+    const Fix fix = locate(map_, features_of(query), query.prior, options_.fix);
     Answer answer{fix.status, fix.reason, {}, fix.probability, 0.0};
     if (!fix.modes.empty()) answer.best = fix.modes.front().pose;
     answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -25,6 +22,19 @@ class RoadsMethod : public Method {
   }
 
  private:
+  FeatureMap detected(const GroundImage& picture) const {
+    return detect_features(detector_, rectified(picture), options_.cell_m, options_.seed);
+  }
+
+  FeatureMap features_of(const Query& query) const {
+    constexpr double kMostCells = 25e6;
+    if (query.features) return *query.features;
+    if (query.earlier.empty()) return detected(*query.picture);
+    std::vector<PlacedFeatures> parts{{detected(*query.picture), {}}};
+    for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.picture), frame.offset});
+    return combined(parts, kMostCells);
+  }
+
   const MapView& map_;
   const RoadDetector& detector_;
   RoadsOptions options_;

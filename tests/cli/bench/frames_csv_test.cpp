@@ -19,6 +19,12 @@ TEST(FramesCsv, FindsItsColumnsByName) {
   EXPECT_NEAR(frames[0].pose.heading.degrees(), 90, 1e-12);
 }
 
+TEST(FramesCsv, KnowsTheSequenceWhereThereIsOne) {
+  const auto frames = parse_frames_csv("file,lat,lon,heading_deg,gsd_m,sequence\na,1,1,0,1,flight\nb,1,1,0,1\n");
+  EXPECT_EQ(frames.at(0).sequence, "flight");
+  EXPECT_EQ(frames.at(1).sequence, "");
+}
+
 TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   const auto complaint = [](const char* text, const char* part) {
     EXPECT_THAT([&] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stop_token>
@@ -107,6 +108,28 @@ TEST_F(BenchRun, PlacesSimulatedFeatureMapsAndRealFrames) {
   EXPECT_EQ(results[1].outcomes.at(0).id, "frame.png");
   EXPECT_LT(*results[1].outcomes.at(0).error_m, 3.0);
   EXPECT_LT(*results[1].outcomes.at(0).heading_error_deg, 1.0);
+}
+
+TEST_F(BenchRun, LaysFramesOfOneSequenceTogetherByTheirPoses) {
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  const cv::Mat picture = cv::imread(folder / "town.png");
+  std::ofstream csv(folder / "flight.csv");
+  csv << std::setprecision(10) << "sequence,file,lat,lon,heading_deg,gsd_m\n";
+  for (int i = 0; i < 3; ++i) {
+    cv::Mat frame = picture(cv::Rect(200 + 70 * i, 300, 110, 110)).clone();
+    if (i == 1) cv::rotate(frame, frame, cv::ROTATE_90_CLOCKWISE);  // its forward edge looks west
+    const std::string name = "flight" + std::to_string(i) + ".png";
+    cv::imwrite(folder / name, frame);
+    const GridPoint centre{400255.0 + 70 * i, 3999645.0};
+    const LatLon at = zone.unproject(centre);
+    csv << "a," << name << ',' << at.lat_deg << ',' << at.lon_deg << ','
+        << zone.true_from_grid(Angle::degrees(i == 1 ? -90.0 : 0.0), centre).degrees() << ",1\n";
+  }
+  csv.close();
+  const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
+  EXPECT_EQ(results.at(0).query_set, "flight.csv 3 together");
+  EXPECT_LT(*results[0].outcomes.at(2).error_m, 3.0);
+  EXPECT_LT(*results[0].outcomes.at(2).heading_error_deg, 1.0);
 }
 
 TEST_F(BenchRun, CountsEveryFixOfGroundThatIsNotOnTheMapAsFalse) {

@@ -1,6 +1,7 @@
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/flight_request.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -15,7 +16,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
       api::read_content(request, joined(query_fields(), api::picture_members()), service.limits);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
-  const api::Features features = api::features_of(content, service.detector, map->view.cell_m, service.limits);
+  const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
   options.threads = service.search_threads;
   options.time_limit = api::time_left(request.deadline);
   return json_response(api::to_json(locate(map->view, features.map, prior, options), features.detect_time));

@@ -2,6 +2,7 @@
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/flight_request.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -20,7 +21,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
   options.threads = service.search_threads;
-  const api::Features features = api::features_of(content, service.detector, map->view.cell_m, service.limits);
+  const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
   const api::TimeLimit limit(request.deadline);
   options.stop = limit.token();
   const std::vector<MatchScore> scores = match(map->view, features.map, poses, options);

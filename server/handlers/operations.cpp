@@ -20,6 +20,7 @@ http::Response limits(const Service& service) {
                         {"search_km2", service.limits.search_km2},
                         {"json_depth", service.limits.json_depth},
                         {"modes", service.limits.modes},
+                        {"frames", service.limits.frames},
                         {"request_time_ms", service.http.request_time.count()},
                         {"searches_at_once", service.http.heavy_running},
                         {"searches_waiting", service.http.heavy_waiting}});

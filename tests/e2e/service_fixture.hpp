@@ -25,9 +25,10 @@ struct Town {
   double heading_deg = zone.true_from_grid(pose.heading, pose.position).compass_degrees();
 
   /// Feature map of a flight over the pose, 2 m cells, as PNG.
-  std::string seen() const {
+  std::string seen() const { return seen_from(pose, 160); }
+  std::string seen_from(const GridPose& from, int side) const {
     std::mt19937_64 random(42);
-    return text_of(encode_feature_map(observed_at(roads, pose, 160, 160, 2.0, {0.1, 0.1}, random).cells));
+    return text_of(encode_feature_map(observed_at(roads, from, side, side, 2.0, {0.1, 0.1}, random).cells));
   }
 };
 

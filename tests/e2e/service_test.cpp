@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
+#include "server/api/base64.hpp"
 #include "server/api/web_mercator.hpp"
 #include "tests/e2e/service_fixture.hpp"
 
@@ -91,6 +92,42 @@ TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
     EXPECT_EQ(fix["geometry"]["type"], "Point");
     EXPECT_GT(fix["probability"], 0.99);
   }
+}
+
+TEST_F(Service, LaysFramesOfAFlightTogether) {
+  const auto base64 = [](const std::string& bytes) {
+    return api::base64_encoded({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  };
+  const double forward_m = -120.0;
+  const GridPose earlier{{town->pose.position.east_m + sin(town->pose.heading) * forward_m,
+                          town->pose.position.north_m + cos(town->pose.heading) * forward_m},
+                         town->pose.heading + Angle::degrees(15)};
+  json request{{"cell_m", 2}, {"image", base64(town->seen_from(town->pose, 100))}};
+  const json alone = testing::json_of(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
+  const json frame{
+      {"image", base64(town->seen_from(earlier, 100))}, {"forward_m", forward_m}, {"right_m", 0}, {"turn_deg", 15}};
+  request["also"] = json::array({frame});
+  const json fix = testing::json_of(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
+  ASSERT_FALSE(fix["modes"].empty()) << fix;
+  expect_pose(fix["modes"][0]["pose"], town->place, town->heading_deg, 6.0, 2.0);
+  EXPECT_GT(fix["modes"][0]["observed_cells"], 1.3 * alone["modes"][0]["observed_cells"].get<double>());
+
+  const auto refusal = [&](const json& also) {
+    request["also"] = also;
+    return testing::refusal(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
+  };
+  EXPECT_EQ(refusal(7), "400 bad-parameter also");
+  EXPECT_EQ(refusal(json::array({frame, 7})), "400 bad-parameter also[1]");
+  EXPECT_EQ(refusal(json(std::vector<json>(16, frame))), "422 too-many-frames");
+  json bent = frame;
+  bent["turn_deg"] = "left";
+  EXPECT_EQ(refusal(json::array({bent})), "400 bad-parameter also[0].turn_deg");
+  bent = frame;
+  bent["image"] = "!";
+  EXPECT_EQ(refusal(json::array({bent})), "400 bad-base64 also[0].image");
+  bent = frame;
+  bent["right_m"] = bent["forward_m"] = 9e4;
+  EXPECT_EQ(refusal(json::array({bent})), "422 frames-too-far-apart");
 }
 
 TEST_F(Service, SearchesOnlyWhereThePriorAllows) {

@@ -1,0 +1,83 @@
+#include "server/api/flight_request.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "core/grid/combine.hpp"
+#include "core/units/error.hpp"
+#include "server/api/base64.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+using nlohmann::json;
+
+double number_of(const json& frame, const char* name, const std::string& place, double most) {
+  const auto found = frame.find(name);
+  const double value = found != frame.end() && found->is_number() ? found->get<double>() : std::nan("");
+  if (!(std::abs(value) <= most)) {
+    const std::string field = fmt::format("{}.{}", place, name);
+    throw InvalidField("bad-parameter", field, fmt::format("'{}' must be a number from {} to {}", field, -most, most));
+  }
+  return value;
+}
+
+std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place) {
+  const std::string field = place + ".image";
+  const auto found = frame.find("image");
+  if (found == frame.end() || !found->is_string()) {
+    throw InvalidField("missing-parameter", field, fmt::format("'{}' must be a picture in base64", field));
+  }
+  Base64Result result = base64_decoded(found->get<std::string>());
+  if (result.bad_byte) {
+    throw InvalidField("bad-base64", field,
+                       fmt::format("'{}' is not base64: character {} does not belong there", field, *result.bad_byte),
+                       result.bad_byte);
+  }
+  return std::move(result.bytes);
+}
+
+BodyOffset offset_of(const json& frame, const std::string& place) {
+  constexpr double kFarthestM = 1e5;
+  return {number_of(frame, "forward_m", place, kFarthestM), number_of(frame, "right_m", place, kFarthestM),
+          Angle::degrees(number_of(frame, "turn_deg", place, 360.0))};
+}
+
+const json& others_of(const Content& content, const Limits& limits) {
+  const json* others = content.fields.member("also");
+  if (others == nullptr || !others->is_array()) {
+    throw InvalidField("bad-parameter", "also", "'also' must be a list of frames in a JSON body or the part 'request'");
+  }
+  if (others->size() >= static_cast<std::size_t>(limits.frames)) {
+    throw LimitExceeded("too-many-frames",
+                        fmt::format("{} frames together are more than {}", others->size() + 1, limits.frames));
+  }
+  return *others;
+}
+
+}  // namespace
+
+Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
+                            const Limits& limits) {
+  Features first = features_of(content, detector, default_cell_m, limits);
+  if (!content.fields.has("also")) return first;
+  std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
+  for (const json& frame : others_of(content, limits)) {
+    const std::string place = fmt::format("also[{}]", parts.size() - 1);
+    if (!frame.is_object() || frame.size() != 4) {
+      throw InvalidField("bad-parameter", place, "a frame is an object with image, forward_m, right_m and turn_deg");
+    }
+    const BodyOffset offset = offset_of(frame, place);
+    const Content other{content.fields, picture_of(frame, place)};
+    Features features = features_of(other, detector, default_cell_m, limits);
+    parts.push_back({std::move(features.map), offset});
+    if (first.detect_time) *first.detect_time += features.detect_time.value();
+  }
+  return {combined(parts, static_cast<double>(limits.cells)), first.detect_time};
+}
+
+}  // namespace roadfix::api

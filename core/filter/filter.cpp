@@ -73,6 +73,10 @@ void Filter::start_uniformly(const AcceptanceRegion& over) { start_from({}, 1.0,
 
 void Filter::start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over) {
   if (std::exchange(started_, true)) ++state_.resets;
+  restart_from(proposals, uniform_share, over);
+}
+
+void Filter::restart_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over) {
   ++state_.step;
   state_.slow_support = state_.fast_support = 0.5;
   const ProposalDraw around(proposals);

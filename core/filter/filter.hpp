@@ -73,8 +73,10 @@ class Filter {
 
   /// The uniform belief of the paper over a region. Counts as a reset unless it is the first.
   void start_uniformly(const AcceptanceRegion& over);
-  /// Draws around the proposals by their weights, and the rest uniformly.
+  /// Draws around the proposals by their weights, and the rest uniformly. Counts as start_uniformly() does.
   void start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
+  /// The same where a search tells more about a belief that has just begun; no further reset.
+  void restart_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
 
   /// Moves the particles; those that leave the region lose their weight. Returns false where none was left and the
   /// belief became uniform over the region.

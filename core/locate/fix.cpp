@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/locate/decision.hpp"
+#include "core/locate/ellipse.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/match/score.hpp"
 #include "core/units/error.hpp"
@@ -43,22 +44,10 @@ bool hopeless(const FeatureMap& features, Fix& fix) {
   return false;
 }
 
-struct Ellipse {
-  std::array<double, 2> sigma_m;
-  Angle heading;  ///< of the major axis, clockwise from grid north
-};
-
-Ellipse ellipse_of(double east2, double north2, double east_north) {
-  const double mean = 0.5 * (east2 + north2);
-  const double split = std::hypot(0.5 * (north2 - east2), east_north);
-  const double along_north = 0.5 * std::atan2(2.0 * east_north, north2 - east2);
-  return {{std::sqrt(mean + split), std::sqrt(std::max(0.0, mean - split))}, Angle::radians(along_north)};
-}
-
 FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const auto& c = mode.covariance;
-  const Ellipse ellipse = ellipse_of(c[0][0] + registration2, c[1][1] + registration2, c[0][1]);
+  const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
   const GridPoint at = mode.pose.position;
   FixMode result;
   result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};

@@ -1,0 +1,43 @@
+#include "core/locate/evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+/// Sum over the cells of log P(l | m) - log P(l | chance).
+double detection_evidence(const MatchSums& s, double a, double b) {
+  const auto n = static_cast<double>(s.n);
+  const double average = std::clamp(s.l / n, 1e-3, 1.0 - 1e-3);
+  const double hit = std::log(a) - std::log(average);
+  const double false_alarm = std::log(b) - std::log(average);
+  const double miss = std::log1p(-a) - std::log1p(-average);
+  const double quiet = std::log1p(-b) - std::log1p(-average);
+  return s.ml * hit + (s.l - s.ml) * false_alarm + (s.m - s.ml) * miss + (n - s.m - s.l + s.ml) * quiet;
+}
+
+}  // namespace
+
+double EvidenceModel::log_likelihood(const MatchSums& sums, double cell_m) const {
+  if (kind == EvidenceKind::kEquation7) return std::log(likelihood(rho(sums).value_or(0.0)));
+  if (sums.n == 0) return 0.0;
+  const double samples_per_cell = std::min(1.0, cell_m * cell_m / independent_m2);
+  double evidence = 0.0;
+  if (kind == EvidenceKind::kDetectionRates) {
+    evidence = samples_per_cell * detection_evidence(sums, detection_rate, false_rate);
+  } else {
+    const double samples = samples_per_cell * static_cast<double>(sums.n);
+    const double r = pearson(sums).value_or(0.0);
+    evidence = samples * expected_correlation * (r - 0.5 * expected_correlation);
+  }
+  // exp() cannot overflow: evidence is at most a few thousand samples times a fraction, so it is bounded first.
+  constexpr double kMost = 300.0;
+  return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * evidence, kMost)));
+}
+
+bool EvidenceModel::supports(double mean_likelihood) const {
+  return mean_likelihood > (kind == EvidenceKind::kEquation7 ? 0.0 : 1.0);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,319 @@
+#include "core/locate/tracker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/locate/ellipse.hpp"
+#include "core/locate/particle_matches.hpp"
+#include "core/locate/prepare.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::int64_t kSupportForConvergence = 3;
+constexpr std::int64_t kMeasurementsBetweenSearches = 10;
+constexpr double kDoubtForSearch = 0.4;
+constexpr double kRecoveryShare = 0.3;
+constexpr double kRecoveryRadiusM = 3000.0;
+constexpr double kStaleAfterS = 60.0;
+
+AcceptanceRegion acceptance_of(const SearchRegion& region) {
+  AcceptanceRegion result{region.box, std::nullopt, region.heading, region.heading_half_width};
+  if (region.circle) result.circle = AcceptanceRegion::Circle{region.circle->centre, region.circle->radius_m};
+  return result;
+}
+
+/// Modes of a search as places to draw from; wider than they say, since particles move on before they are weighted.
+std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
+  constexpr double kWiden = 4.0;
+  constexpr double kLeastWeight = 0.02;
+  std::vector<Proposal> proposals;
+  for (const FixMode& mode : fix.modes) {
+    const GridPoint at = map.zone.project(mode.pose.position);
+    const double axis = map.zone.grid_from_true(mode.ellipse_heading, at).radians();
+    const double along2 = kWiden * mode.sigma_m[0] * mode.sigma_m[0] + 1.0;
+    const double across2 = kWiden * mode.sigma_m[1] * mode.sigma_m[1] + 1.0;
+    const double s = std::sin(axis);
+    const double c = std::cos(axis);
+    const double shared = (along2 - across2) * s * c;
+    const double turn2 = kWiden * std::pow(mode.heading_sigma.radians(), 2.0) + 1e-4;
+    proposals.push_back({{at, map.zone.grid_from_true(mode.pose.heading, at)},
+                         {{{along2 * s * s + across2 * c * c, shared, 0.0},
+                           {shared, along2 * c * c + across2 * s * s, 0.0},
+                           {0.0, 0.0, turn2}}},
+                         std::max(mode.weight, kLeastWeight)});
+  }
+  return proposals;
+}
+
+TrackCluster to_geographic(const MapView& map, const Cluster& cluster) {
+  const GridPoint at = cluster.mean.position;
+  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
+  const auto& c = cluster.covariance;
+  const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
+  const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
+  return {{map.zone.unproject(at), map.zone.true_from_grid(cluster.mean.heading, at).wrapped()},
+          cluster.weight,
+          ellipse.sigma_m,
+          Angle::degrees(std::fmod(major_deg, 180.0)),
+          Angle::radians(std::sqrt(c[2][2])),
+          cluster.radius95_m};
+}
+
+/// A share of what was travelled, and at least a little.
+OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise) {
+  const double metres = noise.odometry_m + noise.odometry_share * std::hypot(odometry.forward_m, odometry.right_m);
+  const double turn = noise.odometry_turn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
+  return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
+}
+
+/// The steps that were lost are taken to have been like this one, give or take half of it.
+std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry, OdometryCovariance covariance,
+                                                        double lost) {
+  constexpr double kLostShare = 0.5;
+  constexpr double kLostTurn = 0.3;
+  const double metres = kLostShare * lost * std::hypot(odometry.forward_m, odometry.right_m);
+  for (auto& row : covariance) {
+    for (double& value : row) value *= 1.0 + lost;
+  }
+  covariance[0][0] += metres * metres;
+  covariance[1][1] += metres * metres;
+  covariance[2][2] += lost * kLostTurn * kLostTurn;
+  const double times = 1.0 + lost;
+  return {{times * odometry.forward_m, times * odometry.right_m, times * odometry.turn}, covariance};
+}
+
+}  // namespace
+
+TrackSettings TrackSettings::paper(int particles) {
+  TrackSettings settings;
+  settings.start = TrackStart::kUniform;
+  settings.recovers = false;
+  settings.filter = FilterOptions::paper(particles);
+  settings.evidence.kind = EvidenceKind::kEquation7;
+  return settings;
+}
+
+Tracker::Tracker(MapView map, TrackSettings settings)
+    : map_(std::move(map)),
+      settings_(std::move(settings)),
+      start_(acceptance_of(region_of(map_, settings_.prior))),
+      region_(acceptance_of(region_of(map_, {}))) {}
+
+/// One step on its way.
+class Tracker::Step {
+ public:
+  Step(const Tracker& tracker, const TrackerState& before, const StepInput& input, const StepLimits& limits)
+      : tracker_(tracker),
+        settings_(tracker.settings_),
+        input_(input),
+        limits_(limits),
+        state_(before),
+        filter_(before.started ? Filter(settings_.filter, tracker.region_, std::move(state_.filter), limits.threads)
+                               : Filter(settings_.filter, tracker.region_, settings_.seed, limits.threads)) {}
+
+  StepResult run() {
+    require_in_order();
+    if (input_.features) features_ = in_cells_of(tracker_.map_, *input_.features);
+    if (state_.started) {
+      estimate_.missed_steps = input_.sequence - state_.sequence - 1;
+      move();
+    } else {
+      filter_.start_uniformly(tracker_.start_);
+      state_.started = true;
+    }
+    if (features_) measure();
+    state_.sequence = input_.sequence;
+    state_.time_us = input_.time_us;
+    describe();
+    state_.filter = filter_.state();
+    return {std::move(state_), std::move(estimate_)};
+  }
+
+ private:
+  void require_in_order() const {
+    if (!state_.started) return;
+    if (input_.sequence <= state_.sequence) {
+      throw InvalidInput("step-late", fmt::format("step {} comes after step {}: steps count up; leave late ones out",
+                                                  input_.sequence, state_.sequence));
+    }
+    if (input_.time_us <= state_.time_us) {
+      throw InvalidInput("time-backwards",
+                         fmt::format("the capture time {} us is not after {} us of the step before: set the clock, or "
+                                     "begin a new track",
+                                     input_.time_us, state_.time_us));
+    }
+  }
+
+  double seconds() const { return 1e-6 * static_cast<double>(input_.time_us - state_.time_us); }
+
+  void move() {
+    if (seconds() > static_cast<double>(settings_.longest_gap.count())) {
+      filter_.start_uniformly(tracker_.region_);
+      forget_support();
+      return;
+    }
+    if (!moved()) forget_support();
+  }
+
+  /// False where the belief left the region and began anew.
+  bool moved() {
+    const VehicleNoise& vehicle = settings_.vehicle;
+    if (input_.odometry) {
+      const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
+      const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind_walk);
+      if (estimate_.missed_steps == 0) return filter_.predict(as_told);
+      const auto [odometry, covariance] =
+          with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
+      return filter_.predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind_walk));
+    }
+    if (vehicle.planar) {
+      return filter_.predict(
+          PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind_walk});
+    }
+    return filter_.predict(ConstantVelocityMotion{seconds()});
+  }
+
+  void forget_support() {
+    state_.supported = 0;
+    state_.searched = false;
+  }
+
+  void measure() {
+    ++state_.measured;
+    if (settings_.measure_every > 1 && state_.measured % settings_.measure_every != 1) {
+      estimate_.measurement = Measurement::kSkipped;
+      return;
+    }
+    if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
+    const std::vector<MatchSums> sums =
+        match_particles(tracker_.map_, *features_, filter_.particles(), limits_.threads, limits_.stop);
+    std::vector<double> log_likelihoods(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      log_likelihoods[i] = settings_.evidence.log_likelihood(sums[i], features_->cell_m);
+    }
+    const Correction correction = filter_.correct(log_likelihoods);
+    estimate_.mean_likelihood = correction.mean_likelihood;
+    const bool accepted = correction.usable && settings_.evidence.supports(correction.mean_likelihood);
+    estimate_.measurement = !correction.usable ? Measurement::kUseless
+                            : accepted         ? Measurement::kAccepted
+                                               : Measurement::kRejected;
+    if (accepted) accept();
+    if (settings_.recovers && filter_.doubt() > kDoubtForSearch &&
+        state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
+      recover();
+    }
+  }
+
+  void accept() {
+    ++state_.supported;
+    state_.accepted_time_us = input_.time_us;
+  }
+
+  /// nullopt where the area is beyond the limit.
+  std::optional<Fix> searched(const Prior& prior) {
+    FixOptions options;
+    options.max_search_km2 = settings_.max_search_km2;
+    options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
+    options.time_limit = limits_.search_time;
+    options.stop = limits_.stop;
+    state_.last_search = state_.measured;
+    try {
+      return locate(tracker_.map_, *features_, prior, options);
+    } catch (const LimitExceeded&) {
+      return std::nullopt;
+    }
+  }
+
+  /// A circle around all that the belief holds for possible.
+  Prior belief() const {
+    const Particles& p = filter_.particles();
+    GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      box.min = {std::min(box.min.east_m, p.east_m[i]), std::min(box.min.north_m, p.north_m[i])};
+      box.max = {std::max(box.max.east_m, p.east_m[i]), std::max(box.max.north_m, p.north_m[i])};
+    }
+    const GridPoint centre{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
+    Prior prior;
+    prior.circle = GeoCircle{tracker_.map_.zone.unproject(centre), distance_m(box.min, box.max) / 2.0 + 1.0};
+    return prior;
+  }
+
+  /// The prior as it was given holds for the first step only.
+  bool start_by_search() {
+    state_.searched = true;
+    const bool first = state_.sequence < 0;
+    const std::optional<Fix> fix = searched(first ? settings_.prior : belief());
+    if (!fix || fix->modes.empty()) return false;
+    double known = 0.0;
+    for (const FixMode& mode : fix->modes) known += mode.weight;
+    filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 0.1, 0.9),
+                         first ? tracker_.start_ : tracker_.region_);
+    estimate_.measurement = Measurement::kSearched;
+    if (fix->status == FixStatus::kFix) accept();
+    return true;
+  }
+
+  void recover() {
+    std::optional<Fix> fix = searched({});
+    if (!fix) {
+      const auto clusters = clusters_of(filter_.particles(), settings_.clusters);
+      const GridPoint at = clusters.front().mean.position;
+      Prior near;
+      near.circle = GeoCircle{tracker_.map_.zone.unproject(at), kRecoveryRadiusM};
+      fix = searched(near);
+    }
+    if (fix) filter_.inject(proposals_of(tracker_.map_, *fix), kRecoveryShare);
+  }
+
+  void describe() {
+    estimate_.sequence = state_.sequence;
+    estimate_.time_us = state_.time_us;
+    const auto clusters = clusters_of(filter_.particles(), settings_.clusters);
+    estimate_.cluster_count = clusters.size();
+    for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMostClusters); ++i) {
+      estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i]));
+    }
+    estimate_.particles = filter_.particles().size();
+    estimate_.resets = filter_.state().resets;
+    estimate_.doubt = filter_.doubt();
+    if (state_.accepted_time_us) {
+      estimate_.since_accepted_s = 1e-6 * static_cast<double>(state_.time_us - *state_.accepted_time_us);
+    }
+    estimate_.converged = clusters.front().weight >= settings_.converged_weight &&
+                          clusters.front().sigma_m() <= settings_.converged_sigma_m &&
+                          state_.supported >= kSupportForConvergence && estimate_.doubt <= kDoubtForSearch &&
+                          estimate_.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
+  }
+
+  const Tracker& tracker_;
+  const TrackSettings& settings_;
+  const StepInput& input_;
+  const StepLimits& limits_;
+  TrackerState state_;
+  Filter filter_;
+  std::optional<FeatureMap> features_;
+  TrackEstimate estimate_;
+};
+
+StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
+  return Step(*this, before, step, limits).run();
+}
+
+std::vector<GeoPose> Tracker::particles(const TrackerState& state, std::size_t count) const {
+  const Particles& p = state.filter.particles;
+  std::vector<GeoPose> poses;
+  const std::size_t stride = std::max<std::size_t>(1, (p.size() + count - 1) / std::max<std::size_t>(1, count));
+  for (std::size_t i = 0; i < p.size(); i += stride) {
+    const GridPose pose = p.at(i).pose();
+    poses.push_back(
+        {map_.zone.unproject(pose.position), map_.zone.true_from_grid(pose.heading, pose.position).wrapped()});
+  }
+  return poses;
+}
+
+}  // namespace roadfix

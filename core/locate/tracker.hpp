@@ -1,0 +1,142 @@
+// A flight as a sequence of steps: odometry and feature maps in, pose with covariance out (method.md section 4).
+//
+// A tracker holds what does not change. The state is a value: a step makes a new one from the old, so that a step that
+// fails leaves the track as it was.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/filter/clusters.hpp"
+#include "core/filter/filter.hpp"
+#include "core/locate/evidence.hpp"
+#include "core/locate/fix.hpp"
+#include "core/locate/map_view.hpp"
+
+namespace roadfix {
+
+/// Takes the place of what a step does not tell.
+struct VehicleNoise {
+  /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was.
+  struct Planar {
+    Gaussian speed_m_s;
+    Gaussian turn_rate_rad_s;
+  };
+  std::optional<Planar> planar;
+  // Odometry without covariance: 1 sigma is the share of the distance or turn, and at least ...
+  double odometry_share = 0.05;
+  double odometry_m = 0.3;  ///< ... so much per axis
+  Angle odometry_turn = Angle::degrees(0.5);
+  double wind_walk = 0.0;  ///< see PlanarMotion::drift_walk; > 0 where odometry is relative to the air
+};
+
+enum class TrackStart { kSearch, kUniform };
+
+struct TrackSettings {
+  Prior prior;  ///< of the place at the first step
+  TrackStart start = TrackStart::kSearch;
+  bool recovers = true;  ///< searches anew when the measurements speak against the belief
+  FilterOptions filter;
+  EvidenceModel evidence;
+  VehicleNoise vehicle;
+  ClusterOptions clusters;
+  std::uint64_t seed = 1;
+  int measure_every = 1;  ///< weight by every k-th feature map only
+  double converged_weight = 0.9;
+  double converged_sigma_m = 25.0;
+  double max_search_km2 = 500.0;          ///< larger priors start uniformly; recovery looks around the last place
+  std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
+
+  /// The paper's filter: uniform start, no search, equation (7).
+  static TrackSettings paper(int particles);
+};
+
+struct StepInput {
+  std::int64_t sequence = 0;         ///< counts up by 1; what is left out counts as lost
+  std::int64_t time_us = 0;          ///< of capture, any epoch
+  std::optional<Odometry> odometry;  ///< since the step before
+  std::optional<OdometryCovariance> covariance;
+  std::optional<FeatureMap> features;
+};
+
+struct TrackerState {
+  FilterState filter;
+  bool started = false;
+  bool searched = false;  ///< a search has had its say since the start
+  std::int64_t sequence = -1;
+  std::int64_t time_us = 0;
+  std::int64_t measured = 0;     ///< feature maps so far
+  std::int64_t last_search = 0;  ///< `measured` at the last search
+  std::int64_t supported = 0;    ///< accepted measurements since the belief began
+  std::optional<std::int64_t> accepted_time_us;
+  friend bool operator==(const TrackerState&, const TrackerState&) = default;
+};
+
+struct TrackCluster {
+  GeoPose pose;
+  double weight = 0.0;
+  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
+  Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
+  Angle heading_sigma;
+  double radius95_m = 0.0;  ///< acceptance region: holds 95 % of the cluster
+};
+
+/// What became of a step's feature map.
+enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless };
+
+struct TrackEstimate {
+  std::int64_t sequence = 0;
+  std::int64_t time_us = 0;
+  bool converged = false;              ///< only then the first cluster is a position to fly on
+  std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMostClusters of them
+  std::size_t cluster_count = 0;
+  std::size_t particles = 0;
+  std::uint64_t resets = 0;
+  Measurement measurement = Measurement::kNone;
+  double mean_likelihood = 0.0;  ///< of the measurement under the belief before it
+  double doubt = 0.0;
+  std::optional<double> since_accepted_s;
+  std::int64_t missed_steps = 0;  ///< sequence numbers left out before this step
+  static constexpr std::size_t kMostClusters = 8;
+};
+
+struct StepResult {
+  TrackerState state;
+  TrackEstimate estimate;
+};
+
+struct StepLimits {
+  int threads = 1;
+  std::chrono::milliseconds search_time{0};  ///< 0 = unlimited
+  std::stop_token stop;
+};
+
+class Tracker {
+ public:
+  /// Throws InvalidInput for a prior that does not meet the map.
+  Tracker(MapView map, TrackSettings settings);
+
+  /// Throws InvalidInput: "step-late" for a sequence number not above the last, "time-backwards", those of
+  /// OdometryMotion and of unusable feature maps; Interrupted by the limits.
+  StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
+  /// Thinned to at most `count` poses, every k-th particle.
+  std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;
+
+  const MapView& map() const { return map_; }
+  const TrackSettings& settings() const { return settings_; }
+
+ private:
+  class Step;
+  MapView map_;
+  TrackSettings settings_;
+  AcceptanceRegion start_;   ///< the prior
+  AcceptanceRegion region_;  ///< of the flight: the map
+};
+
+}  // namespace roadfix

@@ -1,0 +1,117 @@
+#include "core/locate/evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Sums over binary cells, road in the map where `m`, in the feature map where `l`.
+MatchSums sums_of(const std::vector<bool>& m, const std::vector<bool>& l) {
+  MatchSums s;
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    ++s.n;
+    s.m += m[i];
+    s.l += l[i];
+    s.mm += m[i];
+    s.ll += l[i];
+    s.ml += m[i] && l[i];
+  }
+  return s;
+}
+
+struct Cells {
+  std::vector<bool> m;
+  std::vector<bool> l;
+};
+
+/// Each cell seen as road with probability `a` where there is one and `b` elsewhere.
+Cells seen(std::mt19937_64& random, double a, double b) {
+  Cells cells;
+  for (int i = 0; i < 2000; ++i) {
+    cells.m.push_back(testing::uniform(random, 0, 1) < 0.2);
+    cells.l.push_back(testing::uniform(random, 0, 1) < (cells.m.back() ? a : b));
+  }
+  return cells;
+}
+
+TEST(Evidence, OfDetectionRatesIsTheSumOverTheCells) {
+  std::mt19937_64 random(1);
+  const Cells cells = seen(random, 0.6, 0.1);
+  const MatchSums s = sums_of(cells.m, cells.l);
+  const double average = s.l / static_cast<double>(s.n);
+  double expected = 0.0;
+  for (std::size_t i = 0; i < cells.m.size(); ++i) {
+    const double rate = cells.m[i] ? 0.6 : 0.1;
+    expected += cells.l[i] ? std::log(rate / average) : std::log((1.0 - rate) / (1.0 - average));
+  }
+  EvidenceModel model;
+  model.kind = EvidenceKind::kDetectionRates;
+  model.useless_share = 0.0;
+  model.temper = 1.0;
+  model.independent_m2 = 400.0;
+  EXPECT_NEAR(model.log_likelihood(s, 2.0), expected * 4.0 / 400.0, 1e-9);
+}
+
+TEST(Evidence, IsForTheTruePlaceAndAgainstOthers) {
+  std::mt19937_64 random(2);
+  for (const EvidenceKind kind : {EvidenceKind::kCorrelation, EvidenceKind::kDetectionRates}) {
+    EvidenceModel model;
+    model.kind = kind;
+    const Cells truth = seen(random, 0.5, 0.1);
+    const Cells other = seen(random, 0.5, 0.1);
+    // 2000 cells of 16 m: as many samples as a footprint of 700 m.
+    EXPECT_GT(model.log_likelihood(sums_of(truth.m, truth.l), 16.0), 3.0);
+    EXPECT_LT(model.log_likelihood(sums_of(other.m, truth.l), 16.0), -1.0);
+  }
+}
+
+TEST(Evidence, ByCorrelationHasAMeanRatioOfOneByChance) {
+  // Without tempering and useless frames, the ratio to chance averages to 1 over chance by its definition.
+  EvidenceModel model;
+  model.useless_share = 0.0;
+  model.temper = 1.0;
+  model.expected_correlation = 0.03;
+  model.independent_m2 = 100.0;  // every cell of 10 m is a sample
+  std::mt19937_64 random(3);
+  double sum = 0.0;
+  constexpr int kRuns = 2000;
+  for (int i = 0; i < kRuns; ++i) {
+    const Cells a = seen(random, 0.5, 0.5);
+    const MatchSums s = sums_of(a.m, a.l);
+    sum += std::exp(model.log_likelihood(s, 10.0));
+  }
+  // ratio = exp(x - v / 2) with x normal of variance v = 2000 * 0.03^2: its own spread is sqrt(e^v - 1) = 2.25.
+  EXPECT_NEAR(sum / kRuns, 1.0, 5.0 * 2.25 / std::sqrt(kRuns));
+}
+
+TEST(Evidence, FallsNoFurtherThanTheShareOfUselessFrames) {
+  EvidenceModel model;
+  std::mt19937_64 random(4);
+  const Cells cells = seen(random, 0.0, 0.9);
+  EXPECT_NEAR(model.log_likelihood(sums_of(cells.m, cells.l), 16.0), std::log(model.useless_share), 0.01);
+}
+
+TEST(Evidence, SaysNothingWhereNothingWasObserved) {
+  EXPECT_EQ(EvidenceModel{}.log_likelihood({}, 2.0), 0.0);
+  EvidenceModel paper;
+  paper.kind = EvidenceKind::kEquation7;
+  EXPECT_EQ(paper.log_likelihood({}, 2.0), -std::numeric_limits<double>::infinity());
+}
+
+TEST(Evidence, OfEquation7IsItself) {
+  std::mt19937_64 random(5);
+  const Cells cells = seen(random, 0.6, 0.1);
+  EvidenceModel paper;
+  paper.kind = EvidenceKind::kEquation7;
+  const MatchSums s = sums_of(cells.m, cells.l);
+  EXPECT_NEAR(std::exp(paper.log_likelihood(s, 2.0)), *rho(s), 1e-12);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,261 @@
+#include "core/locate/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/grid/resample.hpp"
+#include "core/locate/particle_matches.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/flight.hpp"
+#include "tests/support/map_view.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::Flight;
+
+std::string code_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  return "no error";
+}
+
+class Track : public ::testing::Test {
+ protected:
+  RoadGrid map_ = testing::street_map(51, {2.0, {300'000, -3'200'000}, 800, 700});
+  MapView view_ = testing::view_of(map_);
+  GridPose start_{{600'700.0, 6'399'400.0}, Angle::degrees(60.0)};
+
+  static TrackSettings settings() {
+    TrackSettings s;
+    s.filter.max_particles = 4000;
+    s.filter.min_particles = 500;
+    return s;
+  }
+  double error_m(const TrackEstimate& estimate, const GridPose& truth) const {
+    return distance_m(view_.zone.project(estimate.clusters.at(0).pose.position), truth.position);
+  }
+};
+
+TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 1);
+  TrackerState state;
+  for (int i = 0; i < 25; ++i) {
+    const StepResult result = tracker.advance(state, flight.step());
+    state = result.state;
+    if (i < 5) continue;
+    ASSERT_TRUE(result.estimate.converged) << "step " << i;
+    EXPECT_LT(error_m(result.estimate, flight.pose()), 10.0) << "step " << i;
+    const Angle heading = view_.zone.true_from_grid(flight.pose().heading, flight.pose().position);
+    EXPECT_LT(angular_distance(result.estimate.clusters[0].pose.heading, heading).degrees(), 4.0);
+  }
+  EXPECT_LT(state.filter.particles.size(), 4000U);
+}
+
+TEST_F(Track, ConvergesFromAUniformBeliefWithoutSearch) {
+  TrackSettings uniform = settings();
+  uniform.start = TrackStart::kUniform;
+  uniform.recovers = false;
+  uniform.filter.max_particles = 20'000;
+  uniform.prior.circle =
+      GeoCircle{view_.zone.unproject({start_.position.east_m + 100.0, start_.position.north_m}), 250.0};
+  const Tracker tracker(view_, uniform);
+  Flight flight(map_, start_, 2);
+  TrackerState state;
+  TrackEstimate last;
+  for (int i = 0; i < 25; ++i) {
+    StepResult result = tracker.advance(state, flight.step());
+    state = std::move(result.state);
+    last = std::move(result.estimate);
+  }
+  EXPECT_TRUE(last.converged);
+  EXPECT_LT(error_m(last, flight.pose()), 12.0);
+}
+
+TEST_F(Track, ThePapersFilterFindsTheUavToo) {
+  TrackSettings paper = TrackSettings::paper(4'000);
+  paper.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};
+  const Tracker tracker(view_, paper);
+  Flight flight(map_, start_, 3);
+  flight.noise = {0.05, 0.05};
+  TrackerState state;
+  std::vector<double> errors;
+  for (int i = 0; i < 40; ++i) {
+    const StepResult result = tracker.advance(state, flight.step());
+    state = result.state;
+    if (i >= 30) errors.push_back(error_m(result.estimate, flight.pose()));
+  }
+  EXPECT_EQ(state.filter.particles.size(), 4'000U);
+  std::ranges::nth_element(errors, errors.begin() + 5);
+  EXPECT_LT(errors[5], 40.0);
+}
+
+TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  TrackerState state;
+  TrackEstimate seeing;
+  for (int i = 0; i < 10; ++i) {
+    StepResult result = tracker.advance(state, flight.step());
+    state = std::move(result.state);
+    seeing = std::move(result.estimate);
+  }
+  TrackEstimate blind;
+  for (int i = 0; i < 61; ++i) {
+    StepResult result = tracker.advance(state, flight.step(false));
+    state = std::move(result.state);
+    blind = std::move(result.estimate);
+    EXPECT_EQ(blind.measurement, Measurement::kNone);
+  }
+  EXPECT_TRUE(seeing.converged);
+  EXPECT_FALSE(blind.converged) << "a minute without sight is stale";
+  EXPECT_DOUBLE_EQ(blind.since_accepted_s.value(), 61.0);
+  EXPECT_GT(blind.clusters[0].sigma_m[0], 2.0 * seeing.clusters[0].sigma_m[0]);
+}
+
+TEST_F(Track, NoticesAKidnappingAndRecovers) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  TrackerState state;
+  for (int i = 0; i < 15; ++i) state = tracker.advance(state, flight.step()).state;
+  flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});
+  int recovered = -1;
+  for (int i = 0; i < 60 && recovered < 0; ++i) {
+    const StepResult result = tracker.advance(state, flight.step());
+    state = result.state;
+    const bool right = error_m(result.estimate, flight.pose()) < 20.0;
+    EXPECT_TRUE(i < 12 || right || !result.estimate.converged) << "still sure of the wrong place";
+    if (result.estimate.converged && right) recovered = i;
+  }
+  EXPECT_GE(recovered, 0);
+  EXPECT_LT(recovered, 40);
+}
+
+TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 6);
+  TrackerState state;
+  for (int i = 0; i < 4; ++i) {
+    const StepInput step = flight.step();
+    StepLimits two;
+    two.threads = 3;
+    const StepResult serial = tracker.advance(state, step);
+    EXPECT_TRUE(serial.state == tracker.advance(state, step, two).state) << "step " << i;
+    EXPECT_TRUE(serial.state == Tracker(view_, settings()).advance(state, step).state) << "no state in the tracker";
+    state = serial.state;
+  }
+}
+
+TEST_F(Track, CountsLostStepsAndWidensForThem) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 7);
+  TrackerState state;
+  for (int i = 0; i < 6; ++i) state = tracker.advance(state, flight.step()).state;
+  StepInput next = flight.step(false);
+  const double sure = tracker.advance(state, next).estimate.clusters[0].sigma_m[0];
+  next.sequence += 2;
+  const StepResult late = tracker.advance(state, next);
+  EXPECT_EQ(late.estimate.missed_steps, 2);
+  EXPECT_GT(late.estimate.clusters[0].sigma_m[0], sure + 5.0);
+}
+
+TEST_F(Track, BeginsAnewAfterALongGap) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 8);
+  TrackerState state;
+  for (int i = 0; i < 6; ++i) state = tracker.advance(state, flight.step()).state;
+  StepInput next = flight.step(false);
+  next.time_us += 601'000'000;
+  const StepResult after = tracker.advance(state, next);
+  EXPECT_EQ(after.estimate.resets, 1U);
+  EXPECT_FALSE(after.estimate.converged);
+  next = flight.step();
+  next.time_us += 601'000'000;
+  EXPECT_EQ(tracker.advance(after.state, next).estimate.measurement, Measurement::kSearched);
+}
+
+TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
+  TrackSettings planar = settings();
+  planar.vehicle.planar = VehicleNoise::Planar{{20.0, 1.0}, {0.0, 0.05}};
+  const Tracker tracker(view_, planar);
+  Flight flight(map_, start_, 9);
+  TrackerState state = tracker.advance({}, flight.step()).state;
+  TrackEstimate last;
+  for (int i = 0; i < 15; ++i) {
+    StepInput step = flight.step();
+    step.odometry.reset();
+    StepResult result = tracker.advance(state, step);
+    state = std::move(result.state);
+    last = std::move(result.estimate);
+  }
+  EXPECT_LT(error_m(last, flight.pose()), 15.0);
+}
+
+TEST_F(Track, RefusesWhatItCannotUseAndNamesIt) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 10);
+  const TrackerState state = tracker.advance({}, flight.step()).state;
+  StepInput step = flight.step();
+  const auto refusal = [&](const std::function<void(StepInput&)>& change) {
+    StepInput changed = step;
+    change(changed);
+    return code_of([&] { tracker.advance(state, changed); });
+  };
+  EXPECT_EQ(refusal([](StepInput& s) { s.sequence = 0; }), "step-late");
+  EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'000'000; }), "time-backwards");
+  EXPECT_EQ(refusal([](StepInput& s) { s.odometry->forward_m = std::numeric_limits<double>::quiet_NaN(); }),
+            "odometry-not-finite");
+  EXPECT_EQ(refusal([](StepInput& s) {
+              s.covariance = OdometryCovariance{{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+            }),
+            "covariance-not-positive");
+  EXPECT_EQ(refusal([](StepInput& s) { s.features->cells = {}; }), "feature-map-empty");
+  EXPECT_EQ(refusal([](StepInput&) {}), "no error");
+}
+
+TEST_F(Track, WeighsParticlesAsEquation5DoesAtTheirPoses) {
+  std::mt19937_64 random(11);
+  const FeatureMap features = testing::observed_at(map_, start_, 100, 90, 2.0, {0.1, 0.1}, random);
+  Particles p;
+  p.resize(300);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.set(i, {start_.position.east_m + testing::uniform(random, -20, 20),
+              start_.position.north_m + testing::uniform(random, -20, 20),
+              start_.heading.radians() + testing::uniform(random, -0.1, 0.1)});
+    p.weight[i] = i == 7 ? 0.0 : 1.0;
+  }
+  const auto sums = match_particles(view_, features, p);
+  EXPECT_EQ(sums[7].n, 0);
+  double difference = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (i == 7) continue;
+    // Brute force: the map cut out at the very pose.
+    const FeatureMap below = cut_out(map_, p.at(i).pose(), 100, 90, 2.0);
+    MatchSums exact;
+    for (int r = 0; r < 90; ++r) {
+      for (int c = 0; c < 100; ++c) {
+        if (!is_observed(below.cells.at(c, r))) continue;
+        const double m = probability(below.cells.at(c, r));
+        const double l = probability(features.cells.at(c, r));
+        ++exact.n;
+        exact.m += m;
+        exact.l += l;
+        exact.mm += m * m;
+        exact.ll += l * l;
+        exact.ml += m * l;
+      }
+    }
+    difference += std::abs(*rho(sums[i]) - *rho(exact)) / 299.0;
+  }
+  EXPECT_LT(difference, 0.05) << "nearest cell and shared heading bins";
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
 
 #include "core/grid/resample.hpp"
 #include "core/match/score.hpp"
@@ -13,39 +14,73 @@
 namespace roadfix {
 namespace {
 
-/// Correlates one fixed plane of numbers with many small patches.
+/// Correlates one fixed plane of numbers with many small patches. A large plane is cut into tiles that overlap by a
+/// patch: their transforms stay within the cache of a core.
 class Correlator {
  public:
-  explicit Correlator(const cv::Mat1f& plane)
-      : size_(cv::getOptimalDFTSize(plane.cols), cv::getOptimalDFTSize(plane.rows)) {
-    cv::Mat1f padded(size_, 0.0F);
-    plane.copyTo(padded(cv::Rect(0, 0, plane.cols, plane.rows)));
-    cv::dft(padded, spectrum_);
+  /// Patches have at most patch x patch cells.
+  Correlator(const cv::Mat1f& plane, int patch)
+      : size_(side(plane.cols, patch), side(plane.rows, patch)), patch_(patch), plane_size_(plane.size()) {
+    const cv::Size step(size_.width - patch_ + 1, size_.height - patch_ + 1);
+    for (int top = -kLead; top == -kLead || top + patch_ <= plane.rows + kLead; top += step.height) {
+      for (int left = -kLead; left == -kLead || left + patch_ <= plane.cols + kLead; left += step.width) {
+        const cv::Rect tile(left, top, size_.width, size_.height);
+        const cv::Rect seen = tile & cv::Rect(0, 0, plane.cols, plane.rows);
+        cv::Mat1f padded(size_, 0.0F);
+        if (!seen.empty()) plane(seen).copyTo(padded(seen - tile.tl()));
+        cv::Mat1f spectrum;
+        cv::dft(padded, spectrum);
+        tiles_.push_back({tile.tl(), spectrum});
+      }
+    }
   }
 
-  cv::Size size() const { return size_; }
-
-  static cv::Mat1f spectrum_of(const cv::Mat1f& patch, cv::Size size) {
-    cv::Mat1f padded(size, 0.0F);
+  cv::Mat1f spectrum_of(const cv::Mat1f& patch) const {
+    cv::Mat1f padded(size_, 0.0F);
     patch.copyTo(padded(cv::Rect(0, 0, patch.cols, patch.rows)));
     cv::Mat1f spectrum;
     cv::dft(padded, spectrum, 0, patch.rows);
     return spectrum;
   }
 
-  /// Sum over the patch at each place; the patch's first cell lies on the result's cell. Turned by half a turn it is
-  /// the patch's last cell (counted in the turned patch) instead.
+  /// Sum over the patch at each place from kLead cells before the plane to as many after it where it stays within that
+  /// frame, else 0; the patch's first cell lies there. Turned by half a turn it is the patch's last cell (counted in
+  /// the turned patch) instead.
   cv::Mat1f correlate(const cv::Mat1f& patch_spectrum, bool half_turn) const {
+    const cv::Rect places(-kLead, -kLead, plane_size_.width + 2 * kLead, plane_size_.height + 2 * kLead);
+    cv::Mat1f result(places.size(), 0.0F);
     cv::Mat1f product;
-    cv::mulSpectrums(spectrum_, patch_spectrum, product, 0, !half_turn);
-    cv::Mat1f result;
-    cv::dft(product, result, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
+    cv::Mat1f sums;
+    // Where a tile's cyclic sums do not wrap around.
+    const int first = half_turn ? patch_ - 1 : 0;
+    const cv::Rect whole(first, first, size_.width - patch_ + 1, size_.height - patch_ + 1);
+    for (const Tile& tile : tiles_) {
+      const cv::Rect target = (whole + tile.corner) & places;
+      if (target.empty()) continue;
+      cv::mulSpectrums(tile.spectrum, patch_spectrum, product, 0, !half_turn);
+      cv::dft(product, sums, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
+      sums(target - tile.corner).copyTo(result(target - places.tl()));
+    }
     return result;
   }
 
+  static constexpr int kLead = 2;
+
  private:
+  static int side(int cells, int patch) {
+    constexpr int kInCache = 512;
+    const int whole = std::max(cells + 2 * kLead, patch);
+    return cv::getOptimalDFTSize(whole <= kInCache ? whole : std::min(whole, std::max(kInCache, 4 * patch)));
+  }
+
+  struct Tile {
+    cv::Point corner;
+    cv::Mat1f spectrum;
+  };
   cv::Size size_;
-  cv::Mat1f spectrum_;
+  int patch_;
+  cv::Size plane_size_;
+  std::vector<Tile> tiles_;
 };
 
 /// Observed cells as three planes: 1 where observed, the value less `mean`, and its square.
@@ -106,10 +141,11 @@ class Scan {
         q_(std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, 4)) {
     assert(lead_col_ >= reach_ && lead_row_ >= reach_);
     const Planes planes = planes_of(map.cells, mean_of(map.cells));
-    cross_.emplace(planes.value);
-    observed_.emplace(block_sums(planes.observed, q_, 0));
-    value_.emplace(block_sums(planes.value, q_, 0));
-    square_.emplace(block_sums(planes.square, q_, 0));
+    cross_.emplace(planes.value, 2 * reach_ + 1);
+    const int block_patch = (2 * reach_ + 1 + q_ - 1) / q_ + 1;
+    observed_.emplace(block_sums(planes.observed, q_, 0), block_patch);
+    value_.emplace(block_sums(planes.value, q_, 0), block_patch);
+    square_.emplace(block_sums(planes.square, q_, 0), block_patch);
     eligible_ = cv::Mat1b(request.positions.rows, request.positions.cols, std::uint8_t{0});
     for (int row = 0; row < request.positions.rows; ++row) {
       for (int col = 0; col < request.positions.cols; ++col) eligible_(row, col) = request.eligible(col, row) ? 1 : 0;
@@ -123,8 +159,12 @@ class Scan {
     for (const int bin : request_.headings) bases.push_back(bin % half);
     std::ranges::sort(bases);
     bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
-    parallel_for(static_cast<int>(bases.size()), request_.threads,
-                 [&](int i) { scan_pair(bases[static_cast<std::size_t>(i)]); });
+    const int count = static_cast<int>(bases.size());
+    parallel_for((count + kSharing - 1) / kSharing, request_.threads, [&](int i) {
+      const int first = i * kSharing;
+      scan_pairs(std::span(bases).subspan(static_cast<std::size_t>(first),
+                                          static_cast<std::size_t>(std::min(kSharing, count - first))));
+    });
     std::ranges::sort(result_.maxima, std::ranges::greater{}, &ScanPose::score);
     if (result_.maxima.size() > request_.keep) result_.maxima.resize(request_.keep);
     return std::move(result_);
@@ -135,31 +175,45 @@ class Scan {
     cv::Mat1f cross, observed, value, square;
   };
 
-  void scan_pair(int base) {
-    const PatchSpectra patch = spectra_of(base);
-    for (const int bin : {base, base + request_.bins.count() / 2}) {
-      if (!std::ranges::binary_search(request_.headings, bin)) continue;
-      deadline_.check();
-      collect(scores(patch, bin != base), bin);
+  /// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them.
+  static constexpr int kSharing = 3;
+
+  void scan_pairs(std::span<const int> bases) {
+    const PatchSpectra middle = spectra_of(bases[bases.size() / 2]);
+    for (const bool half_turn : {false, true}) {
+      const int turn = half_turn ? request_.bins.count() / 2 : 0;
+      const auto wanted = [&](int base) { return std::ranges::binary_search(request_.headings, base + turn); };
+      if (std::ranges::none_of(bases, wanted)) continue;
+      const Blocks blocks = blocks_of(middle, half_turn);
+      for (const int base : bases) {
+        if (!wanted(base)) continue;
+        deadline_.check();
+        collect(scores(base == bases[bases.size() / 2] ? middle.cross : cross_spectrum_of(base), blocks, half_turn),
+                base + turn);
+      }
     }
   }
 
-  PatchSpectra spectra_of(int bin) const {
+  /// Planes of the footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
+  Planes patch_at(int bin) const {
     const FeatureMap turned = rotated(features_, request_.bins.heading(bin));
-    // Every patch is a square of the full reach, so that its nadir is always the same cell.
     CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
     paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
           reach_ - static_cast<int>(turned.nadir.row));
-    const Planes planes = planes_of(square, feature_mean_);
+    return planes_of(square, feature_mean_);
+  }
+
+  cv::Mat1f cross_spectrum_of(int bin) const { return cross_->spectrum_of(patch_at(bin).value); }
+
+  PatchSpectra spectra_of(int bin) const {
+    const Planes planes = patch_at(bin);
     const auto means = [&](const cv::Mat1f& plane) {
       cv::Mat1f sums = block_sums(plane, q_, block_lead());
       sums *= 1.0 / (q_ * q_);
       return sums;
     };
-    return {Correlator::spectrum_of(planes.value, cross_->size()),
-            Correlator::spectrum_of(means(planes.observed), observed_->size()),
-            Correlator::spectrum_of(means(planes.value), observed_->size()),
-            Correlator::spectrum_of(means(planes.square), observed_->size())};
+    return {cross_->spectrum_of(planes.value), observed_->spectrum_of(means(planes.observed)),
+            observed_->spectrum_of(means(planes.value)), observed_->spectrum_of(means(planes.square))};
   }
 
   /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
@@ -197,9 +251,8 @@ class Scan {
     return blocks;
   }
 
-  cv::Mat1f scores(const PatchSpectra& patch, bool half_turn) const {
-    const cv::Mat1f cross = cross_->correlate(patch.cross, half_turn);
-    const Blocks blocks = blocks_of(patch, half_turn);
+  cv::Mat1f scores(const cv::Mat1f& spectrum, const Blocks& blocks, bool half_turn) const {
+    const cv::Mat1f cross = cross_->correlate(spectrum, half_turn);
     const GridGeometry& positions = request_.positions;
     cv::Mat1f result(positions.rows, positions.cols, 0.0F);
     // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
@@ -218,7 +271,7 @@ class Scan {
         correction[i] = down.of(blocks.correction(down.first, col), blocks.correction(down.second, col));
         gain[i] = down.of(blocks.gain(down.first, col), blocks.gain(down.second, col));
       }
-      const float* sums = cross[row + lead_row_ + shift] + lead_col_ + shift;
+      const float* sums = cross[row + lead_row_ + shift + Correlator::kLead] + lead_col_ + shift + Correlator::kLead;
       for (int col = 0; col < positions.cols; ++col) {
         if (eligible_(row, col) == 0) continue;
         const Mix right = cols[static_cast<std::size_t>(col)];
@@ -239,14 +292,14 @@ class Scan {
     float of(float a, float b) const { return a + share * (b - a); }
   };
 
-  /// For cells start, start + 1, ...: between which blocks they lie. Transforms are cyclic, so indices wrap around.
+  /// For cells start, start + 1, ...: between which blocks they lie.
   std::vector<Mix> mixes(int count, int start, int first_block, int blocks) const {
     std::vector<Mix> result;
     for (int cell = start; cell < start + count; ++cell) {
       const int block = floor_div(cell, q_);
-      const auto wrapped = [&](int i) { return ((i - first_block) % blocks + blocks) % blocks; };
+      const auto place = [&](int i) { return std::clamp(i - first_block + Correlator::kLead, 0, blocks - 1); };
       result.push_back(
-          {wrapped(block), wrapped(block + 1), static_cast<float>(cell - block * q_) / static_cast<float>(q_)});
+          {place(block), place(block + 1), static_cast<float>(cell - block * q_) / static_cast<float>(q_)});
     }
     return result;
   }

@@ -11,25 +11,33 @@
 namespace roadfix {
 namespace {
 
-constexpr double kCoarsestCellM = 8.0;  // beyond it streets of a town blur into each other
-constexpr int kFootprintCells = 32;     // that the coarse level keeps at least across a footprint
+// Streets of a town blur into each other beyond 8 m: a large region is scanned in cells of 16 m all the same, since it
+// costs an eighth, but then many more candidates are followed.
+constexpr double kCoarsestCellM = 8.0;
+constexpr double kCoarsestCellOfLargeM = 16.0;
+constexpr double kLargeKm2 = 30.0;
+constexpr int kFootprintCells = 32;         // that the coarse level keeps at least across a footprint
+constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
 
-constexpr std::size_t kScanMaxima = 8192;
-constexpr std::size_t kCandidates = 256;  // followed from the coarse level
-constexpr std::size_t kSurvivors = 96;    // followed from each finer level
-constexpr int kRivalsWanted = 1000;       // distinct places that a background is drawn from
+constexpr std::size_t kScanMaxima = 16384;
+constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
+constexpr std::size_t kCandidatesOfLarge = 4096;  // followed from coarser cells
+constexpr std::size_t kSurvivors = 96;            // followed from each finer level
+constexpr int kRivalsWanted = 1000;               // distinct places that a background is drawn from
 
 double side_m(const FeatureMap& features) {
   return features.cell_m * std::max(features.cells.cols(), features.cells.rows());
 }
 
-int coarse_level(double finest_cell_m, const FeatureMap& features) {
+int coarse_level(double finest_cell_m, const FeatureMap& features, const SearchRegion& region) {
+  const bool large = region.area_km2() >= kLargeKm2;
+  const auto fits = [&](double cell_m) {
+    const double across = side_m(features) / cell_m;
+    return (cell_m <= kCoarsestCellM && across >= kFootprintCells) ||
+           (large && cell_m <= kCoarsestCellOfLargeM && across >= kFootprintCellsOfLarge);
+  };
   int level = 0;
-  double cell_m = finest_cell_m;
-  while (2.0 * cell_m <= kCoarsestCellM && side_m(features) / (2.0 * cell_m) >= kFootprintCells) {
-    cell_m *= 2.0;
-    ++level;
-  }
+  while (fits(std::ldexp(finest_cell_m, level + 1))) ++level;
   return level;
 }
 
@@ -53,7 +61,7 @@ class Search {
         region_(region),
         options_(options),
         deadline_(options.stop, options.deadline),
-        coarsest_(coarse_level(finest_cell_m, features)) {
+        coarsest_(coarse_level(finest_cell_m, features, region)) {
     for (int k = 0; k <= coarsest_; ++k) {
       const double cell_m = std::ldexp(finest_cell_m, k);
       const HeadingBins bins = HeadingBins::for_footprint(0.5 * side_m(features), std::ldexp(finest_cell_m, coarsest_));
@@ -73,8 +81,8 @@ class Search {
     std::vector<LatticePose> candidates = scan(result);
     refine(coarse(), 1, 1, deadline_, candidates);
     for (int k = coarsest_ - 1; k >= 0; --k) {
-      candidates = distinct(candidates, levels_[static_cast<std::size_t>(k + 1)], 2.5 * coarse().cell_m(), 2,
-                            k == coarsest_ - 1 ? kCandidates : kSurvivors);
+      const Level& from = levels_[static_cast<std::size_t>(k + 1)];
+      candidates = distinct(candidates, from, 2.5 * coarse().cell_m(), 2, followed(k + 1));
       descend(candidates);
       refine(levels_[static_cast<std::size_t>(k)], 2, 2, deadline_, candidates);
     }
@@ -88,6 +96,11 @@ class Search {
   static constexpr int kDistinctBins = 3;  // of the coarse level
 
   const Level& coarse() const { return levels_.back(); }
+  std::size_t followed(int level) const {
+    const double cell_m = levels_[static_cast<std::size_t>(level)].cell_m();
+    if (cell_m > kCoarsestCellM) return kCandidatesOfLarge;
+    return level == coarsest_ || cell_m == kCoarsestCellM ? kCandidates : kSurvivors;
+  }
 
   /// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
   void plan_scan() {
@@ -142,7 +155,7 @@ class Search {
           {positions.origin.col + pose.col, positions.origin.row + pose.row}, pose.bin, double{pose.score}};
       (within_region(coarse(), lattice) ? inside : outside).push_back(lattice);
     }
-    std::vector<LatticePose> candidates = distinct(inside, coarse(), 2.5 * cell_m, 2, kCandidates);
+    std::vector<LatticePose> candidates = distinct(inside, coarse(), 2.5 * cell_m, 2, followed(coarsest_));
     const std::vector<LatticePose> others = distinct(outside, coarse(), 2.5 * cell_m, 2, kCandidates);
     candidates.insert(candidates.end(), others.begin(), others.end());
     return candidates;

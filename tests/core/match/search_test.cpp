@@ -48,6 +48,20 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
   }
 }
 
+TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
+  const RoadGrid map = street_map(12, {4.0, {75'000, -1'000'000}, 1500, 1400});
+  std::mt19937_64 random(13);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  ASSERT_GT(region.area_km2(), 30.0);
+  const GridPose truth = pose_within(region.box, 400.0, random);
+  const FeatureMap seen = observed_at(map, truth, 110, 110, 4.0, {0.2, 0.2}, random);
+  const SearchResult found = search(reader_of(map), 4.0, seen, region, {});
+  EXPECT_EQ(found.coarse_cell_m, 16.0);
+  ASSERT_FALSE(found.modes.empty());
+  EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 4.0);
+}
+
 TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   const RoadGrid map = street_map(3, town(2000, 1600));
   std::mt19937_64 random(4);

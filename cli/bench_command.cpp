@@ -11,7 +11,11 @@
 #include <string>
 #include <thread>
 
+#include "cli/bench/calibrate.hpp"
+#include "cli/bench/curves.hpp"
+#include "cli/bench/honesty.hpp"
 #include "cli/bench/run.hpp"
+#include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
 #include "cli/terminal.hpp"
@@ -26,6 +30,9 @@ struct BenchArguments {
   std::string json_file;
   std::string cache;
   std::string methods;
+  std::string curves;
+  std::string calibrate_file;
+  std::string calibration_file;
   DetectorChoice detector;
   double cell_m = 2.0;
   bench::BenchOptions options;
@@ -77,11 +84,40 @@ nlohmann::json document(const BenchArguments& arguments, const std::string& dete
           {"cell_m", arguments.cell_m}, {"detector", detector},           {"results", sets}};
 }
 
-void write_json(const nlohmann::json& document, const std::string& file) {
+void write_text(const std::string& text, const std::string& file) {
   std::ofstream out(file, std::ios::binary);
-  out << document.dump(1) << '\n';
+  out << text;
   out.close();
   if (!out) throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
+}
+
+/// What the calibration was learned from, for those who read the file.
+nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest& manifest) {
+  nlohmann::json maps = nlohmann::json::array();
+  for (const bench::ManifestMap& map : manifest.maps) maps.push_back(map.name);
+  return {{"roadfix", ROADFIX_VERSION},
+          {"manifest", std::filesystem::path(arguments.manifest).filename().string()},
+          {"maps", maps},
+          {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m}};
+}
+
+void write_json(const nlohmann::json& document, const std::string& file) { write_text(document.dump(1) + '\n', file); }
+
+void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& honesty, const std::string& folder) {
+  std::filesystem::create_directories(folder);
+  write_text(bench::reliability_svg(honesty), folder + "/reliability.svg");
+  write_text(bench::answered_svg(results), folder + "/answered.svg");
+}
+
+void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
+           const std::vector<bench::SetResult>& results) {
+  const Calibration& in_force =
+      arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
+  const bench::CalibrationReport report = bench::learn_calibration(bench::road_outcomes(results), in_force);
+  write_json(bench::to_json(report, origin_of(arguments, manifest)), arguments.calibrate_file);
+  fmt::print("learned from {} answers, {} of them right: {}\n", report.examples, report.right,
+             arguments.calibrate_file);
 }
 
 void run_bench(BenchArguments& arguments) {
@@ -99,12 +135,17 @@ void run_bench(BenchArguments& arguments) {
       [&](const std::string& name, std::int64_t done, std::int64_t total) { building.update(name, done, total); },
       stop_on_signals()};
   options.fix.stop = options.maps.stop;
+  if (!arguments.calibration_file.empty()) options.fix.calibration = read_calibration(arguments.calibration_file);
   options.progress = [&](const std::string& task, std::int64_t done, std::int64_t total) {
     asking.update(task, done, total);
   };
   const auto results = bench::run(manifest, options);
   fmt::print("detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
              bench::to_table(results));
+  const bench::Honesty honesty = bench::honesty_of(bench::road_outcomes(results));
+  fmt::print("\n{}", bench::to_text(honesty));
+  if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
+  if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results);
   if (!arguments.json_file.empty()) write_json(document(arguments, detector->describe(), results), arguments.json_file);
 }
 
@@ -121,6 +162,10 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
+  command->add_option("--curves", a->curves, "Draw reliability and answered share as SVG into this folder");
+  command->add_option("--calibrate", a->calibrate_file,
+                      "Learn from the answers how sure they may be, and write it to this file");
+  add_calibration_option(*command, a->calibration_file);
   command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
   command->add_option("--confidence", a->options.fix.confidence, "Probability that a fix must reach")
       ->capture_default_str()

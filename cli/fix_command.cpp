@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
 #include "cli/terminal.hpp"
@@ -29,6 +30,7 @@ struct Options {
   double heading_range_deg = 180.0;
   bool heading_known = false;
   double time_limit_s = 0.0;
+  std::string calibration;
   FixOptions fix;
   bool as_json = false;
 };
@@ -70,6 +72,7 @@ void run_fix(const Options& options) {
   const MapView view = view_of(reader, std::filesystem::path(options.map).stem().string());
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
+  if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.stop = stop_on_signals();
   fix_options.time_limit = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.time_limit_s));
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
@@ -103,6 +106,7 @@ void add_fix_command(CLI::App& app) {
   heading->needs("--heading-range");
   command->add_option("--confidence", o->fix.confidence, "Probability from which the answer is a fix")
       ->capture_default_str();
+  add_calibration_option(*command, o->calibration);
   command->add_option("--modes", o->fix.max_modes, "Places to report at most")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));

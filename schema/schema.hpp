@@ -11,4 +11,7 @@ std::string_view map_sql();
 /// Every route of the service, OpenAPI 3.1 (schema/openapi.json).
 std::string_view openapi_json();
 
+/// How sure the service is of its answers (core/locate/calibration.json).
+std::string_view calibration_json();
+
 }  // namespace roadfix::schema

@@ -198,7 +198,8 @@ std::string describe(const QuerySet& set) {
     return set.together > 1 ? fmt::format("{} {} together", name, set.together) : name;
   }
   const std::string what = set.kind == QuerySet::Kind::kSimulated ? "simulated" : set.path.filename().string();
-  return fmt::format("{} {}x{} m", what, set.footprint.width_m, set.footprint.height_m);
+  return fmt::format("{}{} {}x{} m", what, set.elsewhere ? " elsewhere" : "", set.footprint.width_m,
+                     set.footprint.height_m);
 }
 
 }  // namespace roadfix::bench

@@ -7,12 +7,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cli/bench/honesty.hpp"
 #include "server/api/fix_json.hpp"
 
 namespace roadfix::bench {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
 json pose_json(const GeoPose& pose) {
   return {
@@ -33,7 +36,19 @@ json outcome_json(const Outcome& outcome) {
           {"probability", answer.probability},
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
+          {"position_nees", number_or_null(outcome.position_nees)},
           {"time_ms", answer.time_ms}};
+}
+
+/// Squared distance of `truth` from the mode in units of its ellipse.
+double nees(const FixMode& mode, GridPoint truth, const UtmZone& zone) {
+  const GridPoint at = zone.project(mode.pose.position);
+  const Angle major = zone.grid_from_true(mode.ellipse_heading, at);
+  const double east = truth.east_m - at.east_m;
+  const double north = truth.north_m - at.north_m;
+  const double along = (east * sin(major) + north * cos(major)) / mode.sigma_m[0];
+  const double across = (east * cos(major) - north * sin(major)) / mode.sigma_m[1];
+  return along * along + across * across;
 }
 
 std::string cell(const std::optional<double>& value, int digits) {
@@ -43,13 +58,16 @@ std::string cell(const std::optional<double>& value, int digits) {
 }  // namespace
 
 Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone) {
-  Outcome outcome{id, truth, std::move(answer), {}, {}};
+  Outcome outcome{id, truth, std::move(answer), {}, {}, {}};
   const auto& best = outcome.answer.best;
   if (best && !truth) {
-    outcome.error_m = std::numeric_limits<double>::infinity();
+    outcome.error_m = kNowhere;
   } else if (best) {
     outcome.error_m = distance_m(zone.project(best->position), zone.project(truth->position));
     outcome.heading_error_deg = angular_distance(best->heading, truth->heading).degrees();
+  }
+  if (const auto& mode = outcome.answer.mode) {
+    outcome.position_nees = truth ? nees(*mode, zone.project(truth->position), zone) : kNowhere;
   }
   return outcome;
 }
@@ -107,7 +125,16 @@ json to_json(const SetResult& result) {
           {"median_error_m", number_or_null(f.median_error_m)},
           {"median_heading_error_deg", number_or_null(f.median_heading_error_deg)},
           {"time_ms", {{"p50", f.time_p50_ms}, {"p95", f.time_p95_ms}}},
+          {"honesty", to_json(honesty_of(result.outcomes))},
           {"queries", queries}};
+}
+
+std::vector<Outcome> road_outcomes(const std::vector<SetResult>& results) {
+  std::vector<Outcome> outcomes;
+  for (const SetResult& result : results) {
+    if (result.method == "roads") outcomes.insert(outcomes.end(), result.outcomes.begin(), result.outcomes.end());
+  }
+  return outcomes;
 }
 
 std::string to_table(const std::vector<SetResult>& results) {

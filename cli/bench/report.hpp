@@ -17,6 +17,9 @@ struct Outcome {
   Answer answer;
   std::optional<double> error_m;  ///< of the best guess, whatever the status; infinite where the truth is elsewhere
   std::optional<double> heading_error_deg;
+  /// Squared error of the position in units of the stated ellipse, infinite where the truth is elsewhere; nullopt
+  /// where no ellipse was stated.
+  std::optional<double> position_nees;
 };
 
 /// Errors of an answer, in the plane of the zone.
@@ -46,9 +49,15 @@ struct SetResult {
   std::string map;
   std::string query_set;  ///< file name of the imagery or frames, or "simulated", and the footprint
   std::vector<Outcome> outcomes;
+  double footprint_m = 0.0;  ///< shorter side, 0 for real frames
+  bool elsewhere = false;    ///< no query shows ground of the map
 };
 
+/// With the honesty of the set (honesty.hpp).
 nlohmann::json to_json(const SetResult& result);
+/// All outcomes of the method "roads".
+std::vector<Outcome> road_outcomes(const std::vector<SetResult>& results);
+
 std::string to_table(const std::vector<SetResult>& results);
 
 }  // namespace roadfix::bench

@@ -15,8 +15,15 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
     const Fix fix = locate(map_, features_of(query), query.prior, options_.fix);
-    Answer answer{fix.status, fix.reason, {}, fix.probability, 0.0};
-    if (!fix.modes.empty()) answer.best = fix.modes.front().pose;
+    Answer answer;
+    answer.status = fix.status;
+    answer.reason = fix.reason;
+    answer.probability = fix.probability;
+    answer.evidence = fix.evidence;
+    if (!fix.modes.empty()) {
+      answer.mode = fix.modes.front();
+      answer.best = answer.mode->pose;
+    }
     answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return answer;
   }

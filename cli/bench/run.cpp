@@ -64,7 +64,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));
-        results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, options)});
+        results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, options),
+                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere});
       }
     }
   }

@@ -4,24 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace roadfix {
 namespace {
 
-constexpr double kChanceSafety = 10.0;
-constexpr std::size_t kFewestRivals = 12;
-
 // Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample. An
 // agreement of this many standard deviations is not chance, even where all places of a regular city reach it.
 constexpr double kSampleM2 = 15.0 * 15.0;
-constexpr double kBeyondChance = 12.0;
+constexpr double kBeyondChanceDeviations = 12.0;
 
-/// Fisher's z: differences between correlations near 1 mean more than the same near 0.
-double fisher(double score) {
-  constexpr double kPerfect = 0.9999;
-  return std::atanh(std::clamp(score, -kPerfect, kPerfect));
-}
+// Chance would give a hundredth of a place that fits as well.
+constexpr double kBeyondChance = 4.6;
 
 double deviations(const SearchMode& mode, double cell_m) {
   const double samples = static_cast<double>(mode.observed_cells) * cell_m * cell_m / kSampleM2;
@@ -45,23 +39,19 @@ std::vector<double> shares(const SearchResult& found) {
   return result;
 }
 
-}  // namespace
-
-double expected_by_chance(double best_score, const ScoreBackground& background) {
-  const std::vector<double>& rivals = background.rivals;
-  if (rivals.size() < kFewestRivals) return std::numeric_limits<double>::infinity();
-  const double lowest = fisher(rivals.back());
-  const auto count = static_cast<double>(rivals.size() - 1);
-  double mean_excess = 0.0;
-  for (const double score : rivals) mean_excess += (fisher(score) - lowest) / count;
-  const double excess = fisher(best_score) - lowest;
-  if (mean_excess <= 0.0 || excess <= 0.0) return std::numeric_limits<double>::infinity();
-  // The mean excess is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
-  const double tail = std::pow(1.0 + excess / (mean_excess * count), -count);
-  return background.region_share * count * tail;
+/// The best mode has its probability, the others are to it as their posteriors are, as far as that leaves room.
+std::vector<double> weights_of(const std::vector<double>& shares, double probability) {
+  std::vector<double> weights;
+  for (const double share : shares) weights.push_back(probability * share / shares.front());
+  const double others = std::accumulate(weights.begin() + 1, weights.end(), 0.0);
+  const double room = others > 1.0 - probability ? (1.0 - probability) / others : 1.0;
+  for (std::size_t i = 1; i < weights.size(); ++i) weights[i] *= room;
+  return weights;
 }
 
-Decision decide(const SearchResult& found, double confidence) {
+}  // namespace
+
+Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
   Decision decision;
   if (found.modes.empty()) {
     decision.reason = "map-too-empty";
@@ -70,19 +60,29 @@ Decision decide(const SearchResult& found, double confidence) {
         "the region or ingest more sources";
     return decision;
   }
-  const SearchMode& best = found.modes.front();
-  const double above_chance = std::exp(-kChanceSafety * expected_by_chance(best.score, found.background));
-  decision.weights = shares(found);
-  for (double& weight : decision.weights) weight *= above_chance;
-  decision.probability = decision.weights.front();
+  const SearchEvidence evidence = evidence_of(found);
+  const std::vector<double> posterior = shares(found);
+  decision.probability = calibration.probability(evidence);
+  decision.weights = weights_of(posterior, decision.probability);
   if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
-  } else if (above_chance >= confidence || deviations(best, found.cell_m) >= kBeyondChance) {
+    return decision;
+  }
+  const auto alike =
+      std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
+  if (evidence.surprise >= kBeyondChance || deviations(found.modes.front(), found.cell_m) >= kBeyondChanceDeviations) {
     decision.status = FixStatus::kAmbiguous;
-    decision.reason = "several-places-fit";
-    decision.explanation = fmt::format(
-        "the roads fit at {} places about as well: narrow the prior, give a heading, or fly on and ask again",
-        std::max<std::size_t>(2, found.modes.size()));
+    decision.weights.resize(static_cast<std::size_t>(alike));
+    decision.reason = alike > 1 ? "several-places-fit" : "below-confidence";
+    decision.explanation =
+        alike > 1 ? fmt::format(
+                        "the roads fit at {} places about as well: narrow the prior, give a heading, or fly on "
+                        "and ask again",
+                        alike)
+                  : fmt::format(
+                        "the roads fit best at one place, but less surely ({:.3f}) than asked ({}): use a "
+                        "larger footprint or a narrower prior, or fly on and ask again",
+                        decision.probability, confidence);
   } else {
     decision.reason = "not-above-chance";
     decision.explanation =

@@ -1,18 +1,14 @@
 // Is the best place the true one? From the scores of a search to a status and a probability.
 //
-// Two doubts are told apart.
-// (1) Chance: among so many places some fit well although the UAV is at none of them. The scores of the distinct places
-//     beside the best one tell how fast such maxima thin out (an exponential tail of their Fisher z above the lowest of
-//     them); from that follows how many at least as good as the best one chance would give.
-// (2) Several places that fit: the posterior over the modes from their tempered log-likelihood (ScoreBackground).
-//
-// Assumed, not yet learned from data: the exponential tail, a factor kChanceSafety on the expected number, the temper
-// of the likelihood. All lean to the side of no fix.
+// The probability comes from the evidence of the search by the calibration. The other places that
+// fit are to the best one as their posteriors from the tempered log-likelihood are (ScoreBackground), as far as the
+// probability leaves room for them.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "core/locate/calibration.hpp"
 #include "core/locate/fix.hpp"
 #include "core/match/search.hpp"
 
@@ -23,12 +19,13 @@ struct Decision {
   std::string reason;
   std::string explanation;
   double probability = 0.0;
-  std::vector<double> weights;  ///< per mode of the search, against each other and against chance
+  /// Of the modes of the search that count, best first: all of a fix or a refusal, of an ambiguous answer those with at
+  /// least kModeShare of the best one's posterior. The first is the probability, and all sum to at most 1.
+  std::vector<double> weights;
 };
 
-/// How many places of the region would reach the score of the best mode by chance; infinity where too few rivals tell.
-double expected_by_chance(double best_score, const ScoreBackground& background);
+inline constexpr double kModeShare = 0.01;
 
-Decision decide(const SearchResult& found, double confidence);
+Decision decide(const SearchResult& found, const Calibration& calibration, double confidence);
 
 }  // namespace roadfix

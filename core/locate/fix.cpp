@@ -44,7 +44,7 @@ bool hopeless(const FeatureMap& features, Fix& fix) {
   return false;
 }
 
-FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight) {
+FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight, const Calibration& calibration) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const auto& c = mode.covariance;
   const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
@@ -53,10 +53,11 @@ FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight)
   result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};
   result.weight = weight;
   result.rho = mode.rho;
-  result.sigma_m = ellipse.sigma_m;
+  result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
+                    calibration.position_sigma_scale * ellipse.sigma_m[1]};
   const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
   result.ellipse_heading = Angle::degrees(std::fmod(major_deg, 180.0));
-  result.heading_sigma = Angle::radians(std::sqrt(c[2][2]));
+  result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(c[2][2]));
   result.observed_cells = mode.observed_cells;
   return result;
 }
@@ -93,14 +94,16 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   if (options.time_limit.count() > 0) search_options.deadline = started + options.time_limit;
   const SearchResult found = search(map.read, cells.cell_m, cells, region, search_options);
 
-  Decision decision = decide(found, options.confidence);
+  const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
+  Decision decision = decide(found, calibration, options.confidence);
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);
   fix.explanation = std::move(decision.explanation);
   fix.probability = decision.probability;
-  for (std::size_t i = 0; i < found.modes.size(); ++i) {
-    fix.modes.push_back(to_geographic(map, found.modes[i], decision.weights[i]));
+  for (std::size_t i = 0; i < decision.weights.size(); ++i) {
+    fix.modes.push_back(to_geographic(map, found.modes[i], decision.weights[i], calibration));
   }
+  if (!found.modes.empty()) fix.evidence = evidence_of(found);
   fix.searched_km2 = region.area_km2();
   fix.headings = found.headings;
   fix.search_time = std::chrono::steady_clock::now() - started;

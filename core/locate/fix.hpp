@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
+#include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/match/correlation.hpp"
 
@@ -51,10 +53,15 @@ struct FixOptions {
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; past it Interrupted
   int threads = 1;
-  std::stop_token stop;  ///< Interrupted when requested
+  std::stop_token stop;                            ///< Interrupted when requested
+  std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };
+
+/// The region that a probability speaks of: the ellipse of so many standard deviations about the best mode. It holds
+/// 99.97 % of a normal distribution, so that confidences up to 0.999 can be asked for.
+inline constexpr double kRegionSigmas = 4.0;
 
 struct FixMode {
   GeoPose pose;
@@ -69,9 +76,10 @@ struct FixMode {
 struct Fix {
   FixStatus status = FixStatus::kNoFix;
   std::string reason;  ///< stable word for no_fix and ambiguous ("too-few-roads", "not-above-chance", ...), else empty
-  std::string explanation;     ///< the same for a person, with what to do
-  double probability = 0.0;    ///< that the best mode is the true place
-  std::vector<FixMode> modes;  ///< best first; also given for no_fix, as a hint that must not be flown on
+  std::string explanation;                 ///< the same for a person, with what to do
+  double probability = 0.0;                ///< that the true position lies within kRegionSigmas of the best mode
+  std::vector<FixMode> modes;              ///< best first; also given for no_fix, as a hint that must not be flown on
+  std::optional<SearchEvidence> evidence;  ///< of the best mode
   double searched_km2 = 0.0;
   int headings = 0;
   std::string map_name;
@@ -79,7 +87,7 @@ struct Fix {
   std::chrono::duration<double, std::milli> search_time{};
 };
 
-/// Search (core/match/search.hpp), then decide (decision.hpp says what is assumed about probabilities).
+/// Search (core/match/search.hpp), then decide (calibration.hpp says where probabilities come from).
 /// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all,
 /// LimitExceeded and Interrupted by the options.
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options);

@@ -55,6 +55,17 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
   return answer;
 }
 
+json to_json(const Localizability& place) {
+  json answer{{"status", to_string(place.status)},
+              {"probability", place.probability},
+              {"road_share", place.road_share},
+              {"observed_share", place.observed_share},
+              {"alike", json::array()}};
+  if (!place.reason.empty()) answer["reason"] = place.reason;
+  for (const FixMode& mode : place.alike) answer["alike"].push_back(mode_json(mode));
+  return answer;
+}
+
 json to_json(std::span<const MatchScore> scores) {
   json answer = json::array();
   for (const MatchScore& score : scores) {

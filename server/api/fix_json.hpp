@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/locate/fix.hpp"
+#include "core/locate/localizability.hpp"
 #include "core/match/correlation.hpp"
 
 namespace roadfix::api {
@@ -19,6 +20,8 @@ const char* to_string(FixStatus status);
 
 /// `detect_time` where the fix began with a frame.
 nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time = {});
+
+nlohmann::json to_json(const Localizability& place);
 
 /// One object per pose: rho and probability (equations 5 and 7) are null where they are not defined.
 nlohmann::json to_json(std::span<const MatchScore> scores);

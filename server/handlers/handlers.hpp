@@ -16,6 +16,7 @@ void add_window_route(http::Router& router, const Service& service);
 void add_tile_routes(http::Router& router, const Service& service);
 void add_match_route(http::Router& router, const Service& service);
 void add_fix_route(http::Router& router, const Service& service);
+void add_localizability_route(http::Router& router, const Service& service);
 void add_detect_route(http::Router& router, const Service& service);
 
 }  // namespace roadfix::server

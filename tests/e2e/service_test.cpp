@@ -141,6 +141,18 @@ TEST_F(Service, SearchesOnlyWhereThePriorAllows) {
             "422 prior-outside-map");
 }
 
+TEST_F(Service, SaysBeforeTheFlightWhatAFrameOfAPlaceWouldGive) {
+  const json answer = testing::json_of(client_.Get("/v1/maps/town/localizability?footprint_m=500&radius_m=300" +
+                                                   std::string("&lat=") + std::to_string(town->place.lat_deg) +
+                                                   "&lon=" + std::to_string(town->place.lon_deg)));
+  EXPECT_EQ(answer["status"], "fix") << answer;
+  EXPECT_GT(answer["probability"], 0.9);
+  EXPECT_GT(answer["road_share"], 0.0);
+  EXPECT_EQ(answer["map"]["name"], "town");
+  EXPECT_EQ(testing::refusal(client_.Get("/v1/maps/town/localizability?footprint_m=3&lat=10&lon=20")),
+            "400 parameter-out-of-range footprint_m");
+}
+
 TEST_F(Service, ScoresPosesInTheirOrder) {
   json request = testing::json_of(client_.Get(window_query(120.0) + "&format=json"));
   json elsewhere = request["pose"];

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace roadfix {
 namespace {
@@ -30,7 +32,7 @@ SearchResult found(double score, double second, double lowest) {
 }
 
 TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
-  const Decision decision = decide(found(0.8, 0.35, 0.2), 0.99);
+  const Decision decision = decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kFix);
   EXPECT_GE(decision.probability, 0.99);
   EXPECT_TRUE(decision.reason.empty());
@@ -38,34 +40,45 @@ TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
 }
 
 TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
-  const Decision decision = decide(found(0.38, 0.35, 0.2), 0.99);
+  const Decision decision = decide(found(0.38, 0.35, 0.2), default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
-  EXPECT_LT(decision.probability, 0.1);
+  EXPECT_LT(decision.probability, 0.5);
 }
 
 TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
-  const Decision decision = decide(found(0.85, 0.84, 0.7), 0.99);
+  const Decision decision = decide(found(0.85, 0.84, 0.7), default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "several-places-fit");
+}
+
+TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
+  const SearchResult result = found(0.8, 0.35, 0.2);
+  const Decision decision = decide(result, default_calibration(), 0.9999);
+  EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
+  EXPECT_EQ(decision.reason, "below-confidence");
+  EXPECT_EQ(decision.weights.size(), 1U);
+}
+
+TEST(Decision, WeightsAreSharedByTheModes) {
+  for (const double second : {0.3, 0.5, 0.7, 0.79, 0.8}) {
+    const Decision decision = decide(found(0.8, second, 0.2), default_calibration(), 0.99);
+    double sum = 0.0;
+    for (const double weight : decision.weights) sum += weight;
+    EXPECT_LE(sum, 1.0 + 1e-12);
+    EXPECT_EQ(decision.weights.front(), decision.probability);
+    EXPECT_TRUE(std::ranges::is_sorted(decision.weights, std::ranges::greater{}));
+  }
 }
 
 TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {
   SearchResult few = found(0.4, 0.1, 0.05);
   few.background.rivals.resize(5);
-  EXPECT_EQ(decide(few, 0.5).status, FixStatus::kNoFix);
-  EXPECT_TRUE(std::isinf(expected_by_chance(0.4, few.background)));
-}
-
-TEST(Decision, ASmallerRegionLeavesChanceLessRoom) {
-  SearchResult small = found(0.5, 0.35, 0.2);
-  const double whole = expected_by_chance(0.5, small.background);
-  small.background.region_share = 0.01;
-  EXPECT_NEAR(expected_by_chance(0.5, small.background), 0.01 * whole, 1e-12);
+  EXPECT_EQ(decide(few, default_calibration(), 0.9).status, FixStatus::kNoFix);
 }
 
 TEST(Decision, WithoutAnyModeTheMapIsTooEmpty) {
-  const Decision decision = decide({}, 0.99);
+  const Decision decision = decide({}, default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "map-too-empty");
 }

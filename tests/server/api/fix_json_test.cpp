@@ -52,6 +52,20 @@ TEST(FixJson, WithoutAFixNoPositionStandsAtTheTop) {
   EXPECT_FALSE(answer["time_ms"].contains("detect"));
 }
 
+TEST(FixJson, ALocalizabilityNamesThePlacesAlike) {
+  Localizability place;
+  place.status = FixStatus::kAmbiguous;
+  place.reason = "several-places-fit";
+  place.probability = 0.4;
+  place.alike = {mode()};
+  const auto answer = to_json(place);
+  EXPECT_EQ(answer["status"], "ambiguous");
+  EXPECT_EQ(answer["reason"], "several-places-fit");
+  EXPECT_EQ(answer["probability"], 0.4);
+  EXPECT_EQ(answer["alike"][0]["pose"]["lat"], 37.7632);
+  EXPECT_FALSE(to_json(Localizability{}).contains("reason"));
+}
+
 TEST(FixJson, AMatchWithoutCommonCellsHasNoRho) {
   const std::vector<MatchScore> scores{{0.25, 100}, {-0.5, 7}, {std::nullopt, 0}};
   const auto answer = to_json(scores);

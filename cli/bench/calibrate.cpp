@@ -1,0 +1,176 @@
+#include "cli/bench/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kFigures = 3;
+constexpr int kFewest = 50;
+constexpr double kWithin95OfPosition = 5.991;  // of chi^2 with two degrees
+constexpr double kWithin95OfHeading = 3.841;   // with one
+
+struct Example {
+  std::array<double, kFigures> figures{};
+  bool right = false;
+};
+
+struct Scales {
+  double position = 1.0;
+  double heading = 1.0;
+};
+
+/// So that the right answers have the mean of chi^2, and 95 % of them lie where 95 % should.
+double scale_of(const std::vector<double>& normalised, double mean, double within_95) {
+  double sum = 0.0;
+  for (const double value : normalised) sum += value / static_cast<double>(normalised.size());
+  return std::sqrt(std::max(sum / mean, quantile(normalised, 0.95).value_or(0.0) / within_95));
+}
+
+Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force) {
+  std::vector<double> position;
+  std::vector<double> heading;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.position_nees || !outcome.error_m || *outcome.error_m > kFalseFixM) continue;
+    position.push_back(*outcome.position_nees);
+    heading.push_back(std::pow(*outcome.heading_error_deg / outcome.answer.mode->heading_sigma.degrees(), 2));
+  }
+  if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
+  return {in_force.position_sigma_scale * scale_of(position, 2.0, kWithin95OfPosition),
+          in_force.heading_sigma_scale * scale_of(heading, 1.0, kWithin95OfHeading)};
+}
+
+/// Bias first.
+using Weights = std::array<double, kFigures + 1>;
+
+double sum_of(const Weights& weights, const std::array<double, kFigures>& figures) {
+  double sum = weights[0];
+  for (std::size_t i = 0; i < kFigures; ++i) sum += weights[i + 1] * figures[i];
+  return sum;
+}
+
+/// Maximum likelihood with a ridge over standardised figures, by projected gradient ascent: the problem is convex.
+Weights logistic(std::span<const Example> examples) {
+  constexpr int kSteps = 20'000;
+  constexpr double kRidge = 1e-3;
+  constexpr double kRate = 0.5;
+  Weights weights{};
+  const auto n = static_cast<double>(examples.size());
+  for (int step = 0; step < kSteps; ++step) {
+    Weights gradient{};
+    for (const Example& example : examples) {
+      const double miss = (example.right ? 1.0 : 0.0) - 1.0 / (1.0 + std::exp(-sum_of(weights, example.figures)));
+      gradient[0] += miss / n;
+      for (std::size_t i = 0; i < kFigures; ++i) gradient[i + 1] += miss * example.figures[i] / n;
+    }
+    weights[0] += kRate * gradient[0];
+    for (std::size_t i = 1; i <= kFigures; ++i) {
+      weights[i] = std::max(0.0, weights[i] + kRate * (gradient[i] - kRidge * weights[i]));
+    }
+  }
+  return weights;
+}
+
+/// The largest probability of a group of surest answers, by Laplace's rule of succession.
+double highest_of(std::span<const Example> examples, const Weights& weights) {
+  std::vector<std::pair<double, bool>> surest;
+  for (const Example& example : examples) surest.emplace_back(sum_of(weights, example.figures), example.right);
+  std::ranges::sort(surest, std::ranges::greater{});
+  double highest = 0.0;
+  int wrong = 0;
+  for (std::size_t i = 0; i < surest.size(); ++i) {
+    wrong += surest[i].second ? 0 : 1;
+    highest = std::max(highest, 1.0 - (wrong + 1.0) / (static_cast<double>(i) + 3.0));
+  }
+  return highest;
+}
+
+struct Scaling {
+  std::array<double, kFigures> most{};
+  std::array<double, kFigures> mean{};
+  std::array<double, kFigures> spread{};
+};
+
+/// Cuts the figures off at the median of the right answers, above which hardly a wrong one is left to learn from, then
+/// brings them to mean 0 and spread 1.
+Scaling standardise(std::vector<Example>& examples) {
+  Scaling scaling;
+  const auto n = static_cast<double>(examples.size());
+  for (std::size_t i = 0; i < kFigures; ++i) {
+    std::vector<double> values;
+    for (const Example& example : examples) {
+      if (example.right) values.push_back(example.figures[i]);
+    }
+    scaling.most[i] = quantile(values, 0.5).value_or(0.0);
+    for (Example& example : examples) example.figures[i] = std::min(example.figures[i], scaling.most[i]);
+    for (const Example& example : examples) scaling.mean[i] += example.figures[i] / n;
+    double square = 0.0;
+    for (const Example& example : examples) square += std::pow(example.figures[i] - scaling.mean[i], 2) / n;
+    scaling.spread[i] = std::max(std::sqrt(square), 1e-9);
+    for (Example& example : examples) example.figures[i] = (example.figures[i] - scaling.mean[i]) / scaling.spread[i];
+  }
+  return scaling;
+}
+
+}  // namespace
+
+CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Calibration& in_force) {
+  CalibrationReport report;
+  const Scales scales = scales_of(outcomes, in_force);
+  const double region = kRegionSigmas * scales.position / in_force.position_sigma_scale;
+  std::vector<Example> examples;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.answer.evidence || !outcome.position_nees) continue;
+    const SearchEvidence& evidence = *outcome.answer.evidence;
+    const bool right = *outcome.position_nees <= region * region;
+    examples.push_back({{evidence.surprise, evidence.lead, evidence.gap}, right});
+    report.right += right ? 1 : 0;
+    report.elsewhere += outcome.truth ? 0 : 1;
+  }
+  report.examples = static_cast<int>(examples.size());
+  if (report.right < kFewest || report.examples - report.right < kFewest) {
+    throw InvalidInput("calibration-too-few-examples",
+                       fmt::format("{} right and {} wrong answers are too few to learn from: ask at least {} of each",
+                                   report.right, report.examples - report.right, kFewest));
+  }
+  const Scaling scaling = standardise(examples);
+  const Weights weights = logistic(examples);
+  Calibration& c = report.calibration;
+  c.bias = weights[0];
+  const std::array<Calibration::Term*, kFigures> terms{&c.surprise, &c.lead, &c.gap};
+  for (std::size_t i = 0; i < kFigures; ++i) {
+    *terms[i] = {weights[i + 1] / scaling.spread[i], scaling.most[i]};
+    c.bias -= weights[i + 1] * scaling.mean[i] / scaling.spread[i];
+  }
+  c.highest = highest_of(examples, weights);
+  c.position_sigma_scale = scales.position;
+  c.heading_sigma_scale = scales.heading;
+  return report;
+}
+
+json to_json(const CalibrationReport& report, const json& origin) {
+  const Calibration& c = report.calibration;
+  const auto term = [](const Calibration::Term& t) { return json{{"weight", t.weight}, {"most", t.most}}; };
+  json document{{"format", "roadfix-calibration-1"},
+                {"bias", c.bias},
+                {"terms", {{"surprise", term(c.surprise)}, {"lead", term(c.lead)}, {"gap", term(c.gap)}}},
+                {"highest", c.highest},
+                {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
+                {"origin", origin}};
+  document["origin"]["examples"] = report.examples;
+  document["origin"]["right"] = report.right;
+  document["origin"]["elsewhere"] = report.elsewhere;
+  return document;
+}
+
+}  // namespace roadfix::bench

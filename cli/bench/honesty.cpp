@@ -1,0 +1,123 @@
+#include "cli/bench/honesty.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<double, 9> kBinEdges{0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.995};
+constexpr double kConfident = 0.9;
+constexpr double kWithin95 = 5.991;  // of chi^2 with two degrees
+
+bool false_fix(const Outcome& outcome) { return !outcome.error_m || *outcome.error_m > kFalseFixM; }
+
+bool right(const Outcome& outcome) {
+  return outcome.position_nees && *outcome.position_nees <= kRegionSigmas * kRegionSigmas;
+}
+
+std::vector<ReliabilityBin> bins_of(std::span<const Outcome> outcomes) {
+  std::vector<ReliabilityBin> bins(kBinEdges.size() + 1);
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.answer.mode) continue;
+    const double p = outcome.answer.probability;
+    ReliabilityBin& bin = bins[static_cast<std::size_t>(std::ranges::upper_bound(kBinEdges, p) - kBinEdges.begin())];
+    ++bin.n;
+    bin.mean_probability += p;
+    bin.right += right(outcome) ? 1 : 0;
+  }
+  std::erase_if(bins, [](const ReliabilityBin& bin) { return bin.n == 0; });
+  for (ReliabilityBin& bin : bins) bin.mean_probability /= bin.n;
+  return bins;
+}
+
+AtConfidence at_confidence(std::span<const Outcome> outcomes, double confidence) {
+  AtConfidence at{confidence};
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.answer.mode || outcome.answer.probability < confidence) continue;
+    ++at.answered;
+    at.outside += right(outcome) ? 0 : 1;
+    at.false_fixes += false_fix(outcome) ? 1 : 0;
+  }
+  return at;
+}
+
+json interval_json(const Interval& interval) { return {interval.low, interval.high}; }
+
+}  // namespace
+
+Honesty honesty_of(std::span<const Outcome> outcomes) {
+  Honesty honesty;
+  honesty.bins = bins_of(outcomes);
+  for (const ReliabilityBin& bin : honesty.bins) {
+    honesty.n += bin.n;
+    honesty.expected_calibration_error += std::abs(bin.mean_probability * bin.n - bin.right);
+  }
+  if (honesty.n > 0) honesty.expected_calibration_error /= honesty.n;
+  honesty.at = {at_confidence(outcomes, 0.9), at_confidence(outcomes, 0.99), at_confidence(outcomes, 0.999)};
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.position_nees || outcome.answer.probability < kConfident || false_fix(outcome)) continue;
+    ++honesty.nees_n;
+    honesty.mean_nees += *outcome.position_nees;
+    honesty.within_95 += *outcome.position_nees <= kWithin95 ? 1 : 0;
+  }
+  if (honesty.nees_n > 0) honesty.mean_nees /= honesty.nees_n;
+  return honesty;
+}
+
+json to_json(const Honesty& honesty) {
+  json bins = json::array();
+  for (const ReliabilityBin& bin : honesty.bins) {
+    bins.push_back({{"n", bin.n},
+                    {"mean_probability", bin.mean_probability},
+                    {"right", bin.right},
+                    {"right_share_95", interval_json(clopper_pearson(bin.right, bin.n))}});
+  }
+  json at = json::array();
+  for (const AtConfidence& a : honesty.at) {
+    at.push_back({{"confidence", a.confidence},
+                  {"answered", a.answered},
+                  {"outside_ellipse", a.outside},
+                  {"false_fixes", a.false_fixes},
+                  {"false_fix_rate_95", interval_json(clopper_pearson(a.false_fixes, a.answered))}});
+  }
+  json nees = {{"n", honesty.nees_n}};
+  if (honesty.nees_n > 0) {
+    nees["mean"] = honesty.mean_nees;
+    nees["band_95"] = interval_json(chi_square_mean_band(honesty.nees_n, 2));
+    nees["within_95_ellipse"] = honesty.within_95;
+    nees["within_95_ellipse_95"] = interval_json(clopper_pearson(honesty.within_95, honesty.nees_n));
+  }
+  return {{"n", honesty.n},
+          {"reliability", bins},
+          {"expected_calibration_error", honesty.expected_calibration_error},
+          {"at_confidence", at},
+          {"position_nees", nees}};
+}
+
+std::string to_text(const Honesty& honesty) {
+  if (honesty.n == 0) return {};
+  std::string text = fmt::format("honesty over {} answers: expected calibration error {:.3f}\n", honesty.n,
+                                 honesty.expected_calibration_error);
+  for (const ReliabilityBin& bin : honesty.bins) {
+    const Interval share = clopper_pearson(bin.right, bin.n);
+    text += fmt::format("  said {:.3f}: right {:>4} of {:<4} = {:.3f} (95 %: {:.3f} to {:.3f})\n", bin.mean_probability,
+                        bin.right, bin.n, static_cast<double>(bin.right) / bin.n, share.low, share.high);
+  }
+  for (const AtConfidence& a : honesty.at) {
+    const Interval rate = clopper_pearson(a.false_fixes, a.answered);
+    text += fmt::format("  at confidence {}: {} fixes, {} false (95 %: {:.4f} to {:.4f}), {} outside their ellipse\n",
+                        a.confidence, a.answered, a.false_fixes, rate.low, rate.high, a.outside);
+  }
+  if (honesty.nees_n == 0) return text;
+  const Interval band = chi_square_mean_band(honesty.nees_n, 2);
+  return text + fmt::format("  position NEES {:.2f} (consistent: {:.2f} to {:.2f}), {} of {} in the 95 % ellipse\n",
+                            honesty.mean_nees, band.low, band.high, honesty.within_95, honesty.nees_n);
+}
+
+}  // namespace roadfix::bench

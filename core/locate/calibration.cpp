@@ -1,0 +1,79 @@
+#include "core/locate/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/units/error.hpp"
+#include "schema/schema.hpp"
+
+namespace roadfix {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kFormat = "roadfix-calibration-1";
+
+[[noreturn]] void refuse(const std::string& field, const std::string& what) {
+  throw InvalidInput("calibration-field", fmt::format("calibration file: {} {}; write a new one with roadfix bench "
+                                                      "--calibrate",
+                                                      field, what));
+}
+
+double number(const json& object, const std::string& key, double low, double high) {
+  if (!object.is_object() || !object.contains(key) || !object.at(key).is_number()) refuse(key, "must be a number");
+  const auto value = object.at(key).get<double>();
+  if (!(value >= low && value <= high)) refuse(key, fmt::format("is {}, not within {} to {}", value, low, high));
+  return value;
+}
+
+Calibration::Term term(const json& terms, const std::string& name) {
+  constexpr double kLargest = 1e6;
+  if (!terms.is_object() || !terms.contains(name)) refuse(name, "is missing");
+  return {number(terms.at(name), "weight", 0.0, kLargest), number(terms.at(name), "most", -kLargest, kLargest)};
+}
+
+json parsed(std::string_view text) {
+  try {
+    return json::parse(text);
+  } catch (const json::exception& error) {
+    throw InvalidInput("calibration-json", fmt::format("calibration file: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+double Calibration::probability(const SearchEvidence& evidence) const {
+  const auto counted = [](const Term& t, double figure) { return t.weight * std::min(figure, t.most); };
+  const double sum =
+      bias + counted(surprise, evidence.surprise) + counted(lead, evidence.lead) + counted(gap, evidence.gap);
+  return std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
+}
+
+Calibration parse_calibration(std::string_view text) {
+  const json document = parsed(text);
+  if (!document.is_object() || document.value("format", json()) != kFormat) {
+    refuse("format", fmt::format("is not \"{}\"", kFormat));
+  }
+  constexpr double kLargest = 1e6;
+  const json terms = document.value("terms", json());
+  Calibration calibration;
+  calibration.bias = number(document, "bias", -kLargest, kLargest);
+  calibration.surprise = term(terms, "surprise");
+  calibration.lead = term(terms, "lead");
+  calibration.gap = term(terms, "gap");
+  calibration.highest = number(document, "highest", 0.0, 1.0 - 1e-9);
+  const json scale = document.value("sigma_scale", json());
+  calibration.position_sigma_scale = number(scale, "position", 0.1, 100.0);
+  calibration.heading_sigma_scale = number(scale, "heading", 0.1, 100.0);
+  return calibration;
+}
+
+const Calibration& default_calibration() {
+  static const Calibration kShipped = parse_calibration(schema::calibration_json());
+  return kShipped;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,39 @@
+// From what a search says about its best place to the probability that it is the true one, learned from queries with
+// known truth (docs/calibration.md). Monotone in every figure, and never surer than the examples it was learned from:
+// beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/locate/search_evidence.hpp"
+
+namespace roadfix {
+
+struct Calibration {
+  /// One figure of the evidence in the sum that the logistic function turns into a probability.
+  struct Term {
+    double weight = 0.0;  ///< >= 0
+    double most = 0.0;    ///< larger figures count as this one
+  };
+
+  double bias = 0.0;
+  Term surprise;
+  Term lead;
+  Term gap;
+  double highest = 0.0;  ///< what the number of examples can vouch for, below 1
+  // Factors on the standard deviations that the shape of the peak gives, so that ellipses hold what they should.
+  double position_sigma_scale = 1.0;
+  double heading_sigma_scale = 1.0;
+
+  /// That the true position lies within the region of the best mode (kRegionSigmas).
+  double probability(const SearchEvidence& evidence) const;
+};
+
+/// The text of a calibration file; its `origin` is for people. Throws InvalidInput "calibration-..." naming the field.
+Calibration parse_calibration(std::string_view json);
+
+/// The one that is shipped (core/locate/calibration.json).
+const Calibration& default_calibration();
+
+}  // namespace roadfix

@@ -1,0 +1,69 @@
+#include "core/locate/localizability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr double kSmallestM = 20.0;
+constexpr double kLargestM = 5000.0;
+
+RoadGrid around(const MapView& map, GridPoint centre, double footprint_m) {
+  // Grid cells enough for the footprint at any error of scale and tilt.
+  const double reach = footprint_m;
+  return map.read(GridGeometry::covering(
+      {{centre.east_m - reach, centre.north_m - reach}, {centre.east_m + reach, centre.north_m + reach}}, map.cell_m));
+}
+
+double road_share(const CellArray& cells) {
+  double roads = 0.0;
+  for (const Cell cell : cells.cells()) roads += is_observed(cell) ? probability(cell) : 0.0;
+  const auto observed = static_cast<double>(cells.observed_count());
+  return observed > 0.0 ? roads / observed : 0.0;
+}
+
+/// Whether the mode's region holds the place, or is as near as the footprint's tenth that modes are apart at least.
+bool is_at(const FixMode& mode, GridPoint place, const MapView& map) {
+  return distance_m(map.zone.project(mode.pose.position), place) <= std::max(4.0 * map.cell_m, 2.0 * mode.sigma_m[0]);
+}
+
+}  // namespace
+
+Localizability localizability(const MapView& map, const LocalizabilityQuery& query) {
+  if (!(query.footprint_m >= kSmallestM && query.footprint_m <= kLargestM)) {
+    throw InvalidInput("footprint-out-of-range",
+                       fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestM, kLargestM));
+  }
+  const GridPoint place = map.zone.project(query.position);
+  const int cells = std::max(1, static_cast<int>(std::lround(query.footprint_m / map.cell_m)));
+  const RoadGrid ground = around(map, place, query.footprint_m);
+  std::mt19937_64 random(1);  // a place has one answer
+  const FeatureMap as_mapped = simulate_features(ground, {place, {}}, cells, cells, {}, random);
+  const FeatureMap seen = simulate_features(ground, {place, {}}, cells, cells, query.quality, random);
+
+  Prior prior;
+  prior.circle = GeoCircle{query.position, query.radius_m};
+  const Fix fix = locate(map, seen, prior, query.fix);
+  Localizability result;
+  result.road_share = road_share(as_mapped.cells);
+  result.observed_share =
+      static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());
+  const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map);
+  if (found) {
+    result.status = fix.status;
+    result.reason = fix.reason;
+    result.probability = fix.probability;
+  } else {
+    result.reason = fix.modes.empty() ? fix.reason : "wrong-place";
+  }
+  std::ranges::copy_if(fix.modes, std::back_inserter(result.alike),
+                       [&](const FixMode& mode) { return !is_at(mode, place, map); });
+  return result;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,32 @@
+// Before the flight: would a frame of a place give a fix? From the map alone.
+#pragma once
+
+#include "core/locate/fix.hpp"
+#include "core/locate/simulate.hpp"
+
+namespace roadfix {
+
+struct LocalizabilityQuery {
+  LatLon position;
+  double footprint_m = 400.0;  ///< side of the square of ground that a frame shows
+  double radius_m = 1500.0;    ///< of the prior circle that the place must be told from
+  /// Of the detector that is assumed: about that of a frame of a damaged town.
+  FeatureQuality quality{.erase = 0.25, .invent = 0.25};
+  FixOptions fix;
+};
+
+struct Localizability {
+  FixStatus status = FixStatus::kNoFix;  ///< what the frame would give; `fix` only at the place itself
+  std::string reason;                    ///< as of a Fix, or "wrong-place" where the best place is another one
+  double probability = 0.0;     ///< that the frame would be placed rightly; 0 where the best place is another one
+  double road_share = 0.0;      ///< of the observed ground of the footprint
+  double observed_share = 0.0;  ///< of the footprint
+  std::vector<FixMode> alike;   ///< other places that fit, best first
+};
+
+/// Cuts the footprint out of the map, north up, makes it as bad as the quality says (always with the same generator),
+/// and looks for it around the place at every heading. Throws what locate() throws, and InvalidInput
+/// "footprint-out-of-range".
+Localizability localizability(const MapView& map, const LocalizabilityQuery& query);
+
+}  // namespace roadfix

@@ -1,0 +1,58 @@
+#include "core/locate/search_evidence.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <span>
+
+namespace roadfix {
+namespace {
+
+// Of a region without any rival, or with too few to tell how they thin out: chance may explain everything.
+constexpr std::size_t kFewestRivals = 12;
+constexpr double kUnknown = -10.0;
+constexpr double kLargest = 1000.0;
+
+/// Differences between correlations near 1 mean more than the same near 0.
+double fisher(double score) {
+  constexpr double kPerfect = 0.9999;
+  return std::atanh(std::clamp(score, -kPerfect, kPerfect));
+}
+
+/// Of the rivals' scores above the lowest of them.
+double mean_excess(std::span<const double> rivals) {
+  const double lowest = fisher(rivals.back());
+  double sum = 0.0;
+  for (const double score : rivals) sum += fisher(score) - lowest;
+  return sum / static_cast<double>(rivals.size() - 1);
+}
+
+double second_of(const SearchResult& found) {
+  const ScoreBackground& background = found.background;
+  if (found.modes.size() > 1) return found.modes[1].score;
+  if (!background.rivals_within.empty()) return background.rivals_within.front();
+  return background.rivals.empty() ? found.modes.front().score : background.rivals.back();
+}
+
+}  // namespace
+
+SearchEvidence evidence_of(const SearchResult& found) {
+  assert(!found.modes.empty());
+  const ScoreBackground& background = found.background;
+  const double best = fisher(found.modes.front().score);
+  const double ahead = best - fisher(second_of(found));
+  SearchEvidence evidence{kUnknown, 0.0, 0.0};
+  if (background.sd > 0.0) evidence.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
+  if (background.rivals.size() < kFewestRivals) return evidence;
+  const double scale = mean_excess(background.rivals);
+  const double excess = best - fisher(background.rivals.back());
+  if (scale <= 0.0 || excess <= 0.0) return evidence;
+  // The scale is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
+  const auto count = static_cast<double>(background.rivals.size() - 1);
+  const double log_expected = std::log(background.region_share * count) - count * std::log1p(excess / (scale * count));
+  evidence.surprise = std::clamp(-log_expected, kUnknown, kLargest);
+  evidence.gap = std::clamp(ahead / scale, 0.0, kLargest);
+  return evidence;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,24 @@
+// What a search says about its own best place, in figures that mean the same for every map, footprint and region:
+// distances between scores in units of the spread that the scores of this very search have.
+#pragma once
+
+#include "core/match/search.hpp"
+
+namespace roadfix {
+
+struct SearchEvidence {
+  /// -ln of how many places of the region would fit as well as the best one by chance, if the scores of the distinct
+  /// places beside it thin out like an exponential tail of Fisher's z above the lowest of them (the domain of
+  /// attraction of Gumbel). Large = chance does not explain it.
+  double surprise = 0.0;
+  /// Fisher's z of the best place minus that of the next distinct one in the region, in standard deviations of the
+  /// scores of all scanned poses. Large = no other place explains it.
+  double lead = 0.0;
+  /// The same distance in mean excesses of that tail. Of chance alone it is about exponential with mean 1.
+  double gap = 0.0;
+};
+
+/// `found` holds a mode.
+SearchEvidence evidence_of(const SearchResult& found);
+
+}  // namespace roadfix

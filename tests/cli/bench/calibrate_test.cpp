@@ -1,0 +1,71 @@
+#include "cli/bench/calibrate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/bench/random.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+/// Answers that are right with a probability that is a logistic function of the surprise, errors of twice the ellipse.
+std::vector<Outcome> drawn(int n, std::uint64_t seed) {
+  Random random = stream(seed, 0, 0);
+  std::vector<Outcome> outcomes;
+  for (int i = 0; i < n; ++i) {
+    Outcome outcome;
+    const double surprise = uniform(random, -5.0, 5.0);
+    outcome.answer.evidence = SearchEvidence{surprise, 0.0, 0.0};
+    outcome.answer.mode = FixMode{};
+    outcome.answer.mode->heading_sigma = Angle::degrees(1.0);
+    const bool right = uniform(random, 0.0, 1.0) < 1.0 / (1.0 + std::exp(-1.5 * surprise));
+    // Chi^2 of two degrees, times 4: ellipses half as large as they should be.
+    const double nees = -8.0 * std::log(1.0 - uniform(random, 0.0, 1.0));
+    outcome.truth = GeoPose{};
+    outcome.error_m = right ? 2.0 : 500.0;
+    outcome.heading_error_deg = 0.5;
+    outcome.position_nees = right ? nees : 1e6;
+    outcomes.push_back(outcome);
+  }
+  return outcomes;
+}
+
+TEST(LearnCalibration, FindsTheLogisticFunctionBelowTheMedianOfTheRight) {
+  const CalibrationReport report = learn_calibration(drawn(4000, 1), default_calibration());
+  for (const double surprise : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+    // The spread of a logistic regression on 4000 examples is about 0.02 here; the cut-off bends it a little.
+    EXPECT_NEAR(report.calibration.probability({surprise, 0.0, 0.0}), 1.0 / (1.0 + std::exp(-1.5 * surprise)), 0.06);
+  }
+  EXPECT_EQ(report.examples, 4000);
+}
+
+TEST(LearnCalibration, WidensEllipsesThatAreTooSmall) {
+  const Calibration& before = default_calibration();
+  const CalibrationReport report = learn_calibration(drawn(4000, 2), before);
+  EXPECT_NEAR(report.calibration.position_sigma_scale / before.position_sigma_scale, 2.0, 0.1);
+}
+
+TEST(LearnCalibration, ClaimsNoMoreThanTheExamplesVouchFor) {
+  const CalibrationReport report = learn_calibration(drawn(400, 3), default_calibration());
+  EXPECT_LT(report.calibration.highest, 1.0 - 1.0 / 402.0);
+  EXPECT_LE(report.calibration.probability({100.0, 100.0, 100.0}), report.calibration.highest);
+}
+
+TEST(LearnCalibration, RefusesTooFewExamples) {
+  EXPECT_THROW(learn_calibration(drawn(60, 4), default_calibration()), InvalidInput);
+}
+
+TEST(LearnCalibration, WritesWhatTheServiceReads) {
+  const CalibrationReport report = learn_calibration(drawn(1000, 5), default_calibration());
+  const Calibration read = parse_calibration(to_json(report, {{"seed", 5}}).dump());
+  for (const double surprise : {-3.0, 0.0, 4.0}) {
+    EXPECT_EQ(read.probability({surprise, 1.0, 1.0}), report.calibration.probability({surprise, 1.0, 1.0}));
+  }
+  EXPECT_EQ(to_json(report, {{"seed", 5}})["origin"]["examples"], 1000);
+}
+
+}  // namespace
+}  // namespace roadfix::bench

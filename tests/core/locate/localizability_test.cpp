@@ -1,0 +1,65 @@
+#include "core/locate/localizability.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/units/error.hpp"
+#include "tests/support/map_view.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::view_of;
+
+GridGeometry square(int cells) { return {2.0, {300'000, -3'200'000}, cells, cells}; }
+
+LocalizabilityQuery centre_of(const MapView& view, double footprint_m) {
+  LocalizabilityQuery query;
+  query.position = view.zone.unproject({0.5 * (view.extent.min.east_m + view.extent.max.east_m),
+                                        0.5 * (view.extent.min.north_m + view.extent.max.north_m)});
+  query.footprint_m = footprint_m;
+  query.radius_m = 500.0;
+  return query;
+}
+
+TEST(Localizability, IsHighWhereStreetsWind) {
+  const MapView view = view_of(testing::street_map(21, square(800)));
+  const Localizability place = localizability(view, centre_of(view, 400.0));
+  EXPECT_EQ(place.status, FixStatus::kFix) << place.reason;
+  EXPECT_GT(place.probability, 0.99);
+  EXPECT_GT(place.road_share, 0.01);
+  EXPECT_EQ(place.observed_share, 1.0);
+}
+
+TEST(Localizability, GrowsWithTheFootprint) {
+  const MapView view = view_of(testing::street_map(21, square(800)));
+  EXPECT_LT(localizability(view, centre_of(view, 60.0)).probability,
+            localizability(view, centre_of(view, 400.0)).probability);
+}
+
+TEST(Localizability, IsLowInACityOfEqualBlocksAndNamesPlacesAlike) {
+  const MapView view = view_of(testing::grid_city(square(800), 90.0));
+  const Localizability place = localizability(view, centre_of(view, 300.0));
+  EXPECT_NE(place.status, FixStatus::kFix);
+  EXPECT_LT(place.probability, 0.5);
+  EXPECT_FALSE(place.alike.empty());
+}
+
+TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
+  RoadGrid bare{square(400), CellArray(400, 400, kNoRoad)};
+  const MapView view = view_of(bare);
+  EXPECT_EQ(localizability(view, centre_of(view, 200.0)).reason, "too-few-roads");
+  RoadGrid unseen{square(400), CellArray(400, 400)};
+  const MapView nothing = view_of(unseen);
+  const Localizability place = localizability(nothing, centre_of(nothing, 200.0));
+  EXPECT_EQ(place.reason, "footprint-unobserved");
+  EXPECT_EQ(place.observed_share, 0.0);
+}
+
+TEST(Localizability, RefusesAFootprintOfNoSize) {
+  const MapView view = view_of(testing::street_map(21, square(200)));
+  EXPECT_THROW(localizability(view, centre_of(view, 0.0)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace roadfix

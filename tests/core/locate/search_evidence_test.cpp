@@ -1,0 +1,73 @@
+#include "core/locate/search_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+/// A best place of `score` among rivals of which Fisher's z thins out exponentially above `lowest`.
+SearchResult found(double score, double lowest, double mean_excess, int rivals = 200) {
+  SearchResult result;
+  result.background.sd = 0.05;
+  for (int i = 0; i < rivals; ++i) {
+    // Quantiles of the exponential tail, highest first.
+    const double excess = -mean_excess * std::log((i + 0.5) / rivals);
+    result.background.rivals.push_back(std::tanh(std::atanh(lowest) + excess));
+  }
+  result.background.rivals_within = result.background.rivals;
+  SearchMode best;
+  best.score = score;
+  result.modes = {best};
+  if (rivals > 0) {
+    best.score = result.background.rivals.front();
+    result.modes.push_back(best);
+  }
+  return result;
+}
+
+TEST(SearchEvidence, CountsHowManyPlacesChanceWouldPutThere) {
+  // An exponential tail of 200 places: exp(-5) of them lie five mean excesses above the lowest.
+  const SearchEvidence evidence = evidence_of(found(std::tanh(std::atanh(0.2) + 5 * 0.02), 0.2, 0.02));
+  EXPECT_NEAR(evidence.surprise, 5.0 - std::log(200.0), 0.2);
+}
+
+TEST(SearchEvidence, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
+  SearchResult result = found(0.6, 0.2, 0.02);
+  const double ahead = std::atanh(0.6) - std::atanh(result.modes[1].score);
+  const SearchEvidence evidence = evidence_of(result);
+  EXPECT_NEAR(evidence.lead, ahead / 0.05, 1e-9);
+  EXPECT_NEAR(evidence.gap, ahead / 0.02, 0.05 * ahead / 0.02);
+}
+
+TEST(SearchEvidence, ASmallerRegionLeavesChanceLessRoom) {
+  SearchResult result = found(0.4, 0.2, 0.02);
+  const double whole = evidence_of(result).surprise;
+  result.background.region_share = 0.01;
+  EXPECT_NEAR(evidence_of(result).surprise - whole, std::log(100.0), 1e-9);
+}
+
+TEST(SearchEvidence, WithFewRivalsChanceMayExplainEverything) {
+  const SearchEvidence evidence = evidence_of(found(0.9, 0.2, 0.02, 5));
+  EXPECT_LT(evidence.surprise, -5.0);
+  EXPECT_EQ(evidence.gap, 0.0);
+}
+
+TEST(SearchEvidence, APlaceAloneInItsRegionIsComparedWithThoseAround) {
+  SearchResult result = found(0.6, 0.2, 0.02);
+  result.modes.resize(1);
+  result.background.rivals_within.clear();
+  EXPECT_NEAR(evidence_of(result).lead, (std::atanh(0.6) - std::atanh(result.background.rivals.back())) / 0.05, 1e-9);
+}
+
+TEST(SearchEvidence, OfAConstantBackgroundIsNone) {
+  SearchResult result = found(0.6, 0.2, 0.0);
+  result.background.sd = 0.0;
+  const SearchEvidence evidence = evidence_of(result);
+  EXPECT_LT(evidence.surprise, 0.0);
+  EXPECT_EQ(evidence.lead, 0.0);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -6,17 +6,11 @@
 
 #include "core/match/correlation.hpp"
 #include "core/match/heading_bins.hpp"
+#include "core/match/lattice_pose.hpp"
 #include "core/match/search.hpp"
 #include "core/match/work.hpp"
 
 namespace roadfix {
-
-/// A candidate on the lattice of one cell size: the nadir lies in this cell, the heading is this bin.
-struct LatticePose {
-  LatticeIndex cell;
-  int bin = 0;
-  double score = 0.0;
-};
 
 /// One level of the pyramid.
 struct Level {

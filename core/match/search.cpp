@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/grid/resample.hpp"
+#include "core/match/branch_and_bound.hpp"
 #include "core/match/coarse_scan.hpp"
 #include "core/match/peak.hpp"
 #include "core/match/refine.hpp"
@@ -18,6 +19,9 @@ constexpr double kCoarsestCellOfLargeM = 16.0;
 constexpr double kLargeKm2 = 30.0;
 constexpr int kFootprintCells = 32;         // that the coarse level keeps at least across a footprint
 constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
+
+constexpr double kProofCellM = 4.0;       // roads are hardly wider
+constexpr int kProofFootprintCells = 64;  // likewise at least, where a proof is given in coarser cells than the map's
 
 constexpr std::size_t kScanMaxima = 16384;
 constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
@@ -80,11 +84,13 @@ class Search {
     result.coarse_cell_m = coarse().cell_m();
     std::vector<LatticePose> candidates = scan(result);
     refine(coarse(), 1, 1, deadline_, candidates);
+    if (proof_level() == coarsest_) prove(coarsest_, candidates, result);
     for (int k = coarsest_ - 1; k >= 0; --k) {
       const Level& from = levels_[static_cast<std::size_t>(k + 1)];
       candidates = distinct(candidates, from, 2.5 * coarse().cell_m(), 2, followed(k + 1));
       descend(candidates);
       refine(levels_[static_cast<std::size_t>(k)], 2, 2, deadline_, candidates);
+      if (proof_level() == k) prove(k, candidates, result);
     }
     const Level& finest = levels_.front();
     candidates = distinct(candidates, finest, separation_m_, kDistinctBins, kSurvivors);
@@ -159,6 +165,51 @@ class Search {
     const std::vector<LatticePose> others = distinct(outside, coarse(), 2.5 * cell_m, 2, kCandidates);
     candidates.insert(candidates.end(), others.begin(), others.end());
     return candidates;
+  }
+
+  int proof_level() const {
+    int level = 0;
+    for (int k = 1; k <= coarsest_; ++k) {
+      const double cell_m = levels_[static_cast<std::size_t>(k)].cell_m();
+      if (cell_m <= kProofCellM && side_m(levels_.front().features) / cell_m >= kProofFootprintCells) level = k;
+    }
+    return level;
+  }
+
+  /// Looks for poses of the region that are better than the best candidate, and adds them.
+  void prove(int k, std::vector<LatticePose>& candidates, SearchResult& result) const {
+    if (options_.proof_time.count() <= 0) return;
+    const Level& level = levels_[static_cast<std::size_t>(k)];
+    BoundedSearch bounded;
+    bounded.features = &level.features;
+    bounded.bins = level.bins;
+    for (int bin = 0; bin < level.bins.count(); ++bin) {
+      if (region_.contains(level.bins.heading(bin))) bounded.headings.push_back(bin);
+    }
+    bounded.positions = GridGeometry::covering(region_.box, level.cell_m());
+    bounded.eligible = [&](int col, int row) { return region_.contains(bounded.positions.cell_center(col, row)); };
+    bounded.least_cells = level.least_cells;
+    bounded.threads = options_.threads;
+    for (const LatticePose& pose : candidates) {
+      const GridPose at = level.pose_of(pose);
+      if (region_.contains(at.position) && region_.contains(at.heading))
+        bounded.known = std::max(bounded.known, pose.score);
+    }
+    const int reach = footprint_reach(level.features) + BoundMap::kFrame;
+    const GridGeometry& positions = bounded.positions;
+    const BoundMap map(level.read({level.cell_m(),
+                                   {positions.origin.col - reach, positions.origin.row - reach},
+                                   positions.cols + 2 * reach,
+                                   positions.rows + 2 * reach}));
+    bounded.map = &map;
+    auto end = std::chrono::steady_clock::now() + options_.proof_time;
+    if (options_.deadline) end = std::min(end, *options_.deadline);
+    const BoundedResult found = search_with_bound(bounded, Deadline(options_.stop, end));
+    const double best = found.poses.empty() ? bounded.known : found.poses.front().score;
+    result.proof =
+        SearchProof{level.cell_m(),      static_cast<int>(bounded.headings.size()), best, found.bound, found.complete,
+                    found.excluded_share};
+    candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
   }
 
   bool within_region(const Level& level, const LatticePose& pose) const {

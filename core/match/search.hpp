@@ -48,6 +48,18 @@ struct SearchOptions {
   int threads = 1;
   std::stop_token stop;
   std::optional<std::chrono::steady_clock::time_point> deadline;
+  /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.
+  std::chrono::milliseconds proof_time{0};
+};
+
+/// What is known of all poses of the region, not just of the candidates.
+struct SearchProof {
+  double cell_m = 0.0;          ///< of the lattice of positions that it speaks of
+  int headings = 0;             ///< bins within the range
+  double best_score = 0.0;      ///< of the best pose found, on this lattice
+  double bound = 1.0;           ///< no pose on this lattice scores more; equal to best_score if `complete`
+  bool complete = false;        ///< the best pose is proven to be the best; else time was over before
+  double excluded_share = 0.0;  ///< of the poses that cannot be better than the best; 1 if `complete`
 };
 
 /// A place that fits, apart from the others by a tenth of the footprint or several heading bins.
@@ -83,9 +95,10 @@ struct ScoreBackground {
 struct SearchResult {
   std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
   ScoreBackground background;
-  double cell_m = 0.0;         ///< finest cell
-  double coarse_cell_m = 0.0;  ///< of the exhaustive scan
-  int headings = 0;            ///< bins of the exhaustive scan within the range
+  double cell_m = 0.0;               ///< finest cell
+  double coarse_cell_m = 0.0;        ///< of the exhaustive scan
+  int headings = 0;                  ///< bins of the exhaustive scan within the range
+  std::optional<SearchProof> proof;  ///< where one was asked for
 };
 
 /// `features` in cells of `finest_cell_m` (see resampled()), with an observed cell that is not like all others.

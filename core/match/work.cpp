@@ -11,9 +11,13 @@
 
 namespace roadfix {
 
-void Deadline::check() const {
+bool Deadline::over() const {
   if (stop_.stop_requested()) throw Interrupted("search-stopped", "the search was asked to stop before it was done");
-  if (end_ && std::chrono::steady_clock::now() >= *end_) {
+  return end_ && std::chrono::steady_clock::now() >= *end_;
+}
+
+void Deadline::check() const {
+  if (over()) {
     throw Interrupted(
         "search-time-limit",
         "the search did not end within its time limit: give a smaller region, a narrower heading range or "

@@ -13,6 +13,8 @@ class Deadline {
  public:
   Deadline(std::stop_token stop, std::optional<std::chrono::steady_clock::time_point> end)
       : stop_(std::move(stop)), end_(end) {}
+  /// Whether the time is over; throws Interrupted if a stop was requested.
+  bool over() const;
   /// Throws Interrupted once the time is over or a stop was requested.
   void check() const;
 

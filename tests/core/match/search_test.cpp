@@ -62,6 +62,26 @@ TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
   EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 4.0);
 }
 
+TEST(Search, ProvesWhereItIsAskedToThatNoOtherPoseIsBetter) {
+  const RoadGrid map = street_map(14, town(1000, 900));
+  std::mt19937_64 random(15);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const GridPose truth = pose_within(region.box, 200.0, random);
+  const FeatureMap seen = observed_at(map, truth, 150, 150, 2.0, {0.2, 0.2}, random);
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult found = search(reader_of(map), 2.0, seen, region, options);
+  ASSERT_TRUE(found.proof.has_value());
+  EXPECT_TRUE(found.proof->complete);
+  EXPECT_EQ(found.proof->cell_m, 4.0);
+  EXPECT_EQ(found.proof->bound, found.proof->best_score);
+  EXPECT_EQ(found.proof->excluded_share, 1.0);
+  EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 2.0);
+  options.proof_time = std::chrono::milliseconds(1);
+  EXPECT_FALSE(search(reader_of(map), 2.0, seen, region, options).proof->complete);
+}
+
 TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   const RoadGrid map = street_map(3, town(2000, 1600));
   std::mt19937_64 random(4);

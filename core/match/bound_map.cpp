@@ -1,0 +1,166 @@
+#include "core/match/bound_map.hpp"
+
+#include <algorithm>
+
+namespace roadfix {
+namespace {
+
+constexpr int kWindow = 2 * kBlockCells - 1;
+
+int blocks(int cells) { return (cells + kBlockCells - 1) / kBlockCells; }
+
+/// Observed cells less `base`, others 0.
+CellArray above_base(const CellArray& cells, int base) {
+  CellArray above(cells.cols(), cells.rows(), 0);
+  for (std::size_t i = 0; i < cells.cells().size(); ++i) {
+    if (is_observed(cells.cells()[i])) above.cells()[i] = static_cast<Cell>(cells.cells()[i] - base);
+  }
+  return above;
+}
+
+/// Maximum of each cell and the next one at (right, down), both axes: side 1 to 2, 2 to 4.
+CellArray pooled_once(const CellArray& cells, int apart) {
+  CellArray wide(cells.cols(), cells.rows(), 0);
+  for (int row = 0; row < cells.rows(); ++row) {
+    const auto in = cells.row(row);
+    const auto out = wide.row(row);
+    std::ranges::copy(in, out.begin());
+    for (std::size_t col = 0; col + static_cast<std::size_t>(apart) < in.size(); ++col) {
+      out[col] = std::max(in[col], in[col + static_cast<std::size_t>(apart)]);
+    }
+  }
+  CellArray result = wide;
+  for (int row = 0; row + apart < cells.rows(); ++row) {
+    const auto next = wide.row(row + apart);
+    const auto out = result.row(row);
+    for (std::size_t col = 0; col < out.size(); ++col) out[col] = std::max(out[col], next[col]);
+  }
+  return result;
+}
+
+int least_observed(const CellArray& cells) {
+  int least = kRoad;
+  for (const Cell cell : cells.cells()) least = std::min<int>(least, is_observed(cell) ? cell : kRoad);
+  return least;
+}
+
+int most_observed(const CellArray& cells) {
+  int most = 0;
+  for (const Cell cell : cells.cells()) most = std::max<int>(most, is_observed(cell) ? cell : 0);
+  return most;
+}
+
+}  // namespace
+
+BoundMap::BoundMap(const RoadGrid& grid)
+    : geometry_(grid.geometry),
+      block_cols_(blocks(grid.cells.cols())),
+      block_rows_(blocks(grid.cells.rows())),
+      stride_(block_cols_ + 2 * kMargin + kRun),
+      all_observed_(std::ranges::all_of(grid.cells.cells(), is_observed)),
+      base_(least_observed(grid.cells)),
+      span_(std::max(1, most_observed(grid.cells) - base_)),
+      exact_(grid.cells, 0),
+      pooled2_(CellArray(), 0),
+      pooled4_(CellArray(), 0) {
+  const auto size = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(block_rows_ + 2 * kMargin + 1) + kRun;
+  planes_.assign(kPlanes, std::vector<std::uint8_t>(size, 0));
+  for (auto* sums : {&cells_, &value_, &square_}) sums->assign(size, 0);
+  const CellArray above = above_base(grid.cells, base_);
+  const CellArray two = pooled_once(above, 1);
+  pooled2_ = MapPlane(two, 0);
+  pooled4_ = MapPlane(pooled_once(two, 2), 0);
+  for (int i = 0; i < kLineDirections; ++i) fill_pieces(above, i, line_stencil(i));
+  fill_pieces(above, kCellPlane, {{0, 0}});
+  fill_observed(grid.cells);
+  fill_sums(grid.cells);
+}
+
+void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece) {
+  const int cols = above.cols();
+  const int rows = above.rows();
+  std::vector<std::uint16_t> sums(static_cast<std::size_t>(block_cols_ * kBlockCells + kWindow));
+  std::vector<std::uint16_t> best(static_cast<std::size_t>(block_cols_) * static_cast<std::size_t>(block_rows_), 0);
+  std::vector<std::uint16_t> widest(static_cast<std::size_t>(block_cols_));
+  for (int row = 0; row < rows; ++row) {
+    std::ranges::fill(sums, std::uint16_t{0});
+    for (const CellOffset cell : piece) {
+      const int from = row + cell.row;
+      if (from < 0 || from >= rows) continue;
+      const int first = std::max(0, -cell.col);
+      const int last = std::min(cols, cols - cell.col);
+      const Cell* in = above.row(from).data() + cell.col;
+      for (int col = first; col < last; ++col) sums[static_cast<std::size_t>(col)] += in[col];
+    }
+    for (int block = 0; block < block_cols_; ++block) {
+      const auto* first = sums.data() + block * kBlockCells;
+      std::uint16_t most = 0;
+      for (int i = 0; i < kWindow; ++i) most = std::max(most, first[i]);
+      widest[static_cast<std::size_t>(block)] = most;
+    }
+    // Windows overlap: a row counts for its own block row and, but for the last one, for the block row above.
+    for (int block_row = std::max(0, (row - kWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;
+         ++block_row) {
+      auto* out = best.data() + static_cast<std::ptrdiff_t>(block_row) * block_cols_;
+      for (int block = 0; block < block_cols_; ++block)
+        out[block] = std::max(out[block], widest[static_cast<std::size_t>(block)]);
+    }
+  }
+  const int whole = static_cast<int>(piece.size()) * span_;
+  for (int row = 0; row < block_rows_; ++row) {
+    std::uint8_t* out = plane(index, 0, row);
+    const auto* in = best.data() + static_cast<std::ptrdiff_t>(row) * block_cols_;
+    for (int col = 0; col < block_cols_; ++col)
+      out[col] = static_cast<std::uint8_t>((in[col] * kFull + whole - 1) / whole);
+  }
+}
+
+void BoundMap::fill_observed(const CellArray& cells) {
+  CellArray seen(cells.cols(), cells.rows(), 0);
+  for (std::size_t i = 0; i < cells.cells().size(); ++i) seen.cells()[i] = is_observed(cells.cells()[i]) ? 1 : 0;
+  // Window sums by running over the rows of window rows: small enough to be counted plainly.
+  std::vector<int> count(static_cast<std::size_t>(cells.cols() + kWindow));
+  for (int block_row = 0; block_row < block_rows_; ++block_row) {
+    std::ranges::fill(count, 0);
+    for (int row = block_row * kBlockCells; row < std::min(cells.rows(), block_row * kBlockCells + kWindow); ++row) {
+      const auto in = seen.row(row);
+      for (std::size_t col = 0; col < in.size(); ++col) count[col] += in[col];
+    }
+    for (int block = 0; block < block_cols_; ++block) {
+      int sum = 0;
+      for (int i = 0; i < kWindow; ++i)
+        sum += count[static_cast<std::size_t>(std::min(block * kBlockCells + i, cells.cols()))];
+      *plane(kAllObserved, block, block_row) = sum == kWindow * kWindow ? kFull : 0;
+      *plane(kAnyObserved, block, block_row) = sum > 0 ? kFull : 0;
+    }
+  }
+}
+
+void BoundMap::fill_sums(const CellArray& cells) {
+  for (int block_row = 0; block_row < block_rows_; ++block_row) {
+    const auto start = static_cast<std::size_t>((block_row + kMargin) * stride_);
+    std::vector<std::array<std::uint32_t, 3>> sums(static_cast<std::size_t>(block_cols_));
+    for (int row = block_row * kBlockCells; row < std::min(cells.rows(), (block_row + 1) * kBlockCells); ++row) {
+      const auto in = cells.row(row);
+      for (int col = 0; col < cells.cols(); ++col) {
+        const Cell cell = in[static_cast<std::size_t>(col)];
+        if (!is_observed(cell)) continue;
+        auto& sum = sums[static_cast<std::size_t>(col / kBlockCells)];
+        const auto value = static_cast<std::uint32_t>(cell - base_);
+        sum[0] += 1;
+        sum[1] += value;
+        sum[2] += value * value;
+      }
+    }
+    std::array<std::uint32_t, 3> before{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(stride_); ++i) {
+      cells_[start + i] = before[0];
+      value_[start + i] = before[1];
+      square_[start + i] = before[2];
+      if (i < kMargin || i - kMargin >= sums.size()) continue;
+      for (std::size_t k = 0; k < 3; ++k) before[k] += sums[i - kMargin][k];
+    }
+  }
+}
+
+}  // namespace roadfix

@@ -1,0 +1,24 @@
+// The sums of the bound for a run of blocks side by side, vectorised for the processor that runs it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/match/bound_map.hpp"
+#include "core/match/bound_terms.hpp"
+
+namespace roadfix {
+
+using RunSums = std::array<std::uint32_t, BoundMap::kRun>;
+
+/// For the blocks (col, row), (col + 1, row), ...: the sum of the terms, in units of terms.unit.
+void term_sums(const BoundMap& map, const BoundTerms& terms, int col, int row, RunSums& sums);
+
+/// For the same blocks: observed cells, values and squares of the covered blocks.
+struct CoveredSums {
+  RunSums cells{}, value{}, square{};
+};
+void covered_sums(const BoundMap& map, std::span<const BlockRun> runs, int col, int row, CoveredSums& sums);
+
+}  // namespace roadfix

@@ -1,0 +1,77 @@
+// The feature map's side of an upper bound on scores (bound_map.hpp): at one heading, the pieces of road that it
+// consists of, and which blocks of the map its footprint covers.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/grid/feature_map.hpp"
+#include "core/match/bound_map.hpp"
+
+namespace roadfix {
+
+/// Weighted blocks of planes: weight[class] * plane value, summed. Terms of a class lie side by side.
+struct BoundTerms {
+  struct Term {
+    std::int16_t col = 0;  ///< block relative to the nadir's
+    std::int16_t row = 0;
+    std::int16_t plane = 0;
+  };
+  struct Class {
+    std::uint32_t weight = 0;
+    std::uint32_t end = 0;  ///< of its terms, after those of the classes before
+  };
+  std::vector<Term> terms;
+  std::vector<Class> classes;
+  double unit = 1.0;  ///< of the weights: sums stay below 2^32
+};
+
+enum class Rounding { kUp, kDown };
+
+/// Few classes for terms of any weight (>= 0); sums are at least (kUp) or at most (kDown) those of the exact weights.
+BoundTerms classified(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding);
+
+/// Straight pieces of the feature map, in its body frame; found once, then turned.
+struct LineHint {
+  double col = 0.0;  ///< centre, cells from the nadir
+  double row = 0.0;
+  double angle = 0.0;  ///< from columns towards rows, radians
+};
+struct LineHints {
+  int level = 0;  ///< what a piece counts above the base, 1..254
+  std::vector<LineHint> lines;
+};
+
+/// Value of a feature map that the bound counts from: half of the observed cells lie at or below.
+int base_of(const FeatureMap& features);
+/// What lies above the base, less the base; unobserved elsewhere.
+FeatureMap above_base(const FeatureMap& features, int base);
+LineHints find_lines(const FeatureMap& features, int base);
+
+/// Blocks relative to the nadir's, as runs along a row: [first, last).
+struct BlockRun {
+  int row = 0;
+  int first = 0;
+  int last = 0;
+};
+
+/// One heading. Values are cells as stored (0..254), map values less the map's base.
+struct TurnedFeatures {
+  double cells = 0.0, sum = 0.0, square = 0.0;   ///< over the observed cells
+  BoundTerms cross;                              ///< sum of (l - base) m', at most
+  BoundTerms sum_least, sum_most, square_least;  ///< over cells where the map is observed
+  std::vector<bool> inner, outer;  ///< blocks covered from every position of the nadir's block, from any; side x side
+  int side = 0;                    ///< odd; the nadir's block in the middle
+
+  /// `turned` = rotated(features, heading); `span`: BoundMap::span(); `whole_map`: all of it is observed.
+  TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints, int span, bool whole_map);
+
+ private:
+  void cover(const CellArray& array, int nadir_col, int nadir_row);
+};
+
+/// What all headings of a sector cover, or any.
+std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side);
+
+}  // namespace roadfix

@@ -30,6 +30,7 @@ struct Options {
   double heading_range_deg = 180.0;
   bool heading_known = false;
   double time_limit_s = 0.0;
+  double proof_s = 0.0;
   std::string calibration;
   FixOptions fix;
   bool as_json = false;
@@ -65,6 +66,14 @@ void print_text(const Fix& fix) {
   }
   fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
              fix.search_time.count());
+  if (!fix.proof) return;
+  if (fix.proof->complete) {
+    fmt::print("no other pose of the region fits better, in cells of {} m and {} headings\n", fix.proof->cell_m,
+               fix.proof->headings);
+  } else {
+    fmt::print("time was over before a better pose was excluded: {:.1f} % of the poses are, none scores above {:.3f}\n",
+               100.0 * fix.proof->excluded_share, fix.proof->bound);
+  }
 }
 
 void run_fix(const Options& options) {
@@ -75,6 +84,7 @@ void run_fix(const Options& options) {
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.stop = stop_on_signals();
   fix_options.time_limit = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.time_limit_s));
+  fix_options.proof_time = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.proof_s));
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
   if (options.as_json) {
     fmt::print("{}\n", api::to_json(fix, input.detect_time).dump(2));
@@ -113,6 +123,8 @@ void add_fix_command(CLI::App& app) {
   command->add_option("--threads", o->fix.threads, "Threads of the search")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
+  command->add_option("--proof", o->proof_s, "Look so many seconds for a better place than the best candidate")
+      ->check(CLI::PositiveNumber);
   command->add_option("--time-limit", o->time_limit_s, "Give up after so many seconds")->check(CLI::PositiveNumber);
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
   command->callback([o, heading] {

@@ -91,6 +91,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   search_options.max_modes = options.max_modes;
   search_options.threads = options.threads;
   search_options.stop = options.stop;
+  search_options.proof_time = options.proof_time;
   if (options.time_limit.count() > 0) search_options.deadline = started + options.time_limit;
   const SearchResult found = search(map.read, cells.cell_m, cells, region, search_options);
 
@@ -106,6 +107,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   if (!found.modes.empty()) fix.evidence = evidence_of(found);
   fix.searched_km2 = region.area_km2();
   fix.headings = found.headings;
+  fix.proof = found.proof;
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;
 }

@@ -52,6 +52,8 @@ struct FixOptions {
   int max_modes = 8;
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; past it Interrupted
+  /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
+  std::chrono::milliseconds proof_time{0};
   int threads = 1;
   std::stop_token stop;                            ///< Interrupted when requested
   std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
@@ -82,6 +84,7 @@ struct Fix {
   std::optional<SearchEvidence> evidence;  ///< of the best mode
   double searched_km2 = 0.0;
   int headings = 0;
+  std::optional<SearchProof> proof;  ///< where one was asked for
   std::string map_name;
   std::string map_version;
   std::chrono::duration<double, std::milli> search_time{};

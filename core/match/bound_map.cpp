@@ -93,7 +93,7 @@ void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<
       for (int col = first; col < last; ++col) sums[static_cast<std::size_t>(col)] += in[col];
     }
     for (int block = 0; block < block_cols_; ++block) {
-      const auto* first = sums.data() + block * kBlockCells;
+      const auto* first = sums.data() + std::ptrdiff_t{block} * kBlockCells;
       std::uint16_t most = 0;
       for (int i = 0; i < kWindow; ++i) most = std::max(most, first[i]);
       widest[static_cast<std::size_t>(block)] = most;

@@ -75,7 +75,7 @@ class BranchAndBound {
  private:
   Angle heading(std::size_t index) const { return search_.bins.heading(search_.headings[index]); }
   double excluded_share() const {
-    const auto blocks = [](int cells) { return static_cast<double>(cells / kBlockCells + 1); };
+    const auto blocks = [](int cells) { return std::ceil(static_cast<double>(cells) / kBlockCells); };
     const double all =
         blocks(search_.positions.cols) * blocks(search_.positions.rows) * static_cast<double>(search_.headings.size());
     return std::clamp((static_cast<double>(bounded_) - static_cast<double>(nodes_.size())) / all, 0.0, 1.0);
@@ -286,11 +286,11 @@ class BranchAndBound {
 
   /// Best first, until nothing can be better than what was found; false if time was over before.
   bool visit() {
-    std::erase_if(nodes_, [&](const Node& node) { return double{node.bound} <= best_; });
+    std::erase_if(nodes_, [&](const Node& node) { return static_cast<double>(node.bound) <= best_; });
     std::ranges::sort(nodes_, higher);
     std::size_t next = 0;
-    while (next < nodes_.size() && double{nodes_[next].bound} > best_) {
-      highest_left_ = nodes_[next].bound;
+    while (next < nodes_.size() && static_cast<double>(nodes_[next].bound) > best_) {
+      highest_left_ = static_cast<double>(nodes_[next].bound);
       if (deadline_.over()) return false;
       const std::size_t end = std::min(next + kBatch, nodes_.size());
       const std::vector<Node> batch(nodes_.begin() + static_cast<std::ptrdiff_t>(next),

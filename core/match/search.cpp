@@ -202,8 +202,10 @@ class Search {
                                    positions.cols + 2 * reach,
                                    positions.rows + 2 * reach}));
     bounded.map = &map;
-    auto end = std::chrono::steady_clock::now() + options_.proof_time;
-    if (options_.deadline) end = std::min(end, *options_.deadline);
+    // What follows the best pose to the finest cells needs the rest of the time.
+    const auto now = std::chrono::steady_clock::now();
+    auto end = now + options_.proof_time;
+    if (options_.deadline) end = std::min(end, now + (*options_.deadline - now) / 2);
     const BoundedResult found = search_with_bound(bounded, Deadline(options_.stop, end));
     const double best = found.poses.empty() ? bounded.known : found.poses.front().score;
     result.proof =

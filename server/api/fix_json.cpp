@@ -49,6 +49,11 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
   answer["modes"] = json::array();
   for (const FixMode& mode : fix.modes) answer["modes"].push_back(mode_json(mode));
   answer["searched"] = {{"area_km2", fix.searched_km2}, {"headings", fix.headings}};
+  if (fix.proof) {
+    answer["searched"]["proof"] = {{"complete", fix.proof->complete}, {"best_score", fix.proof->best_score},
+                                   {"bound", fix.proof->bound},       {"excluded_share", fix.proof->excluded_share},
+                                   {"cell_m", fix.proof->cell_m},     {"headings", fix.proof->headings}};
+  }
   answer["map"] = {{"name", fix.map_name}, {"version", fix.map_version}};
   answer["time_ms"] = {{"search", fix.search_time.count()}};
   if (detect_time) answer["time_ms"]["detect"] = detect_time->count();

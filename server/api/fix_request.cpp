@@ -50,7 +50,7 @@ GeoPose parse_pose(const json& pose, std::size_t index) {
 
 const std::vector<std::string>& prior_fields() {
   static const std::vector<std::string> kFields{
-      "lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "confidence", "max_modes"};
+      "lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "confidence", "max_modes", "proof_s"};
   return kFields;
 }
 
@@ -84,6 +84,8 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   options.confidence = fields.optional_number("confidence", {0.5, 0.999999}).value_or(options.confidence);
   options.max_modes = fields.optional_integer("max_modes", 1, limits.modes).value_or(options.max_modes);
   options.max_search_km2 = limits.search_km2;
+  const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
+  options.proof_time = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * proof_s));
   return options;
 }
 

@@ -122,23 +122,60 @@ void match_particles(benchmark::State& state) {
 }
 BENCHMARK(match_particles)->Arg(64)->Unit(benchmark::kMillisecond);
 
-/// Heading unknown, one thread; footprint of 400 m with a fifth of its roads erased and as many invented.
-void fix_in_region(benchmark::State& state) {
+const RoadGrid& town() {
   static const RoadGrid map = testing::street_map(1, {2.0, {300'000, -3'200'000}, 3250, 1900});
-  static const MapView view = testing::view_of(map);
-  const FeatureMap window = window_of(map, 200);
+  return map;
+}
+
+/// Streets as regular as those of many cities, here and there one that is not: the hardest place to tell apart.
+const RoadGrid& regular_city() {
+  static const RoadGrid map = [] {
+    const GridGeometry geometry{4.0, {150'000, -1'600'000}, 3000, 2000};
+    RoadGrid city = testing::grid_city(geometry, 100.0);
+    const RoadGrid others = testing::street_map(2, geometry);
+    for (std::size_t i = 0; i < city.cells.cells().size(); ++i) {
+      city.cells.cells()[i] = std::max(city.cells.cells()[i], others.cells.cells()[i]);
+    }
+    return city;
+  }();
+  return map;
+}
+
+/// Heading unknown, one thread; a fifth of the roads erased and as many invented. Radius 0 = the whole map; `proof`: it
+/// is proven that no pose fits better.
+void fix_in_region(benchmark::State& state, const RoadGrid& map, int side) {
+  const MapView view = testing::view_of(map);
+  const FeatureMap window = window_of(map, side);
   Prior prior;
   if (state.range(0) > 0) {
     const GridPoint centre = map.geometry.cell_center(map.geometry.cols / 2, map.geometry.rows / 2);
     prior.circle = GeoCircle{view.zone.unproject(centre), static_cast<double>(state.range(0))};
   }
+  FixOptions options;
+  if (state.range(1) > 0) options.proof_time = std::chrono::minutes(10);
   Fix fix;
-  for (auto _ : state) fix = locate(view, window, prior, {});
+  for (auto _ : state) fix = locate(view, window, prior, options);
   state.counters["km2"] = fix.searched_km2;
   state.counters["headings"] = fix.headings;
-  state.SetLabel(fix.status == FixStatus::kFix ? "fix" : "no fix: " + fix.reason);
+  state.SetLabel((fix.status == FixStatus::kFix ? "fix" : "no fix: " + fix.reason) +
+                 (fix.proof && fix.proof->complete ? ", proven" : ""));
 }
-BENCHMARK(fix_in_region)->ArgName("radius_m")->Arg(200)->Arg(1000)->Arg(0)->Unit(benchmark::kMillisecond);
+void fix_in_town(benchmark::State& state) { fix_in_region(state, town(), 200); }
+void fix_in_regular_city(benchmark::State& state) { fix_in_region(state, regular_city(), 150); }
+BENCHMARK(fix_in_town)
+    ->ArgNames({"radius_m", "proof"})
+    ->Args({200, 0})
+    ->Args({200, 1})
+    ->Args({1000, 0})
+    ->Args({1000, 1})
+    ->Args({0, 0})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(fix_in_regular_city)
+    ->ArgNames({"radius_m", "proof"})
+    ->Args({1000, 0})
+    ->Args({1000, 1})
+    ->Args({0, 0})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace roadfix

@@ -66,6 +66,20 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
 }
 
+TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  Prior prior;
+  prior.circle = GeoCircle{geo(truth).position, 100.0};
+  FixOptions options;
+  const FeatureMap features = observed_at(map_, truth, 150, 150, 2.0, {0.1, 0.1}, random_);
+  EXPECT_FALSE(locate(view_, features, prior, options).proof.has_value());
+  options.proof_time = std::chrono::minutes(5);
+  const Fix fix = locate(view_, features, prior, options);
+  ASSERT_TRUE(fix.proof.has_value());
+  EXPECT_TRUE(fix.proof->complete);
+  EXPECT_LT(error_m(fix.modes.at(0).pose, truth), 2.0);
+}
+
 TEST_F(Locate, TakesFinerCellsThanTheMapHas) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   const Fix fix = locate(view_, cut_out(map_, truth, 600, 600, 0.6), {}, {});

@@ -23,6 +23,7 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   fix.probability = 0.996;
   fix.modes = {mode()};
   fix.searched_km2 = 24.6;
+  fix.proof = SearchProof{4.0, 472, 0.6, 0.8, false, 0.97};
   fix.headings = 360;
   fix.map_name = "adiyaman";
   const auto answer = to_json(fix, std::chrono::milliseconds(140));
@@ -33,6 +34,9 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_EQ(answer["sigma_m"], (nlohmann::json{2.1, 1.7}));
   EXPECT_EQ(answer["modes"][0]["weight"], 0.996);
   EXPECT_EQ(answer["searched"]["headings"], 360);
+  EXPECT_EQ(answer["searched"]["proof"]["complete"], false);
+  EXPECT_EQ(answer["searched"]["proof"]["bound"], 0.8);
+  EXPECT_EQ(answer["searched"]["proof"]["excluded_share"], 0.97);
   EXPECT_EQ(answer["map"]["name"], "adiyaman");
   EXPECT_EQ(answer["time_ms"]["detect"], 140.0);
   EXPECT_FALSE(answer.contains("reason"));

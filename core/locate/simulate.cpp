@@ -116,9 +116,11 @@ Cell sample(const CellArray& cells, CellPosition at) {
   double sum = 0.0;
   double weight = 0.0;
   for (int k = 0; k < 4; ++k) {
-    const Cell cell = cells.get(left + k % 2, top + k / 2);
+    const int at_col = left + k % 2;
+    const int at_row = top + k / 2;
+    const Cell cell = cells.get(at_col, at_row);
     if (!is_observed(cell)) continue;
-    const double w = (1.0 - std::abs(col - left - k % 2)) * (1.0 - std::abs(row - top - k / 2));
+    const double w = (1.0 - std::abs(col - at_col)) * (1.0 - std::abs(row - at_row));
     sum += w * probability(cell);
     weight += w;
   }

@@ -52,7 +52,8 @@ class BenchRun : public ::testing::Test {
     const RoadGrid town = testing::street_map(5, {2.0, {200'000, -2'000'000}, kCells, kCells});
     cv::Mat picture(2 * kCells, 2 * kCells, CV_8UC3);
     cv::randu(picture, 0, 140);
-    cv::GaussianBlur(picture, picture, {}, 1.5);
+    cv::GaussianBlur(picture, picture, {}, 2.5);
+    cv::normalize(picture, picture, 0, 140, cv::NORM_MINMAX);  // a texture that every keypoint detector sees
     for (int y = 0; y < picture.rows; ++y) {
       for (int x = 0; x < picture.cols; ++x) {
         if (town.cells.at(x / 2, y / 2) == kRoad) picture.at<cv::Vec3b>(y, x) = {230, 230, 230};
@@ -93,7 +94,9 @@ TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
     EXPECT_EQ(f.n, 3) << result.method;
     EXPECT_EQ(f.recall_5, 1.0) << result.method;
     EXPECT_EQ(f.false_fixes, 0) << result.method;
-    for (const Outcome& outcome : result.outcomes) EXPECT_LT(*outcome.heading_error_deg, 1.0) << result.method;
+    for (const Outcome& outcome : result.outcomes) {
+      EXPECT_LT(outcome.heading_error_deg.value_or(360.0), 1.0) << result.method;
+    }
   }
 }
 

@@ -62,7 +62,7 @@ std::filesystem::path default_cache() {
 /// One progress line for each task, in turn.
 class TaskProgress {
  public:
-  TaskProgress(std::string unit) : unit_(std::move(unit)) {}
+  explicit TaskProgress(std::string unit) : unit_(std::move(unit)) {}
   void update(const std::string& task, std::int64_t done, std::int64_t total) {
     const std::lock_guard lock(mutex_);
     if (task != task_) progress_.emplace(task_ = task, unit_);

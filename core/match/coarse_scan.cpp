@@ -237,12 +237,12 @@ class Scan {
     const double least = std::max(1.0, request_.min_observed_share * full_cells_);
     for (int row = 0; row < n.rows; ++row) {
       for (int col = 0; col < n.cols; ++col) {
-        const double cells = n(row, col);
+        const auto cells = static_cast<double>(n(row, col));
         if (cells < least) continue;
-        const double m_sum = m(row, col);
-        const double l_sum = l(row, col);
-        const double map_spread = double{mm(row, col)} - m_sum * m_sum / cells;
-        const double feature_spread = double{ll(row, col)} - l_sum * l_sum / cells;
+        const auto m_sum = static_cast<double>(m(row, col));
+        const auto l_sum = static_cast<double>(l(row, col));
+        const double map_spread = static_cast<double>(mm(row, col)) - m_sum * m_sum / cells;
+        const double feature_spread = static_cast<double>(ll(row, col)) - l_sum * l_sum / cells;
         if (map_spread < kLeastSpread * cells || feature_spread < kLeastSpread * cells) continue;
         blocks.correction(row, col) = static_cast<float>(m_sum * l_sum / cells);
         blocks.gain(row, col) = static_cast<float>(std::sqrt(cells / full_cells_ / (map_spread * feature_spread)));
@@ -314,7 +314,7 @@ class Scan {
       for (int col = 0; col < scores.cols; ++col) {
         const float score = scores(row, col);
         if (score == 0.0F) continue;  // not eligible, or not enough observed
-        squares += double{score} * double{score};
+        squares += static_cast<double>(score) * static_cast<double>(score);
         ++poses;
         if (score > floor && is_peak(scores, row, col)) found.push_back({col, row, bin, score});
       }

@@ -157,8 +157,9 @@ class Search {
     std::vector<LatticePose> inside;
     std::vector<LatticePose> outside;
     for (const ScanPose& pose : found.maxima) {
-      const LatticePose lattice{
-          {positions.origin.col + pose.col, positions.origin.row + pose.row}, pose.bin, double{pose.score}};
+      const LatticePose lattice{{positions.origin.col + pose.col, positions.origin.row + pose.row},
+                                pose.bin,
+                                static_cast<double>(pose.score)};
       (within_region(coarse(), lattice) ? inside : outside).push_back(lattice);
     }
     std::vector<LatticePose> candidates = distinct(inside, coarse(), 2.5 * cell_m, 2, followed(coarsest_));

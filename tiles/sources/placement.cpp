@@ -27,6 +27,10 @@ void* create_transformer(const RasterFile& file, const OGRSpatialReference& targ
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());
   options.SetNameValue("DST_SRS", wkt(target).c_str());
+  // Of the scene's mean height: hills are misplaced by their share of the view's slant. With a terrain model at hand,
+  // gdalwarp -rpc -to RPC_DEM=... makes an orthoimage first.
+  const char* height = file.dataset().GetMetadataItem("HEIGHT_OFF", "RPC");
+  if (height != nullptr) options.SetNameValue("RPC_HEIGHT", height);
   void* transformer = GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List());
   if (transformer == nullptr) {
     throw InvalidInput("crs-not-transformable",

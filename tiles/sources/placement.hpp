@@ -1,5 +1,5 @@
 // Where the pixels of a raster lie on the plane of the map's zone: geotransform (rotated ones too), ground control
-// points or RPC, and the change of reference system.
+// points or RPC (at the mean height of the scene), and the change of reference system.
 #pragma once
 
 #include <memory>

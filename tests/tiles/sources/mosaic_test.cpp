@@ -2,6 +2,7 @@
 // of their own (GeographicLib, the sphere of Web Mercator), so a value tells its place.
 #include "tiles/sources/mosaic.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -26,11 +27,15 @@ constexpr double kRampM = 200.0;
 double east_ramp(GridPoint p) { return 127.5 + (p.east_m - kCentre.east_m) / kRampM * 255.0; }
 double north_ramp(GridPoint p) { return 127.5 + (p.north_m - kCentre.north_m) / kRampM * 255.0; }
 
+/// How a raster says where it lies: each of them says what the transform says.
+enum class Reference { kTransform, kControlPoints, kRpc };
+
 struct Crs {
   const char* name;
   int epsg;
   std::array<double, 6> transform;
   GridPoint (*plane)(double x, double y);  ///< from the raster's own coordinates
+  Reference reference = Reference::kTransform;
 };
 
 GridPoint from_degrees(double lon, double lat) { return kZone.project({lat, lon}); }
@@ -64,7 +69,47 @@ std::vector<Crs> reference_systems() {
           {"UtmSouthUp", 32637, around(kCentre.east_m, kCentre.north_m, 1.0, -1.0, 0.0), from_plane},
           {"OtherZone", 32636, around(next.east_m, next.north_m, 1.0, 1.0, 0.0), from_other_zone},
           {"WebMercator", 3857, around(x, y, 1.27, 1.27, 0.0), from_web_mercator},
-          {"Degrees", 4326, around(centre.lon_deg, centre.lat_deg, 1.14e-5, 0.9e-5, 0.0), from_degrees}};
+          {"Degrees", 4326, around(centre.lon_deg, centre.lat_deg, 1.14e-5, 0.9e-5, 0.0), from_degrees},
+          {"ControlPoints", 32637, around(kCentre.east_m, kCentre.north_m, 1.0, 1.0, -20.0), from_plane,
+           Reference::kControlPoints},
+          {"Rpc", 4326, around(centre.lon_deg, centre.lat_deg, 1.14e-5, 0.9e-5, 0.0), from_degrees, Reference::kRpc}};
+}
+
+std::vector<std::array<double, 4>> corners(const std::array<double, 6>& t) {
+  std::vector<std::array<double, 4>> points;
+  for (const double row : {0.0, 300.0}) {
+    for (const double col : {0.0, 300.0}) {
+      points.push_back({col, row, t[0] + col * t[1] + row * t[2], t[3] + col * t[4] + row * t[5]});
+    }
+  }
+  return points;
+}
+
+/// Rational polynomials without curvature that say what the north-up transform in degrees says. Their pixels are
+/// counted from the centre of the first one (NGA STDI-0002, RPC00B).
+std::vector<std::string> rational_polynomials(const std::array<double, 6>& t) {
+  const auto term = [](const std::string& name, std::size_t place, int value) {
+    std::string text = name + "=";
+    for (std::size_t i = 0; i < 20; ++i) text += i == place ? std::to_string(value) + " " : "0 ";
+    return text;
+  };
+  std::string line = term("LINE_NUM_COEFF", 2, -1);
+  line.replace(line.find("-1 0") + 3, 1, "0.2");
+  const auto number = [](const std::string& name, double value) { return fmt::format("{}={:.12f}", name, value); };
+  return {number("LINE_OFF", 149.5),
+          number("SAMP_OFF", 149.5),
+          number("LINE_SCALE", 150.0),
+          number("SAMP_SCALE", 150.0),
+          number("LAT_OFF", t[3] + 150.0 * t[5]),
+          number("LONG_OFF", t[0] + 150.0 * t[1]),
+          number("LAT_SCALE", -150.0 * t[5]),
+          number("LONG_SCALE", 150.0 * t[1]),
+          number("HEIGHT_OFF", 700.0),
+          number("HEIGHT_SCALE", 500.0),
+          line,
+          term("LINE_DEN_COEFF", 0, 1),
+          term("SAMP_NUM_COEFF", 1, 1),
+          term("SAMP_DEN_COEFF", 0, 1)};
 }
 
 class Position : public ::testing::TestWithParam<Crs> {};
@@ -72,7 +117,9 @@ class Position : public ::testing::TestWithParam<Crs> {};
 TEST_P(Position, IsRightToATenthOfACell) {
   const Crs crs = GetParam();
   const testing::TemporaryFolder folder;
-  const RasterSpec spec{.width = 300, .height = 300, .bands = 3, .epsg = crs.epsg, .transform = crs.transform};
+  RasterSpec spec{.width = 300, .height = 300, .bands = 3, .epsg = crs.epsg, .transform = crs.transform};
+  if (crs.reference == Reference::kControlPoints) spec.control_points = corners(crs.transform);
+  if (crs.reference == Reference::kRpc) spec.rpc = rational_polynomials(crs.transform);
   const std::string path = write_raster(folder / "a.tif", spec, [&](int band, int col, int row) {
     const std::array<double, 6>& t = crs.transform;
     const double x = t[0] + (col + 0.5) * t[1] + (row + 0.5) * t[2];

@@ -21,6 +21,17 @@ void write_band(GDALRasterBand& band, const std::function<double(int col, int ro
   }
 }
 
+void write_control_points(GDALDataset& dataset, const RasterSpec& spec) {
+  OGRSpatialReference reference;
+  reference.importFromEPSG(spec.epsg);
+  std::string name = "point";
+  std::vector<GDAL_GCP> points;
+  for (const auto& [col, row, x, y] : spec.control_points) {
+    points.push_back({name.data(), name.data(), col, row, x, y, 0.0});
+  }
+  dataset.SetGCPs(static_cast<int>(points.size()), points.data(), &reference);
+}
+
 }  // namespace
 
 std::string write_raster(const std::filesystem::path& path, const RasterSpec& spec, const PixelFunction& value,
@@ -33,11 +44,17 @@ std::string write_raster(const std::filesystem::path& path, const RasterSpec& sp
   const DatasetPtr dataset(
       driver->Create(path.c_str(), spec.width, spec.height, spec.bands, spec.type, options.List()));
   if (!dataset) throw std::runtime_error("test raster cannot be created: " + path.string());
-  if (spec.transform) {
+  if (!spec.control_points.empty()) {
+    write_control_points(*dataset, spec);
+  } else if (!spec.rpc.empty()) {
+    CPLStringList rpc;
+    for (const std::string& entry : spec.rpc) rpc.AddString(entry.c_str());
+    dataset->SetMetadata(rpc.List(), "RPC");
+  } else if (spec.transform) {
     std::array<double, 6> transform = *spec.transform;
     dataset->SetGeoTransform(transform.data());
   }
-  if (spec.epsg != 0) {
+  if (spec.epsg != 0 && spec.control_points.empty() && spec.rpc.empty()) {
     OGRSpatialReference reference;
     reference.importFromEPSG(spec.epsg);
     dataset->SetSpatialRef(&reference);

@@ -19,6 +19,8 @@ struct RasterSpec {
   GDALDataType type = GDT_Byte;
   int epsg = 32637;  ///< 0 = none
   std::optional<std::array<double, 6>> transform = std::array<double, 6>{400000.0, 1.0, 0.0, 4200064.0, 0.0, -1.0};
+  std::vector<std::array<double, 4>> control_points = {};  ///< col, row, x, y; instead of the transform
+  std::vector<std::string> rpc = {};                       ///< NAME=value; instead of transform and EPSG code
   std::optional<double> nodata = {};
   std::vector<GDALColorInterp> meanings = {};  ///< of the bands; empty = the driver's own
   std::vector<GDALColorEntry> palette = {};

@@ -1,21 +1,22 @@
 // roadfix detect as a script meets it.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <string>
 
+#include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::ProgramResult;
+using testing::run_program;
+using testing::text_of;
 
 /// A bright street across grass, 200 x 120 pixels.
 class DetectCommand : public ::testing::Test {
@@ -27,32 +28,16 @@ class DetectCommand : public ::testing::Test {
     cv::imwrite(folder / "frame.png", picture);
   }
 
-  struct Result {
-    int code = 0;
-    std::string out;
-    std::string err;
-  };
-
-  Result detect(const std::string& arguments) const {
-    const auto out = folder / "out";
-    const auto err = folder / "err";
-    const std::string command = ROADFIX_PROGRAM " detect --detector tree " + (folder / "frame.png").string() + " " +
-                                (folder / "roads.png").string() + " " + arguments;
-    const int status = std::system((command + " >" + out.string() + " 2>" + err.string()).c_str());
-    return {WEXITSTATUS(status), text_of(out), text_of(err)};
-  }
-
-  static std::string text_of(const std::filesystem::path& file) {
-    std::stringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
+  ProgramResult detect(const std::string& arguments) const {
+    return run_program(folder.path(), "detect --detector tree " + (folder / "frame.png").string() + " " +
+                                          (folder / "roads.png").string() + " " + arguments);
   }
 
   testing::TemporaryFolder folder;
 };
 
 TEST_F(DetectCommand, TurnsAFrameOfKnownScaleIntoCells) {
-  const Result result = detect("--gsd 0.5 --json");
+  const ProgramResult result = detect("--gsd 0.5 --json");
   ASSERT_EQ(result.code, 0) << result.err;
   const auto answer = nlohmann::json::parse(result.out);
   EXPECT_EQ(answer["cols"], 50);
@@ -73,7 +58,7 @@ TEST_F(DetectCommand, RectifiesWhatACameraSaw) {
 TEST_F(DetectCommand, KeepsThePlaceOfAGeoreferencedImage) {
   std::ofstream(folder / "frame.pgw") << "0.5\n0\n0\n-0.5\n434000.25\n4179999.75\n";
   std::ofstream(folder / "frame.png.aux.xml") << "<PAMDataset><SRS>EPSG:32637</SRS></PAMDataset>";
-  const Result result = detect("--json");
+  const ProgramResult result = detect("--json");
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["crs"], "EPSG:32637");
   EXPECT_EQ(text_of(folder / "roads.pgw"), "2\n0\n0\n-2\n434001.000\n4179999.000\n");
@@ -95,7 +80,7 @@ TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
 }
 
 TEST_F(DetectCommand, SaysWhatIsMissing) {
-  const Result nowhere = detect("");
+  const ProgramResult nowhere = detect("");
   EXPECT_EQ(nowhere.code, 1);
   EXPECT_THAT(nowhere.err, HasSubstr("[image-without-georeference]"));
   EXPECT_EQ(detect("--fov 90").code, 2);

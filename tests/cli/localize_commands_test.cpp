@@ -1,15 +1,13 @@
 // roadfix fix and match as a script meets them: exit codes, JSON on stdout, one line on stderr.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "core/detect/image_codec.hpp"
 #include "tests/support/map_file.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -17,6 +15,8 @@ namespace roadfix {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::ProgramResult;
+using testing::run_program;
 
 class LocalizeCommands : public ::testing::Test {
  protected:
@@ -33,24 +33,7 @@ class LocalizeCommands : public ::testing::Test {
         .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   }
 
-  struct Result {
-    int code = 0;
-    std::string out;
-    std::string err;
-  };
-
-  Result roadfix(const std::string& arguments) const {
-    const auto text_of = [](const std::filesystem::path& file) {
-      std::stringstream text;
-      text << std::ifstream(file).rdbuf();
-      return text.str();
-    };
-    const auto out = folder / "out";
-    const auto err = folder / "err";
-    const int status =
-        std::system((ROADFIX_PROGRAM " " + arguments + " >" + out.string() + " 2>" + err.string()).c_str());
-    return {WEXITSTATUS(status), text_of(out), text_of(err)};
-  }
+  ProgramResult roadfix(const std::string& arguments) const { return run_program(folder.path(), arguments); }
 
   std::string at(const LatLon& p) const {
     return "--lat " + std::to_string(p.lat_deg) + " --lon " + std::to_string(p.lon_deg);
@@ -68,7 +51,7 @@ class LocalizeCommands : public ::testing::Test {
 };
 
 TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
-  const Result whole = roadfix("fix --json " + input);
+  const ProgramResult whole = roadfix("fix --json " + input);
   ASSERT_EQ(whole.code, 0) << whole.err;
   const auto answer = nlohmann::json::parse(whole.out);
   ASSERT_EQ(answer["status"], "fix") << whole.out;
@@ -79,15 +62,15 @@ TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
 }
 
 TEST_F(LocalizeCommands, FixTakesAPrior) {
-  const Result near = roadfix("fix " + input + at(place) + " --radius 100 --heading 217 --heading-range 20");
+  const ProgramResult near = roadfix("fix " + input + at(place) + " --radius 100 --heading 217 --heading-range 20");
   EXPECT_EQ(near.code, 0) << near.err;
   EXPECT_THAT(near.out, HasSubstr("fix  probability"));
-  const Result far = roadfix("fix " + input + "--lat 50 --lon 21 --radius 100");
+  const ProgramResult far = roadfix("fix " + input + "--lat 50 --lon 21 --radius 100");
   EXPECT_EQ(far.code, 1);
   EXPECT_THAT(far.err, HasSubstr("[prior-outside-map]"));
   EXPECT_EQ(roadfix("fix " + input + "--lat 50").code, 2);
   EXPECT_EQ(roadfix("fix " + input + "--bbox 1,2,3").code, 2);
-  const Result box = roadfix("fix " + input + "--bbox 20,50,21,51");
+  const ProgramResult box = roadfix("fix " + input + "--bbox 20,50,21,51");
   EXPECT_THAT(box.err, HasSubstr("prior-outside-map"));
 }
 
@@ -102,8 +85,8 @@ TEST_F(LocalizeCommands, FixLaysWindowsAlongAFlightTogether) {
     also += " --also " + file.string() + "," + std::to_string(forward_m) + ",0,10";
   }
   save_what_is_seen(truth, 80, window);
-  const Result alone = roadfix("fix --json " + input);
-  const Result together = roadfix("fix --json " + input + also);
+  const ProgramResult alone = roadfix("fix --json " + input);
+  const ProgramResult together = roadfix("fix --json " + input + also);
   ASSERT_EQ(together.code, 0) << together.err;
   const auto answer = nlohmann::json::parse(together.out);
   const auto cells = [](const nlohmann::json& json) { return json["modes"][0]["observed_cells"].get<int>(); };
@@ -128,7 +111,7 @@ TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
                                       << place.lat_deg + 0.001 << ", " << place.lon_deg << ", 10\n\n";
   const std::string pose =
       std::to_string(place.lat_deg) + "," + std::to_string(place.lon_deg) + "," + std::to_string(heading_deg);
-  const Result result =
+  const ProgramResult result =
       roadfix("match --json " + input + "--pose " + pose + " --poses " + (folder / "poses.csv").string());
   ASSERT_EQ(result.code, 0) << result.err;
   const auto matches = nlohmann::json::parse(result.out)["matches"];

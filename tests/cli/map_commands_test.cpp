@@ -1,14 +1,10 @@
 // roadfix info, verify and export as a script meets them: exit codes, JSON on stdout, one line on stderr.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <cstdio>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
+#include "tests/support/run_program.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -16,9 +12,10 @@ namespace {
 
 using ::testing::HasSubstr;
 using testing::ingest;
+using testing::ProgramResult;
+using testing::run_program;
 using testing::settings_37n;
 using testing::some_blocks;
-using ::testing::StartsWith;
 using testing::TemporaryFolder;
 
 class MapCommands : public ::testing::Test {
@@ -28,31 +25,14 @@ class MapCommands : public ::testing::Test {
     ingest(writer, {"a", 1, some_blocks(2)});
   }
 
-  struct Result {
-    int code = 0;
-    std::string out;
-    std::string err;
-  };
-
-  Result roadfix(const std::string& arguments) const {
-    const auto text_of = [](const std::filesystem::path& file) {
-      std::stringstream text;
-      text << std::ifstream(file).rdbuf();
-      return text.str();
-    };
-    const auto out = folder / "out";
-    const auto err = folder / "err";
-    const int status =
-        std::system((ROADFIX_PROGRAM " " + arguments + " >" + out.string() + " 2>" + err.string()).c_str());
-    return {WEXITSTATUS(status), text_of(out), text_of(err)};
-  }
+  ProgramResult roadfix(const std::string& arguments) const { return run_program(folder.path(), arguments); }
 
   TemporaryFolder folder;
   std::filesystem::path path;
 };
 
 TEST_F(MapCommands, InfoTellsWhatTheMapHolds) {
-  const Result text = roadfix("info " + path.string());
+  const ProgramResult text = roadfix("info " + path.string());
   EXPECT_EQ(text.code, 0);
   EXPECT_THAT(text.out, HasSubstr("EPSG:32637, cells of 2 m"));
   EXPECT_THAT(text.out, HasSubstr("CC BY 4.0"));
@@ -67,7 +47,7 @@ TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
   sqlite::Connection(path, sqlite::Access::kReadWrite)
       .execute("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 4");
-  const Result damaged = roadfix("verify --json " + path.string());
+  const ProgramResult damaged = roadfix("verify --json " + path.string());
   EXPECT_EQ(damaged.code, 1);
   EXPECT_EQ(nlohmann::json::parse(damaged.out)["problems"][0]["code"], "tile-corrupt");
   EXPECT_THAT(damaged.err, HasSubstr("[map-damaged]"));
@@ -80,7 +60,7 @@ TEST_F(MapCommands, ExportWritesARegion) {
   const std::string arguments = path.string() + " " + target.string();
   EXPECT_EQ(roadfix("export " + arguments + " --bbox 38.248 37.765 38.25 37.767 --cell 4").code, 0);
   EXPECT_TRUE(std::filesystem::exists(target));
-  const Result elsewhere = roadfix("export " + arguments + " --bbox 39 37 39.1 37.1");
+  const ProgramResult elsewhere = roadfix("export " + arguments + " --bbox 39 37 39.1 37.1");
   EXPECT_EQ(elsewhere.code, 1);
   EXPECT_THAT(elsewhere.err, HasSubstr("[region-outside-map]"));
 }
@@ -89,7 +69,7 @@ TEST_F(MapCommands, FailureIsOneLineAndWrongUsageIsTwo) {
   for (const char* command : {"info", "verify", "export"}) {
     const std::string name = command;
     const std::string rest = name == "export" ? " x.tif" : "";
-    const Result missing = roadfix(name + " no-such-map.gpkg" + rest);
+    const ProgramResult missing = roadfix(name + " no-such-map.gpkg" + rest);
     EXPECT_EQ(missing.code, 1);
     EXPECT_EQ(missing.err, "roadfix: no-such-map.gpkg: no such file [map-not-found]\n");
     EXPECT_EQ(roadfix(name).code, 2);

@@ -6,12 +6,14 @@
 #include "core/locate/fix.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using testing::observed_at;
 using testing::street_map;
 using testing::uniform;
@@ -28,15 +30,6 @@ GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& rando
   return {{uniform(random, box.min.east_m + margin_m, box.max.east_m - margin_m),
            uniform(random, box.min.north_m + margin_m, box.max.north_m - margin_m)},
           Angle::degrees(uniform(random, 0, 360))};
-}
-
-std::string code_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return "no error";
 }
 
 class Locate : public ::testing::Test {

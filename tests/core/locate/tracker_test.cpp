@@ -9,22 +9,15 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/particle_matches.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/flight.hpp"
 #include "tests/support/map_view.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using testing::Flight;
-
-std::string code_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return "no error";
-}
 
 class Track : public ::testing::Test {
  protected:

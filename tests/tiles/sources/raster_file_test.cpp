@@ -7,12 +7,14 @@
 #include <limits>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using testing::RasterSpec;
 using testing::write_raster;
 
@@ -22,15 +24,6 @@ class RasterFileTest : public ::testing::Test {
                     const std::function<bool(int, int)>& mask = {}, ValueRange range = {}) {
     RasterFile file(write_raster(folder / "a.tif", spec, value, mask), {});
     return file.read({{0, 0}, file.size()}, range);
-  }
-  template <typename Function>
-  static std::string code_of(Function function) {
-    try {
-      function();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return "nothing thrown";
   }
   testing::TemporaryFolder folder;
 };

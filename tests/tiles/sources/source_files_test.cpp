@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/fingerprint.hpp"
@@ -12,6 +13,7 @@
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using ::testing::ElementsAre;
 using testing::write_raster;
 
@@ -22,15 +24,6 @@ class SourceFilesTest : public ::testing::Test {
  protected:
   std::string image(const std::string& name, double value = 1.0) {
     return write_raster(folder / name, {}, [value](int, int, int) { return value; });
-  }
-  template <typename Function>
-  static std::string code_of(Function function) {
-    try {
-      function();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return "nothing thrown";
   }
   testing::TemporaryFolder folder;
 };

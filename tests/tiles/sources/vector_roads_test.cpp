@@ -8,11 +8,14 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 namespace {
+
+using testing::code_of;
 
 const UtmZone kZone = *UtmZone::from_epsg(32637);
 constexpr GridPoint kCentre{400000.0, 4200000.0};
@@ -40,15 +43,6 @@ class VectorRoads : public ::testing::Test {
     return (folder / "roads.geojson").string();
   }
   static CellArray cells(const CellSource& source) { return source.read(kWindow, 1); }
-  template <typename Function>
-  static std::string code_of(Function function) {
-    try {
-      function();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return "nothing thrown";
-  }
   static constexpr GridGeometry kWindow{2.0, {199900, -2100100}, 200, 200};  // 200 m around the centre
   testing::TemporaryFolder folder;
 };

@@ -11,12 +11,14 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 #include "tiles/store/fusion.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using testing::ingest;
 using testing::random_cells;
 using testing::settings_37n;
@@ -24,16 +26,6 @@ using testing::some_blocks;
 using testing::TemporaryFolder;
 using testing::TestSource;
 using testing::tile_bytes;
-
-template <typename Work>
-std::string code_of(const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  return "no error";
-}
 
 TEST(MapWriter, WhatWasPutCanBeRead) {
   const TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <string_view>
 
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
@@ -133,8 +134,9 @@ TEST_F(RasterFileTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
 }
 
 TEST_F(RasterFileTest, FilesThatAreNoImagesAreRefusedByName) {
-  std::ofstream(folder / "empty.tif");
-  std::ofstream(folder / "broken.tif") << "II*\0garbage that is no directory of a TIFF file";
+  using namespace std::string_view_literals;
+  std::ofstream(folder / "empty.tif") << "";
+  std::ofstream(folder / "broken.tif") << "II*\0garbage that is no directory of a TIFF file"sv;
   EXPECT_EQ(code_of([&] { RasterFile((folder / "none.tif").string(), {}); }), "source-not-found");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "empty.tif").string(), {}); }), "source-unreadable");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "broken.tif").string(), {}); }), "source-unreadable");

@@ -57,7 +57,7 @@ TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
   EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");
   std::ofstream(folder / "letter.txt") << "Dear reader";
   EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string(), SourceMeaning::kAuto); }), "source-unreadable");
-  std::ofstream(folder / "empty.tif");
+  std::ofstream(folder / "empty.tif") << "";
   EXPECT_EQ(code_of([&] { find_source((folder / "empty.tif").string(), SourceMeaning::kAuto); }), "source-unreadable");
 }
 

@@ -6,7 +6,7 @@ namespace roadfix::server {
 
 http::Router make_router(const Service& service) {
   http::Router router;
-  add_index_route(router, service);
+  add_console_routes(router);
   add_operations_routes(router, service);
   add_map_routes(router, service);
   add_window_route(router, service);

@@ -8,7 +8,8 @@
 
 namespace roadfix::server {
 
-void add_index_route(http::Router& router, const Service& service);
+/// / and /console/{file}: the operator's page
+void add_console_routes(http::Router& router);
 /// /healthz, /readyz, /metrics, /openapi.json, /v1/limits
 void add_operations_routes(http::Router& router, const Service& service);
 void add_map_routes(http::Router& router, const Service& service);

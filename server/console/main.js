@@ -1,0 +1,124 @@
+// The operator's console: the maps, a fix for a picture at hand, and what a place promises before the flight. All of it
+// is what the HTTP interface offers to any program.
+import { square } from './geometry.js';
+import { drawModes, element, showFix, showProblem, showStatus } from './show.js';
+
+const by = (id) => document.getElementById(id);
+const view = L.map('map', { preferCanvas: true, zoomSnap: 0.5 }).setView([0, 0], 2);
+const answers = L.layerGroup().addTo(view);
+const promises = L.layerGroup().addTo(view);
+L.control.scale({ imperial: false }).addTo(view);
+view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
+let tiles = null;
+
+async function request(url, options) {
+  const answer = await fetch(url, options);
+  const body = await answer.json();
+  if (!answer.ok) throw body;
+  return body;
+}
+
+/// Runs `work`; what goes wrong is said in `output`.
+async function attempt(output, work) {
+  try {
+    await work();
+  } catch (error) {
+    showProblem(output, error.title ? error : { title: 'The service gives no answer', detail: String(error.message ?? error) });
+  }
+}
+
+const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
+
+async function openMap() {
+  answers.clearLayers();
+  promises.clearLayers();
+  by('answer').replaceChildren();
+  by('place').replaceChildren();
+  const [info, tileset] = await Promise.all([request(mapUrl()), request(`${mapUrl()}/tilejson.json`)]);
+  if (tiles) tiles.remove();
+  tiles = L.tileLayer(`${mapUrl()}/tiles/{z}/{x}/{y}.png`, {
+    maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
+  }).addTo(view);
+  const [west, south, east, north] = info.bbox;
+  view.fitBounds([[south, west], [north, east]]);
+  by('about').replaceChildren(
+    element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
+    ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));
+}
+
+async function listMaps() {
+  const { maps } = await request('/v1/maps');
+  for (const map of maps) {
+    const option = new Option(map.status === 'ready' ? map.name : `${map.name}: ${map.reason}`, map.name);
+    option.disabled = map.status !== 'ready';
+    by('maps').add(option);
+  }
+  if (!maps.some((map) => map.status === 'ready')) {
+    by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
+    return;
+  }
+  by('maps').value = maps.find((map) => map.status === 'ready').name;
+  await openMap();
+}
+
+function questionOf(form) {
+  const names = { gsd: ['gsd_m'], camera: ['fov_deg', 'agl_m', 'roll_deg', 'pitch_deg'], cells: ['cell_m'] }[form.get('what')];
+  const query = new URLSearchParams({ confidence: form.get('confidence') });
+  query.set('kind', form.get('what') === 'cells' ? 'feature_map' : 'frame');
+  for (const name of names) query.set(name, form.get(name));
+  if (form.get('prior') === 'circle') {
+    const { lat, lng } = view.getCenter();
+    query.set('lat', lat);
+    query.set('lon', lng);
+    query.set('radius_m', form.get('radius_m'));
+  }
+  return query;
+}
+
+async function ask(event) {
+  event.preventDefault();
+  const form = new FormData(event.target);
+  const picture = form.get('picture');
+  answers.clearLayers();
+  showStatus(by('answer'), 'searching …', []);
+  await attempt(by('answer'), async () => {
+    const fix = await request(`${mapUrl()}/fix?${questionOf(form)}`, { method: 'POST', body: picture, headers: { 'Content-Type': picture.type } });
+    showFix(by('answer'), fix);
+    drawModes(answers, fix.modes, fix.status);
+    if (fix.pose) view.flyTo([fix.pose.lat, fix.pose.lon], Math.max(view.getZoom(), 16));
+  });
+}
+
+async function promiseOf({ latlng }) {
+  if (!tiles) return;
+  const side = Number(by('footprint').value);
+  const at = latlng.wrap();
+  promises.clearLayers();
+  const frame = L.polygon(square([at.lat, at.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(promises);
+  showStatus(by('place'), 'looking …', []);
+  await attempt(by('place'), async () => {
+    const query = new URLSearchParams({ lat: at.lat, lon: at.lng, footprint_m: side });
+    const promise = await request(`${mapUrl()}/localizability?${query}`);
+    showStatus(by('place'), promise.status, [
+      promise.explanation ?? promise.reason,
+      `probability ${promise.probability.toFixed(3)}, ${(100 * promise.road_share).toFixed(0)} % road, ${(100 * promise.observed_share).toFixed(0)} % of the ground is on the map`]);
+    frame.setStyle({ color: { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' }[promise.status] });
+    if (promise.alike) drawModes(promises, promise.alike, 'ambiguous');
+  });
+}
+
+function acceptDrops(target, input) {
+  for (const name of ['dragover', 'dragleave', 'drop']) {
+    target.addEventListener(name, (event) => {
+      event.preventDefault();
+      target.classList.toggle('over', name === 'dragover');
+      if (name === 'drop') input.files = event.dataTransfer.files;
+    });
+  }
+}
+
+by('maps').addEventListener('change', () => attempt(by('about'), openMap));
+by('ask').addEventListener('submit', ask);
+view.on('click', promiseOf);
+acceptDrops(by('drop'), by('ask').elements.picture);
+attempt(by('about'), listMaps);

@@ -1,0 +1,66 @@
+// Answers of the service as text in the panel and as figures on the map.
+import { arrow, ellipse95 } from './geometry.js';
+
+const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
+
+/// An element with text, never HTML: names of maps and messages come from outside.
+export function element(name, text = '', className = '') {
+  const made = document.createElement(name);
+  made.textContent = text;
+  if (className) made.className = className;
+  return made;
+}
+
+export function table(rows) {
+  const made = element('table');
+  for (const [name, value] of rows) {
+    const row = made.insertRow();
+    row.insertCell().append(element('span', name, 'faint'));
+    row.insertCell().append(value);
+  }
+  return made;
+}
+
+const degrees = (value, digits) => `${value.toFixed(digits)}°`;
+const place = (pose) => `${pose.lat.toFixed(6)}, ${pose.lon.toFixed(6)}`;
+
+function modeText(mode) {
+  const [long, short] = mode.sigma_m;
+  return `${place(mode.pose)}, heading ${degrees(mode.pose.heading_deg, 1)}, σ ${long.toFixed(1)} × ${short.toFixed(1)} m, weight ${mode.weight.toFixed(3)}`;
+}
+
+export function showStatus(output, status, lines) {
+  output.replaceChildren(element('span', status.replace('_', ' '), `status ${status}`));
+  for (const line of lines.filter(Boolean)) output.append(element('div', line));
+}
+
+export function showProblem(output, problem) {
+  showStatus(output, 'failed', [problem.title, problem.detail]);
+}
+
+/// Modes of a no_fix are drawn faint: they are hints, not answers. What weighs next to nothing is left out.
+export function drawModes(layer, modes, status) {
+  const colour = COLOURS[status];
+  for (const mode of modes.filter((m) => m.weight >= 0.01 * modes[0].weight)) {
+    const at = [mode.pose.lat, mode.pose.lon];
+    const opacity = status === 'no_fix' ? 0.35 : 0.4 + 0.6 * Math.min(1, mode.weight);
+    const style = { color: colour, opacity, fillOpacity: 0.15 * opacity, weight: 2, dashArray: status === 'fix' ? null : '4 4' };
+    L.polygon(ellipse95(at, mode.sigma_m, mode.ellipse_heading_deg), style).addTo(layer);
+    L.polyline(arrow(at, mode.pose.heading_deg, 60), style).addTo(layer);
+    L.circleMarker(at, { ...style, radius: 5 }).bindTooltip(modeText(mode)).addTo(layer);
+  }
+}
+
+export function showFix(output, fix) {
+  showStatus(output, fix.status, [fix.explanation ?? fix.reason]);
+  const rows = [['probability', fix.probability.toFixed(4)]];
+  if (fix.pose) {
+    rows.push(['position', place(fix.pose)], ['heading', `${degrees(fix.pose.heading_deg, 1)} ± ${degrees(fix.heading_sigma_deg, 1)}`]);
+    rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m']);
+  } else if (fix.modes.length) {
+    rows.push(['hints', `${fix.modes.length}, not to be flown on`]);
+  }
+  rows.push(['searched', `${fix.searched.area_km2.toFixed(1)} km², ${fix.searched.headings} headings`]);
+  rows.push(['time', `${Math.round(fix.time_ms.detect)} ms to detect, ${Math.round(fix.time_ms.search)} ms to search`]);
+  output.append(table(rows));
+}

@@ -67,8 +67,7 @@ def evaluate_pairs(predict, pairs, gsd_m, threshold=0.5, tolerance_m=3.0, scale=
         found = probability_of_pixels(predict(image, seen), image.shape, scale, bias) > threshold
         counts = relaxed_counts(found, truth, seen, tolerance_m, gsd_m)
         totals[pair.set_name] += counts
-        totals["all"] += counts
-    return dict(totals)
+    return {**totals, "all": sum(totals.values(), Counts())}
 
 
 def logits_and_labels(predict, pairs, gsd_m, each=20000, seed=1):

@@ -66,6 +66,8 @@ void print_text(const Fix& fix) {
   }
   fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
              fix.search_time.count());
+  if (!fix.complete)
+    fmt::print("its time limit ended the search: {:.1f} % of the poses were looked at\n", 100.0 * fix.searched_share);
   if (!fix.proof) return;
   if (fix.proof->complete) {
     fmt::print("no other pose of the region fits better, in cells of {} m and {} headings\n", fix.proof->cell_m,
@@ -125,7 +127,8 @@ void add_fix_command(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--proof", o->proof_s, "Look so many seconds for a better place than the best candidate")
       ->check(CLI::PositiveNumber);
-  command->add_option("--time-limit", o->time_limit_s, "Give up after so many seconds")->check(CLI::PositiveNumber);
+  command->add_option("--time-limit", o->time_limit_s, "End the search after so many seconds and say what it has")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
   command->callback([o, heading] {
     o->heading_known = heading->count() > 0;

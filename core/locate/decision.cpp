@@ -51,8 +51,28 @@ std::vector<double> weights_of(const std::vector<double>& shares, double probabi
 
 }  // namespace
 
+namespace {
+
+std::string time_was_over(const SearchResult& found) {
+  const char* advice = "give more time, a smaller region or a narrower heading range";
+  if (found.scanned_share < 1.0) {
+    return fmt::format(
+        "time was over when {:.0f} % of the poses had been looked at, and a better one may be among the "
+        "others: {}",
+        std::floor(100.0 * found.scanned_share), advice);
+  }
+  return fmt::format("time was over before the places that fit were told apart in the cells of the map: {}", advice);
+}
+
+}  // namespace
+
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
   Decision decision;
+  if (found.modes.empty() && !found.complete()) {
+    decision.reason = kTimeLimitReason;
+    decision.explanation = time_was_over(found);
+    return decision;
+  }
   if (found.modes.empty()) {
     decision.reason = "map-too-empty";
     decision.explanation =
@@ -62,8 +82,13 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   }
   const SearchEvidence evidence = evidence_of(found);
   const std::vector<double> posterior = shares(found);
-  decision.probability = calibration.probability(evidence);
+  decision.probability = found.scanned_share * calibration.probability(evidence);
   decision.weights = weights_of(posterior, decision.probability);
+  if (!found.complete()) {
+    decision.reason = kTimeLimitReason;
+    decision.explanation = time_was_over(found);
+    return decision;
+  }
   if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
     return decision;

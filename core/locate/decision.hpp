@@ -24,6 +24,9 @@ struct Decision {
   std::vector<double> weights;
 };
 
+/// Of a search that its time limit ended: whatever it has, it is no fix.
+inline constexpr const char* kTimeLimitReason = "search-time-limit";
+
 inline constexpr double kModeShare = 0.01;
 
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence);

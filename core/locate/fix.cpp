@@ -106,6 +106,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   }
   if (!found.modes.empty()) fix.evidence = evidence_of(found);
   fix.searched_km2 = region.area_km2();
+  fix.searched_share = found.scanned_share;
+  fix.complete = found.complete();
   fix.headings = found.headings;
   fix.proof = found.proof;
   fix.search_time = std::chrono::steady_clock::now() - started;

@@ -51,7 +51,7 @@ struct FixOptions {
   double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it
   int max_modes = 8;
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
-  std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; past it Interrupted
+  std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
   int threads = 1;
@@ -83,6 +83,9 @@ struct Fix {
   std::vector<FixMode> modes;              ///< best first; also given for no_fix, as a hint that must not be flown on
   std::optional<SearchEvidence> evidence;  ///< of the best mode
   double searched_km2 = 0.0;
+  /// Of the poses of the region, looked at before the time was over; of the others nothing is known.
+  double searched_share = 1.0;
+  bool complete = true;  ///< false where the time limit ended the search
   int headings = 0;
   std::optional<SearchProof> proof;  ///< where one was asked for
   std::string map_name;

@@ -59,7 +59,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
     result.reason = fix.reason;
     result.probability = fix.probability;
   } else {
-    result.reason = fix.modes.empty() ? fix.reason : "wrong-place";
+    result.reason = fix.modes.empty() || !fix.complete ? fix.reason : "wrong-place";
   }
   std::ranges::copy_if(fix.modes, std::back_inserter(result.alike),
                        [&](const FixMode& mode) { return !is_at(mode, place, map); });

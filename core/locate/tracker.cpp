@@ -100,7 +100,7 @@ TrackSettings TrackSettings::paper(int particles) {
 
 Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
-      settings_(std::move(settings)),
+      settings_(settings),
       start_(acceptance_of(region_of(map_, settings_.prior))),
       region_(acceptance_of(region_of(map_, {}))) {}
 
@@ -223,7 +223,10 @@ class Tracker::Step {
     options.stop = limits_.stop;
     state_.last_search = state_.measured;
     try {
-      return locate(tracker_.map_, *features_, prior, options);
+      Fix fix = locate(tracker_.map_, *features_, prior, options);
+      // Where the time ended a search depends on the machine, and a track must come out the same.
+      if (!fix.complete) throw Interrupted("search-time-limit", fix.explanation);
+      return fix;
     } catch (const LimitExceeded&) {
       return std::nullopt;
     }

@@ -165,6 +165,8 @@ class Scan {
       scan_pairs(std::span(bases).subspan(static_cast<std::size_t>(first),
                                           static_cast<std::size_t>(std::min(kSharing, count - first))));
     });
+    result_.share =
+        static_cast<double>(scanned_) / static_cast<double>(std::max<std::size_t>(1, request_.headings.size()));
     std::ranges::sort(result_.maxima, std::ranges::greater{}, &ScanPose::score);
     if (result_.maxima.size() > request_.keep) result_.maxima.resize(request_.keep);
     return std::move(result_);
@@ -179,15 +181,17 @@ class Scan {
   static constexpr int kSharing = 3;
 
   void scan_pairs(std::span<const int> bases) {
+    if (deadline_.over()) return;
     const PatchSpectra middle = spectra_of(bases[bases.size() / 2]);
     for (const bool half_turn : {false, true}) {
       const int turn = half_turn ? request_.bins.count() / 2 : 0;
       const auto wanted = [&](int base) { return std::ranges::binary_search(request_.headings, base + turn); };
       if (std::ranges::none_of(bases, wanted)) continue;
+      if (deadline_.over()) return;
       const Blocks blocks = blocks_of(middle, half_turn);
       for (const int base : bases) {
         if (!wanted(base)) continue;
-        deadline_.check();
+        if (deadline_.over()) return;
         collect(scores(base == bases[bases.size() / 2] ? middle.cross : cross_spectrum_of(base), blocks, half_turn),
                 base + turn);
       }
@@ -322,6 +326,7 @@ class Scan {
     const std::lock_guard lock(mutex_);
     result_.score_square_sum += squares;
     result_.poses += poses;
+    ++scanned_;
     result_.maxima.insert(result_.maxima.end(), found.begin(), found.end());
     if (result_.maxima.size() < 4 * request_.keep) return;
     const auto cut = result_.maxima.begin() + static_cast<std::ptrdiff_t>(request_.keep);
@@ -357,6 +362,7 @@ class Scan {
   cv::Mat1b eligible_;
   std::mutex mutex_;
   float floor_ = 0.0F;
+  std::size_t scanned_ = 0;  ///< headings
   ScanResult result_;
 };
 

@@ -34,10 +34,12 @@ struct ScanResult {
   std::vector<ScanPose> maxima;  ///< best first
   double score_square_sum = 0.0;
   std::int64_t poses = 0;
+  double share = 1.0;  ///< of the headings scanned before the deadline
 };
 
 /// `map` covers the positions with the footprint's reach on every side (unobserved where nothing is known). Scores are
-/// accurate to some percent: means and spreads under the footprint come from a coarser grid.
+/// accurate to some percent: means and spreads under the footprint come from a coarser grid. At the deadline it stops
+/// and says what it has; throws Interrupted if asked to stop.
 ScanResult coarse_scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);
 

@@ -1,5 +1,6 @@
 #include "core/match/refine.hpp"
 
+#include <atomic>
 #include <map>
 
 #include "core/match/coarse_scan.hpp"
@@ -34,14 +35,14 @@ GridPose Level::pose_of(const LatticePose& pose) const {
   return {{(pose.cell.col + 0.5) * cell_m(), -(pose.cell.row + 0.5) * cell_m()}, bins.heading(bins.wrapped(pose.bin))};
 }
 
-void refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
+bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
   const auto full_cells = static_cast<std::int64_t>(level.features.cells.observed_count());
   std::vector<MapPlane> planes;
   planes.reserve(candidates.size());
   // Turning the feature map is the expensive part, so all candidates that ask for a bin share it.
   std::map<int, std::vector<std::size_t>> candidates_of_bin;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    deadline.check();
+    if (deadline.over()) return false;
     planes.push_back(plane_around(level, candidates[i].cell, cells));
     for (int d = -bins; d <= bins; ++d) candidates_of_bin[level.bins.wrapped(candidates[i].bin + d)].push_back(i);
   }
@@ -52,8 +53,12 @@ void refine(const Level& level, int cells, int bins, const Deadline& deadline, s
   };
   std::vector<Task> tasks;
   for (const auto& [bin, members] : candidates_of_bin) tasks.push_back({bin, &members, {}});
+  std::atomic<bool> whole{true};
   parallel_for(static_cast<int>(tasks.size()), level.threads, [&](int t) {
-    deadline.check();
+    if (deadline.over()) {
+      whole = false;
+      return;
+    }
     Task& task = tasks[static_cast<std::size_t>(t)];
     const Footprint footprint = footprint_at(level.features, level.bins.heading(task.bin));
     for (const std::size_t i : *task.candidates) {
@@ -70,6 +75,7 @@ void refine(const Level& level, int cells, int bins, const Deadline& deadline, s
       task.best.push_back(best);
     }
   });
+  if (!whole) return false;
   std::vector<LatticePose> refined = candidates;
   for (LatticePose& pose : refined) pose.score = 0.0;
   for (const Task& task : tasks) {
@@ -79,6 +85,7 @@ void refine(const Level& level, int cells, int bins, const Deadline& deadline, s
     }
   }
   candidates = std::move(refined);
+  return true;
 }
 
 Peak peak_around(const Level& level, const LatticePose& pose) {

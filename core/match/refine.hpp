@@ -24,8 +24,9 @@ struct Level {
   GridPose pose_of(const LatticePose& pose) const;
 };
 
-/// Replaces each candidate by the best pose within +- `cells` and +- `bins` of it.
-void refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);
+/// Replaces each candidate by the best pose within +- `cells` and +- `bins` of it. False if time was over before: then
+/// they are left as they were.
+bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);
 
 /// Scores around a pose: index [bin][row][col], each from -kPeakRadius to +kPeakRadius; the bins count as headings.
 inline constexpr int kPeakRadius = 3;

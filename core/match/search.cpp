@@ -27,6 +27,7 @@ constexpr std::size_t kScanMaxima = 16384;
 constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
 constexpr std::size_t kCandidatesOfLarge = 4096;  // followed from coarser cells
 constexpr std::size_t kSurvivors = 96;            // followed from each finer level
+constexpr double kScanTimeShare = 0.75;           // at most, if the time is limited: what it finds has to be followed
 constexpr int kRivalsWanted = 1000;               // distinct places that a background is drawn from
 
 double side_m(const FeatureMap& features) {
@@ -83,13 +84,13 @@ class Search {
     result.cell_m = levels_.front().cell_m();
     result.coarse_cell_m = coarse().cell_m();
     std::vector<LatticePose> candidates = scan(result);
-    refine(coarse(), 1, 1, deadline_, candidates);
+    result.refined = refine(coarse(), 1, 1, deadline_, candidates);
     if (proof_level() == coarsest_) prove(coarsest_, candidates, result);
     for (int k = coarsest_ - 1; k >= 0; --k) {
       const Level& from = levels_[static_cast<std::size_t>(k + 1)];
       candidates = distinct(candidates, from, 2.5 * coarse().cell_m(), 2, followed(k + 1));
       descend(candidates);
-      refine(levels_[static_cast<std::size_t>(k)], 2, 2, deadline_, candidates);
+      result.refined = refine(levels_[static_cast<std::size_t>(k)], 2, 2, deadline_, candidates) && result.refined;
       if (proof_level() == k) prove(k, candidates, result);
     }
     const Level& finest = levels_.front();
@@ -147,8 +148,9 @@ class Search {
                               {positions.origin.col - reach, positions.origin.row - reach},
                               positions.cols + 2 * reach,
                               positions.rows + 2 * reach};
-    const ScanResult found = coarse_scan(read_(window), coarse().features, request, deadline_);
+    const ScanResult found = coarse_scan(read_(window), coarse().features, request, deadline_.after(kScanTimeShare));
 
+    result.scanned_share = found.share;
     result.headings = static_cast<int>(request.headings.size());
     result.background.poses = found.poses;
     if (found.poses > 0) {
@@ -273,7 +275,10 @@ class Search {
     result.background.region_share = scanned > 0.0 ? std::clamp(asked / scanned, 1e-6, 1.0) : 1.0;
     for (const LatticePose& pose : inside) {
       if (result.modes.size() >= static_cast<std::size_t>(std::max(1, options_.max_modes))) break;
-      deadline_.check();
+      if (deadline_.over() && !result.modes.empty()) {
+        result.refined = false;
+        break;
+      }
       result.modes.push_back(mode_at(pose, result.background));
     }
     std::ranges::stable_sort(result.modes, std::ranges::greater{}, &SearchMode::score);

@@ -99,10 +99,16 @@ struct SearchResult {
   double coarse_cell_m = 0.0;        ///< of the exhaustive scan
   int headings = 0;                  ///< bins of the exhaustive scan within the range
   std::optional<SearchProof> proof;  ///< where one was asked for
+  /// Of all poses, scored at the coarse cells before the deadline. Of the others nothing is known.
+  double scanned_share = 1.0;
+  bool refined =
+      true;  ///< what the scan found was followed to the finest cells; else the modes are only near the peaks
+
+  bool complete() const { return refined && scanned_share == 1.0; }
 };
 
 /// `features` in cells of `finest_cell_m` (see resampled()), with an observed cell that is not like all others.
-/// Throws Interrupted at the deadline or when asked to stop.
+/// At the deadline it stops and says what it has; throws Interrupted when asked to stop.
 SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,
                     const SearchRegion& region, const SearchOptions& options);
 

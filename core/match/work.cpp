@@ -25,6 +25,13 @@ void Deadline::check() const {
   }
 }
 
+Deadline Deadline::after(double share) const {
+  if (!end_) return *this;
+  const auto now = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> left = *end_ - now;
+  return {stop_, now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(share * left)};
+}
+
 void parallel_for(int count, int threads, const std::function<void(int)>& work) {
   std::atomic<int> next{0};
   std::exception_ptr failure;

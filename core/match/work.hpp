@@ -17,6 +17,8 @@ class Deadline {
   bool over() const;
   /// Throws Interrupted once the time is over or a stop was requested.
   void check() const;
+  /// A deadline after this share of the time that is left.
+  Deadline after(double share) const;
 
  private:
   std::stop_token stop_;

@@ -48,7 +48,10 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
   answer["probability"] = fix.probability;
   answer["modes"] = json::array();
   for (const FixMode& mode : fix.modes) answer["modes"].push_back(mode_json(mode));
-  answer["searched"] = {{"area_km2", fix.searched_km2}, {"headings", fix.headings}};
+  answer["searched"] = {{"area_km2", fix.searched_km2},
+                        {"headings", fix.headings},
+                        {"complete", fix.complete},
+                        {"share", fix.searched_share}};
   if (fix.proof) {
     answer["searched"]["proof"] = {{"complete", fix.proof->complete}, {"best_score", fix.proof->best_score},
                                    {"bound", fix.proof->bound},       {"excluded_share", fix.proof->excluded_share},

@@ -46,11 +46,16 @@ GeoPose parse_pose(const json& pose, std::size_t index) {
           Angle::degrees(pose_number(pose, "heading_deg", index, kDegrees))};
 }
 
+std::chrono::milliseconds milliseconds_of(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+}
+
 }  // namespace
 
 const std::vector<std::string>& prior_fields() {
   static const std::vector<std::string> kFields{
-      "lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "confidence", "max_modes", "proof_s"};
+      "lat",        "lon",       "radius_m", "bbox",        "heading_deg", "heading_range_deg",
+      "confidence", "max_modes", "proof_s",  "time_limit_s"};
   return kFields;
 }
 
@@ -85,8 +90,19 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   options.max_modes = fields.optional_integer("max_modes", 1, limits.modes).value_or(options.max_modes);
   options.max_search_km2 = limits.search_km2;
   const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
-  options.proof_time = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * proof_s));
+  options.proof_time = milliseconds_of(proof_s);
+  if (const auto limit_s = fields.optional_number("time_limit_s", {0.0, 3600.0, true})) {
+    // Never 0, which would be no limit.
+    options.time_limit = std::max(std::chrono::milliseconds(1), milliseconds_of(*limit_s));
+  }
   return options;
+}
+
+void shorten(FixOptions& options, http::Clock::time_point deadline) {
+  constexpr double kShare = 0.95;
+  const auto left = std::max(std::chrono::milliseconds(1),
+                             milliseconds_of(kShare * 0.001 * static_cast<double>(time_left(deadline).count())));
+  if (options.time_limit.count() == 0 || left < options.time_limit) options.time_limit = left;
 }
 
 std::chrono::milliseconds time_left(http::Clock::time_point deadline) {

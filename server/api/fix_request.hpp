@@ -18,8 +18,11 @@ const std::vector<std::string>& prior_fields();
 /// them = the whole map.
 Prior parse_prior(const Fields& fields);
 
-/// confidence and max_modes, and the limit of the search area.
+/// confidence, max_modes, proof_s and time_limit_s, and the limit of the search area.
 FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
+
+/// Ends the search early enough before the deadline to answer with what it has. Throws as time_left().
+void shorten(FixOptions& options, http::Clock::time_point deadline);
 
 /// At least a millisecond, as no limit is 0. Throws Interrupted ("request-deadline") when nothing is left.
 std::chrono::milliseconds time_left(http::Clock::time_point deadline);

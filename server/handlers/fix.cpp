@@ -18,7 +18,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
   options.threads = service.search_threads;
-  options.time_limit = api::time_left(request.deadline);
+  api::shorten(options, request.deadline);
   return json_response(api::to_json(locate(map->view, features.map, prior, options), features.detect_time));
 }
 

@@ -20,7 +20,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
   query.fix.max_search_km2 = service.limits.search_km2;
   query.fix.threads = service.search_threads;
-  query.fix.time_limit = api::time_left(request.deadline);
+  api::shorten(query.fix, request.deadline);
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = {{"name", map->name}, {"version", map->view.version}};
   return json_response(answer);

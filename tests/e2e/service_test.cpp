@@ -159,6 +159,22 @@ TEST_F(Service, SearchesOnlyWhereThePriorAllows) {
             "422 prior-outside-map");
 }
 
+TEST_F(Service, SaysWhatItHasWhereTheTimeLimitEndsTheSearch) {
+  const std::string url = "/v1/maps/town/fix?cell_m=2&time_limit_s=";
+  const auto answer = client_.Post(url + "0.001", town->seen(), "image/png");
+  ASSERT_EQ(answer->status, 200);
+  const json fix = testing::json_of(answer);
+  EXPECT_EQ(fix["status"], "no_fix");
+  EXPECT_EQ(fix["reason"], "search-time-limit");
+  EXPECT_EQ(fix["searched"]["complete"], false);
+  EXPECT_LT(fix["searched"]["share"], 1.0);
+  EXPECT_EQ(testing::refusal(client_.Post(url + "0", town->seen(), "image/png")),
+            "400 parameter-out-of-range time_limit_s");
+  const json whole = testing::json_of(client_.Post(url + "600", town->seen(), "image/png"));
+  EXPECT_EQ(whole["searched"]["complete"], true) << whole;
+  EXPECT_EQ(whole["searched"]["share"], 1.0);
+}
+
 TEST_F(Service, SaysBeforeTheFlightWhatAFrameOfAPlaceWouldGive) {
   const json answer = testing::json_of(client_.Get("/v1/maps/town/localizability?footprint_m=500&radius_m=300" +
                                                    std::string("&lat=") + std::to_string(town->place.lat_deg) +

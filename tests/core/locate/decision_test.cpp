@@ -77,6 +77,22 @@ TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {
   EXPECT_EQ(decide(few, default_calibration(), 0.9).status, FixStatus::kNoFix);
 }
 
+TEST(Decision, WhatATimeLimitEndedIsNoFixHoweverWellItFits) {
+  SearchResult half = found(0.8, 0.35, 0.2);
+  const double whole = decide(half, default_calibration(), 0.99).probability;
+  half.scanned_share = 0.5;
+  const Decision decision = decide(half, default_calibration(), 0.5);
+  EXPECT_EQ(decision.status, FixStatus::kNoFix);
+  EXPECT_EQ(decision.reason, "search-time-limit");
+  EXPECT_NEAR(decision.probability, 0.5 * whole, 1e-12);
+  EXPECT_NE(decision.explanation.find("50 %"), std::string::npos);
+  half.scanned_share = 1.0;
+  half.refined = false;
+  EXPECT_EQ(decide(half, default_calibration(), 0.5).reason, "search-time-limit");
+  half.modes.clear();
+  EXPECT_EQ(decide(half, default_calibration(), 0.5).reason, "search-time-limit");
+}
+
 TEST(Decision, WithoutAnyModeTheMapIsTooEmpty) {
   const Decision decision = decide({}, default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);

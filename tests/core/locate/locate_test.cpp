@@ -182,11 +182,15 @@ TEST_F(Locate, RefusesWhatItCannotUse) {
   EXPECT_EQ(code_of([&] { locate(empty, good, {}, {}); }), "map-unobserved");
 }
 
-TEST_F(Locate, EndsAtItsTimeLimit) {
+TEST_F(Locate, EndsAtItsTimeLimitAndSaysWhatItHas) {
   FixOptions options;
   options.time_limit = std::chrono::milliseconds(1);
   const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 160, 160, 2.0);
-  EXPECT_EQ(code_of([&] { locate(view_, window, {}, options); }), "search-time-limit");
+  const Fix fix = locate(view_, window, {}, options);
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "search-time-limit");
+  EXPECT_FALSE(fix.complete);
+  EXPECT_LT(fix.searched_share, 1.0);
 }
 
 TEST_F(Locate, TheEllipseHoldsTheErrors) {

@@ -139,7 +139,7 @@ TEST(Search, ManyThreadsGiveWhatOneGives) {
   EXPECT_EQ(one.background.poses, four.background.poses);
 }
 
-TEST(Search, EndsAtItsDeadlineAndWhenStopped) {
+TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const RoadGrid map = street_map(7, town(800, 800));
   std::mt19937_64 random(9);
   SearchRegion region;
@@ -147,7 +147,10 @@ TEST(Search, EndsAtItsDeadlineAndWhenStopped) {
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 128, 128, 2.0);
   SearchOptions options;
   options.deadline = std::chrono::steady_clock::now();
-  EXPECT_THROW(search(reader_of(map), 2.0, window, region, options), Interrupted);
+  const SearchResult nothing = search(reader_of(map), 2.0, window, region, options);
+  EXPECT_EQ(nothing.scanned_share, 0.0);
+  EXPECT_FALSE(nothing.complete());
+  EXPECT_TRUE(nothing.modes.empty());
   std::stop_source source;
   source.request_stop();
   options = {};

@@ -34,6 +34,8 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_EQ(answer["sigma_m"], (nlohmann::json{2.1, 1.7}));
   EXPECT_EQ(answer["modes"][0]["weight"], 0.996);
   EXPECT_EQ(answer["searched"]["headings"], 360);
+  EXPECT_EQ(answer["searched"]["complete"], true);
+  EXPECT_EQ(answer["searched"]["share"], 1.0);
   EXPECT_EQ(answer["searched"]["proof"]["complete"], false);
   EXPECT_EQ(answer["searched"]["proof"]["bound"], 0.8);
   EXPECT_EQ(answer["searched"]["proof"]["excluded_share"], 0.97);

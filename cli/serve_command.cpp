@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
 #include "cli/terminal.hpp"
@@ -31,6 +32,7 @@ struct ServeOptions {
   double idle_time_s = 15.0;
   double watch_s = 1.0;
   std::string log_level = "info";
+  std::string calibration;
 };
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
@@ -41,6 +43,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;
+  if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
   result.http.body_bytes = options.body_mib * kMiB;
   result.map_cache_bytes = options.map_cache_mib * kMiB;
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
@@ -144,6 +147,7 @@ void add_serve_command(CLI::App& app) {
   command->add_option("--log-level", o.log_level, "Of the other messages on standard error")
       ->capture_default_str()
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
+  add_calibration_option(*command, o.calibration);
   add_limits(*command, o);
   add_resources(*command, o);
   add_detector_options(*command, o.service.detector);

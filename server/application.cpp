@@ -35,8 +35,8 @@ struct Application::Parts {
         maps(configuration.maps, configuration.map_cache_bytes),
         detector(make_detector(configuration.detector)),
         pictures(configuration.picture_cache_bytes),
-        service{maps,    *detector, configuration.limits,        configuration.http,
-                metrics, pictures,  configuration.search_threads},
+        service{maps,    *detector, configuration.limits,         configuration.http,
+                metrics, pictures,  configuration.search_threads, configuration.calibration},
         server(configuration.http, make_router(service), error_response, metrics) {
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/detect/make_detector.hpp"
+#include "core/locate/calibration.hpp"
 #include "server/api/limits.hpp"
 #include "server/http/server.hpp"
 
@@ -17,7 +18,8 @@ struct Configuration {
   std::chrono::milliseconds watch_interval{1000};
   std::size_t map_cache_bytes = std::size_t{256} << 20;  ///< decoded tiles, for each map
   std::size_t picture_cache_bytes = std::size_t{64} << 20;
-  int search_threads = 1;  ///< of one search
+  int search_threads = 1;                          ///< of one search
+  std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
   http::ServerSettings http;
   api::Limits limits;
   DetectorChoice detector;

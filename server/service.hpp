@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/detect/road_detector.hpp"
+#include "core/locate/calibration.hpp"
 #include "server/api/limits.hpp"
 #include "server/http/metrics.hpp"
 #include "server/http/router.hpp"
@@ -22,6 +23,7 @@ struct Service {
   http::Metrics& metrics;
   PictureCache& pictures;
   int search_threads = 1;
+  std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
 };
 
 /// Every route of the service; schema/openapi.json describes them. `service` must outlive the router's handlers.

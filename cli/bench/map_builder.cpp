@@ -23,7 +23,7 @@ namespace {
 
 /// The roads of an invented town, written to the cache once.
 std::filesystem::path invented_roads(const ManifestSource& source, const std::filesystem::path& cache) {
-  const std::filesystem::path file = cache / fmt::format("invented-{}-{:g}.geojson", source.seed, source.side_m);
+  std::filesystem::path file = cache / fmt::format("invented-{}-{:g}.geojson", source.seed, source.side_m);
   if (std::filesystem::exists(file)) return file;
   world::WorldSettings settings;
   settings.seed = source.seed;

@@ -17,6 +17,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
+  options.calibration = service.calibration;
   options.threads = service.search_threads;
   api::shorten(options, request.deadline);
   return json_response(api::to_json(locate(map->view, features.map, prior, options), features.detect_time));

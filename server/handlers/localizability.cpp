@@ -19,6 +19,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.footprint_m = fields.number("footprint_m", {20.0, 5000.0});
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
   query.fix.max_search_km2 = service.limits.search_km2;
+  query.fix.calibration = service.calibration;
   query.fix.threads = service.search_threads;
   api::shorten(query.fix, request.deadline);
   nlohmann::json answer = api::to_json(localizability(map->view, query));

@@ -76,6 +76,24 @@ TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+TEST(ServiceLife, IsAsSureAsTheCalibrationItIsGiven) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const auto term = [](double weight) { return json{{"weight", weight}, {"most", 10.0}}; };
+  std::ofstream(folder / "doubtful.json")
+      << json{{"format", "roadfix-calibration-1"},
+              {"bias", 0.0},
+              {"highest", 0.9},
+              {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}},
+              {"terms", {{"surprise", term(0.0)}, {"lead", term(0.0)}, {"gap", term(0.0)}}}};
+  const testing::ServiceProcess service(folder.path(), {"--calibration", (folder / "doubtful.json").string()});
+  httplib::Client client = testing::client_of(service);
+  const json fix = testing::json_of(client.Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png"));
+  EXPECT_EQ(fix["status"], "ambiguous") << fix;
+  EXPECT_DOUBLE_EQ(fix["probability"].get<double>(), 0.5) << "of a logistic function that weighs nothing";
+}
+
 TEST(ServiceLife, StopsAtOnceWhenNothingIsInFlight) {
   const testing::TemporaryFolder folder;
   testing::ServiceProcess service(folder.path());

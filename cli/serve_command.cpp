@@ -31,6 +31,7 @@ struct ServeOptions {
   double request_time_s = 30.0;
   double idle_time_s = 15.0;
   double watch_s = 1.0;
+  double track_idle_s = 3600.0;
   std::string log_level = "info";
   std::string calibration;
 };
@@ -50,6 +51,7 @@ server::Configuration configuration(const ServeOptions& options) {
   result.http.request_time = milliseconds(options.request_time_s);
   result.http.idle_time = milliseconds(options.idle_time_s);
   result.watch_interval = milliseconds(options.watch_s);
+  result.track_limits.idle = std::chrono::duration_cast<std::chrono::seconds>(milliseconds(options.track_idle_s));
   return result;
 }
 
@@ -87,6 +89,7 @@ void add_limits(CLI::App& command, ServeOptions& o) {
   add("--max-cells", limits.cells, "Cells of a window or feature map");
   add("--max-poses", limits.poses, "Poses of a match");
   add("--max-search", limits.search_km2, "Area of a search in km2");
+  add("--max-particles", limits.particles, "Particles of a track");
   add("--request-time", o.request_time_s, "Seconds that an answer may take");
 }
 
@@ -102,6 +105,9 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept");
   add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB");
   add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB");
+  add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
+  add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");
+  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends");
   add("--watch", o.watch_s, "Seconds between two looks at the folder of maps");
 }
 
@@ -136,6 +142,8 @@ void add_serve_command(CLI::App& app) {
   o.service.http.heavy_running = processors();
   command->add_option("--maps", o.service.maps,
                       "Folder of the maps (*.gpkg); files that appear, change or leave are noticed");
+  command->add_option("--tracks", o.service.tracks,
+                      "File that keeps the state of tracks; tracks.sqlite in the folder of the maps if not given");
   command->add_option("--host", o.service.http.host, "Address to listen at; 0.0.0.0 for every one")
       ->capture_default_str();
   command->add_option("--port", o.service.http.port, "Port, 0 for any free one")

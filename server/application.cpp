@@ -35,8 +35,10 @@ struct Application::Parts {
         maps(configuration.maps, configuration.map_cache_bytes),
         detector(make_detector(configuration.detector)),
         pictures(configuration.picture_cache_bytes),
-        service{maps,    *detector, configuration.limits,         configuration.http,
-                metrics, pictures,  configuration.search_threads, configuration.calibration},
+        tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
+               configuration.track_limits, maps, configuration.limits),
+        service{maps,     *detector, configuration.limits,         configuration.http,       metrics,
+                pictures, tracks,    configuration.search_threads, configuration.calibration},
         server(configuration.http, make_router(service), error_response, metrics) {
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",
@@ -52,6 +54,7 @@ struct Application::Parts {
   std::unique_ptr<RoadDetector> detector;
   PictureCache pictures;
   http::Metrics metrics;
+  TrackRegistry tracks;
   const Service service;
   http::Server server;
 };
@@ -63,11 +66,13 @@ Application::~Application() { stop(); }
 int Application::start() {
   const int port = parts_->server.start();
   parts_->maps.watch(parts_->configuration.watch_interval);
+  if (const auto problem = parts_->tracks.problem()) spdlog::warn("no tracks can be kept: {}", *problem);
   spdlog::info("detector: {}", parts_->detector->describe());
   return port;
 }
 
 void Application::stop() {
+  parts_->tracks.stop();
   parts_->server.stop();
   parts_->maps.stop();
 }

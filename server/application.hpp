@@ -10,6 +10,7 @@
 #include "core/locate/calibration.hpp"
 #include "server/api/limits.hpp"
 #include "server/http/server.hpp"
+#include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
 
@@ -22,6 +23,8 @@ struct Configuration {
   std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
   http::ServerSettings http;
   api::Limits limits;
+  std::filesystem::path tracks;  ///< file of the tracks' state; empty = tracks.sqlite in the folder of the maps
+  TrackLimits track_limits;
   DetectorChoice detector;
 };
 

@@ -12,6 +12,7 @@
 #include "server/http/server.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
+#include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
 
@@ -22,6 +23,7 @@ struct Service {
   const http::ServerSettings& http;
   http::Metrics& metrics;
   PictureCache& pictures;
+  TrackRegistry& tracks;
   int search_threads = 1;
   std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
 };

@@ -12,6 +12,7 @@ struct Limits {
   double search_km2 = 2'000.0;
   int json_depth = 16;
   int modes = 64;
+  int particles = 50'000;  ///< of a track
   int frames = 16;  ///< laid together in one request
 };
 

@@ -20,6 +20,11 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"not-acceptable", 406},
       {"request-timeout", 408},
       {"length-required", 411},
+      {"map-replaced", 409},
+      {"step-late", 409},
+      {"step-differs", 409},
+      {"time-backwards", 409},
+      {"track-ended", 410},
       {"body-too-large", 413},
       {"image-too-large", 413},
       {"too-many-cells", 413},
@@ -27,6 +32,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"url-too-long", 414},
       {"unsupported-media-type", 415},
       {"unsupported-content-encoding", 415},
+      {"too-many-tracks", 429},
       {"head-too-large", 431},
       // Requests that cannot be read as HTTP, or were not sent whole.
       {"bad-request", 400},
@@ -37,6 +43,10 @@ const std::map<std::string, int, std::less<>>& statuses() {
       // The service's own set-up, not the caller's fault.
       {"model-missing", 503},
       {"map-unreadable", 503},
+      {"track-store-full", 503},
+      {"track-store-read-only", 503},
+      {"track-store-unavailable", 503},
+      {"track-store-corrupt", 503},
   };
   return kByCode;
 }
@@ -53,6 +63,10 @@ const char* title_of(int status) {
       return "Not acceptable";
     case 408:
       return "Request timeout";
+    case 409:
+      return "Conflict";
+    case 410:
+      return "Gone";
     case 411:
       return "Length required";
     case 413:
@@ -63,6 +77,8 @@ const char* title_of(int status) {
       return "Unsupported media type";
     case 422:
       return "Unprocessable content";
+    case 429:
+      return "Too many requests";
     case 431:
       return "Request header fields too large";
     case 503:
@@ -92,7 +108,7 @@ http::Response of_error(const Error& error) {
   const int status = status_of(error);
   if (const auto* busy = dynamic_cast<const http::Busy*>(&error)) {
     headers.emplace_back("Retry-After", std::to_string(busy->retry_after().count()));
-  } else if (status == 503) {
+  } else if (status == 503 || status == 429) {
     headers.emplace_back("Retry-After", "5");
   }
   http::Response response = rendered(status, std::move(members));

@@ -19,5 +19,6 @@ void add_match_route(http::Router& router, const Service& service);
 void add_fix_route(http::Router& router, const Service& service);
 void add_localizability_route(http::Router& router, const Service& service);
 void add_detect_route(http::Router& router, const Service& service);
+void add_track_routes(http::Router& router, const Service& service);
 
 }  // namespace roadfix::server

@@ -90,6 +90,18 @@ void check_body_headers(const Request& request, std::size_t max_bytes) {
 void fill(httplib::Response& out, Response response) {
   out.status = response.status;
   for (auto& [name, value] : response.headers) out.set_header(name, value);
+  if (response.stream) {
+    out.set_chunked_content_provider(
+        response.content_type, [next = std::move(response.stream)](std::size_t, httplib::DataSink& sink) {
+          const std::optional<std::string> piece = next();
+          if (!piece) {
+            sink.done();
+            return true;
+          }
+          return sink.is_writable() && (piece->empty() || sink.write(piece->data(), piece->size()));
+        });
+    return;
+  }
   if (!response.content_type.empty()) out.set_header("Content-Type", response.content_type);
   out.body = std::move(response.body);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,6 +39,9 @@ struct Response {
   std::string content_type;
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers = {};
+  /// Instead of a body: called again and again for the next piece (which may be empty) until there is none or the
+  /// client has left. May wait, but not for long.
+  std::function<std::optional<std::string>()> stream = {};
 };
 
 }  // namespace roadfix::http

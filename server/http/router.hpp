@@ -11,7 +11,7 @@
 namespace roadfix::http {
 
 struct Route {
-  std::string method;                   ///< GET (which answers HEAD too) or POST
+  std::string method;                   ///< GET (which answers HEAD too), POST or DELETE
   std::string path;                     ///< "/v1/maps/{map}/tiles/{z}/{x}/{y}.png"
   std::vector<std::string> parameters;  ///< every query parameter that the route knows; others are refused
   bool heavy = false;                   ///< waits its turn: only so many of these run at a time

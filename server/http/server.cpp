@@ -173,8 +173,9 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
   Exchange& exchange = *t_exchange;
   exchange.request = translated(head, exchange);
   Request& request = exchange.request;
-  exchange.must_close = announces_body(request) || (head.method != "GET" && head.method != "HEAD" &&
-                                                    head.method != "OPTIONS" && head.method != "POST");
+  exchange.must_close =
+      announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
+                                  head.method != "POST" && head.method != "DELETE");
   try {
     if (head.target.size() > settings_.target_bytes) {
       throw LimitExceeded("url-too-long",

@@ -9,6 +9,7 @@
 #include "schema/schema.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/track_request.hpp"
 #include "server/service.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -27,7 +28,8 @@ class OpenApi : public ::testing::Test {
   const http::ServerSettings http_{};
   http::Metrics metrics_;
   server::PictureCache pictures_{1 << 20};
-  const server::Service service_{maps_, detector_, limits_, http_, metrics_, pictures_};
+  server::TrackRegistry tracks_{folder_ / "tracks.sqlite", {}, maps_, limits_};
+  const server::Service service_{maps_, detector_, limits_, http_, metrics_, pictures_, tracks_};
   const http::Router router_ = server::make_router(service_);
 
   const json& resolved(const json& node) const {
@@ -131,6 +133,11 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   EXPECT_EQ(members("FixRequest"), fix);
   EXPECT_EQ(members("MatchRequest"), match);
   EXPECT_EQ(members("DetectRequest"), detect);
+  EXPECT_EQ(members("TrackRequest"), std::set<std::string>(api::track_members().begin(), api::track_members().end()));
+  std::set<std::string> step(api::feature_fields().begin(), api::feature_fields().end());
+  step.insert(api::picture_members().begin(), api::picture_members().end());
+  step.insert(api::step_fields().begin(), api::step_fields().end());
+  EXPECT_EQ(members("StepRequest"), step);
 }
 
 TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {

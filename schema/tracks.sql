@@ -1,0 +1,23 @@
+-- State of the tracks being served. One step is one transaction: what was answered is in here.
+-- Times are microseconds since 1970 by the server's clock, except steps.time_us, which is the vehicle's.
+
+CREATE TABLE IF NOT EXISTS tracks (
+  id          TEXT PRIMARY KEY NOT NULL,
+  client      TEXT NOT NULL,           -- address that created it
+  request     TEXT NOT NULL,           -- the JSON it was created with
+  map         TEXT NOT NULL,
+  map_version TEXT NOT NULL,
+  created_us  INTEGER NOT NULL,
+  touched_us  INTEGER NOT NULL,        -- created, or the last step
+  ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
+  counters    TEXT NOT NULL DEFAULT '',-- JSON: the tracker's state beside the particles
+  particles   BLOB                     -- core/filter/particle_bytes
+) WITHOUT ROWID;
+
+CREATE TABLE IF NOT EXISTS steps (
+  track    TEXT NOT NULL,
+  sequence INTEGER NOT NULL,
+  digest   INTEGER NOT NULL,           -- of the request, to tell a repeated step from another of that number
+  answer   TEXT NOT NULL,
+  PRIMARY KEY (track, sequence)
+) WITHOUT ROWID;

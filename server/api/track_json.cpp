@@ -1,0 +1,131 @@
+#include "server/api/track_json.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+
+json pose_json(const GeoPose& pose) {
+  return {
+      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+}
+
+json cluster_json(const TrackCluster& cluster) {
+  const LatLon at = cluster.pose.position;
+  return {{"pose", pose_json(cluster.pose)},
+          {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}},
+          {"weight", cluster.weight},
+          {"sigma_m", cluster.sigma_m},
+          {"ellipse_heading_deg", cluster.ellipse_heading.degrees()},
+          {"heading_sigma_deg", cluster.heading_sigma.degrees()},
+          {"radius95_m", cluster.radius95_m}};
+}
+
+const char* to_string(Measurement measurement) {
+  switch (measurement) {
+    case Measurement::kNone:
+      return "none";
+    case Measurement::kSkipped:
+      return "skipped";
+    case Measurement::kSearched:
+      return "searched";
+    case Measurement::kAccepted:
+      return "accepted";
+    case Measurement::kRejected:
+      return "rejected";
+    case Measurement::kUseless:
+      break;
+  }
+  return "useless";
+}
+
+}  // namespace
+
+json to_json(const TrackEstimate& estimate) {
+  json answer{{"sequence", estimate.sequence},
+              {"time_us", estimate.time_us},
+              {"status", estimate.converged ? "converged" : "searching"}};
+  if (estimate.converged) answer.update(cluster_json(estimate.clusters.front()));
+  answer["clusters"] = json::array();
+  for (const TrackCluster& cluster : estimate.clusters) answer["clusters"].push_back(cluster_json(cluster));
+  answer["cluster_count"] = estimate.cluster_count;
+  answer["particles"] = estimate.particles;
+  answer["resets"] = estimate.resets;
+  answer["measurement"] = to_string(estimate.measurement);
+  answer["mean_likelihood"] = estimate.mean_likelihood;
+  answer["doubt"] = estimate.doubt;
+  answer["since_accepted_s"] = estimate.since_accepted_s ? json(*estimate.since_accepted_s) : json();
+  answer["missed_steps"] = estimate.missed_steps;
+  return answer;
+}
+
+json particles_json(std::span<const GeoPose> particles) {
+  json list = json::array();
+  for (const GeoPose& p : particles) {
+    list.push_back({p.position.lon_deg, p.position.lat_deg, p.heading.compass_degrees()});
+  }
+  return list;
+}
+
+json history_json(const std::vector<json>& answers) {
+  json features = json::array();
+  json line = json::array();
+  for (const json& answer : answers) {
+    json properties{
+        {"sequence", answer.at("sequence")}, {"time_us", answer.at("time_us")}, {"status", answer.at("status")}};
+    const bool placed = answer.contains("geometry");
+    if (placed) {
+      for (const char* name : {"sigma_m", "ellipse_heading_deg", "heading_sigma_deg"})
+        properties[name] = answer.at(name);
+      properties["heading_deg"] = answer.at("pose").at("heading_deg");
+      line.push_back(answer.at("geometry").at("coordinates"));
+    }
+    features.push_back({{"type", "Feature"},
+                        {"geometry", placed ? answer.at("geometry") : json()},
+                        {"properties", std::move(properties)}});
+  }
+  if (line.size() > 1) {
+    features.push_back({{"type", "Feature"},
+                        {"geometry", {{"type", "LineString"}, {"coordinates", std::move(line)}}},
+                        {"properties", json::object()}});
+  }
+  return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
+}
+
+json counters_json(const TrackerState& state) {
+  return {{"sequence", state.sequence},
+          {"time_us", state.time_us},
+          {"searched", state.searched},
+          {"measured", state.measured},
+          {"last_search", state.last_search},
+          {"supported", state.supported},
+          {"accepted_time_us", state.accepted_time_us ? json(*state.accepted_time_us) : json()}};
+}
+
+TrackerState state_of(const json& counters, FilterState filter) {
+  TrackerState state;
+  state.filter = std::move(filter);
+  state.started = true;
+  try {
+    state.sequence = counters.at("sequence");
+    state.time_us = counters.at("time_us");
+    state.searched = counters.at("searched");
+    state.measured = counters.at("measured");
+    state.last_search = counters.at("last_search");
+    state.supported = counters.at("supported");
+    if (!counters.at("accepted_time_us").is_null()) {
+      state.accepted_time_us = counters.at("accepted_time_us").get<std::int64_t>();
+    }
+  } catch (const json::exception& error) {
+    throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
+                                                 error.what() + "): delete the track and begin a new one");
+  }
+  return state;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,27 @@
+// Tracks as the API gives them. A pose stands at the top only where the track has converged.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/locate/tracker.hpp"
+
+namespace roadfix::api {
+
+nlohmann::json to_json(const TrackEstimate& estimate);
+
+/// [lon, lat, heading_deg] of each.
+nlohmann::json particles_json(std::span<const GeoPose> particles);
+
+/// Answers to steps as a GeoJSON FeatureCollection: a point for each, with its sequence and time; those that had not
+/// converged have no geometry. Then the flight as a line where two points had.
+nlohmann::json history_json(const std::vector<nlohmann::json>& answers);
+
+/// The tracker's state beside the particles, for the store.
+nlohmann::json counters_json(const TrackerState& state);
+/// Throws CorruptData ("track-store-corrupt").
+TrackerState state_of(const nlohmann::json& counters, FilterState filter);
+
+}  // namespace roadfix::api

@@ -1,0 +1,123 @@
+#include "server/api/track_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/units/error.hpp"
+#include "server/api/fix_request.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+
+constexpr std::array<std::string_view, 2> kFilters{"adaptive", "paper"};
+constexpr std::array<std::string_view, 2> kStarts{"search", "uniform"};
+/// Integers up to here are exact as JSON numbers.
+constexpr double kMostExact = 9007199254740992.0;
+
+std::int64_t whole(const Fields& fields, const std::string& name) {
+  const double value = fields.number(name, {0.0, kMostExact});
+  if (value != std::floor(value)) {
+    throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a whole number, not {}", name, value));
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+VehicleNoise parse_vehicle(const Fields& fields) {
+  VehicleNoise noise;
+  if (const auto speed = fields.optional_number("speed_m_s", {-300.0, 300.0})) {
+    VehicleNoise::Planar planar;
+    planar.speed_m_s = {*speed, fields.optional_number("speed_sigma_m_s", {0.0, 300.0}).value_or(2.0)};
+    planar.turn_rate_rad_s = {
+        Angle::degrees(fields.optional_number("turn_rate_deg_s", kDegrees).value_or(0.0)).radians(),
+        Angle::degrees(fields.optional_number("turn_rate_sigma_deg_s", {0.0, 360.0}).value_or(5.0)).radians()};
+    noise.planar = planar;
+  }
+  noise.odometry_share = fields.optional_number("odometry_share", {0.0, 1.0}).value_or(noise.odometry_share);
+  noise.wind_walk = fields.optional_number("wind_walk", {0.0, 10.0}).value_or(noise.wind_walk);
+  return noise;
+}
+
+Odometry parse_odometry(const Fields& fields) {
+  constexpr Range kMetres{-1e5, 1e5};
+  return {fields.number("forward_m", kMetres), fields.number("right_m", kMetres),
+          Angle::degrees(fields.number("turn_deg", kDegrees))};
+}
+
+}  // namespace
+
+const std::vector<std::string>& track_members() {
+  static const std::vector<std::string> kMembers{"map",
+                                                 "lat",
+                                                 "lon",
+                                                 "radius_m",
+                                                 "bbox",
+                                                 "heading_deg",
+                                                 "heading_range_deg",
+                                                 "filter",
+                                                 "start",
+                                                 "particles",
+                                                 "measure_every",
+                                                 "seed",
+                                                 "speed_m_s",
+                                                 "speed_sigma_m_s",
+                                                 "turn_rate_deg_s",
+                                                 "turn_rate_sigma_deg_s",
+                                                 "odometry_share",
+                                                 "wind_walk"};
+  return kMembers;
+}
+
+TrackRequest parse_track(const Fields& fields, const Limits& limits) {
+  TrackRequest request{fields.text("map"), {}};
+  TrackSettings& settings = request.settings;
+  const int particles =
+      fields.optional_integer("particles", 100, limits.particles).value_or(std::min(10'000, limits.particles));
+  if (fields.word("filter", kFilters) == "paper") {
+    settings = TrackSettings::paper(particles);
+  } else {
+    settings.filter.max_particles = particles;
+    settings.filter.min_particles = std::min(settings.filter.min_particles, particles);
+  }
+  if (fields.has("start")) {
+    settings.start = fields.word("start", kStarts) == "search" ? TrackStart::kSearch : TrackStart::kUniform;
+  }
+  settings.prior = parse_prior(fields);
+  settings.vehicle = parse_vehicle(fields);
+  settings.measure_every = fields.optional_integer("measure_every", 1, 1000).value_or(1);
+  settings.seed =
+      static_cast<std::uint64_t>(fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1));
+  settings.max_search_km2 = limits.search_km2;
+  return request;
+}
+
+const std::vector<std::string>& step_fields() {
+  static const std::vector<std::string> kFields{"sequence", "time_us",  "forward_m",
+                                                "right_m",  "turn_deg", "covariance"};
+  return kFields;
+}
+
+StepInput parse_step(const Fields& fields) {
+  StepInput step;
+  step.sequence = whole(fields, "sequence");
+  step.time_us = whole(fields, "time_us");
+  if (fields.has("forward_m") || fields.has("right_m") || fields.has("turn_deg"))
+    step.odometry = parse_odometry(fields);
+  if (const auto values = fields.optional_numbers("covariance", 9)) {
+    if (!step.odometry) {
+      throw InvalidField("missing-parameter", "forward_m", "'covariance' goes with forward_m, right_m and turn_deg");
+    }
+    OdometryCovariance covariance{};
+    for (std::size_t i = 0; i < 9; ++i) covariance[i / 3][i % 3] = (*values)[i];
+    step.covariance = covariance;
+  }
+  return step;
+}
+
+}  // namespace roadfix::api

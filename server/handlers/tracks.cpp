@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/units/error.hpp"
+#include "server/api/feature_request.hpp"
+#include "server/api/fix_request.hpp"
+#include "server/api/json_body.hpp"
+#include "server/api/time_limit.hpp"
+#include "server/api/track_json.hpp"
+#include "server/api/track_request.hpp"
+#include "server/handlers/answers.hpp"
+#include "server/handlers/handlers.hpp"
+
+namespace roadfix::server {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMostHistory = 100'000;
+constexpr int kMostParticlesShown = 10'000;
+
+std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
+
+std::vector<std::string> step_query() { return joined(api::step_fields(), api::feature_fields()); }
+
+/// Of the whole request, to tell a repeated step from another one (FNV-1a).
+std::int64_t digest_of(const http::Request& request) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  const auto add = [&](std::string_view text) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+    hash *= 0x100000001b3ULL;
+  };
+  for (const auto& [name, value] : request.query) {
+    add(name);
+    add(value);
+  }
+  add(request.body);
+  return static_cast<std::int64_t>(hash);
+}
+
+json track_json(const StoredTrack& track) {
+  return {{"id", track.id},
+          {"map", {{"name", track.map}, {"version", track.map_version}}},
+          {"request", json::parse(track.request)},
+          {"created_us", track.created_us},
+          {"touched_us", track.touched_us}};
+}
+
+http::Response post_track(const Service& service, const http::Request& request) {
+  if (request.media_type() != "application/json") {
+    throw InvalidInput("unsupported-media-type",
+                       "a track is begun with a JSON object (Content-Type: application/json)");
+  }
+  const json asked = api::parse_json(request.body, {service.limits.json_depth, 1000});
+  const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
+  http::Response response = json_response(track_json(track));
+  response.status = 201;
+  response.headers.emplace_back("Location", "/v1/tracks/" + track.id);
+  return response;
+}
+
+http::Response post_step(const Service& service, const http::Request& request) {
+  const StoredTrack track = service.tracks.find(id_of(request));
+  const api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
+  StepInput input = api::parse_step(content.fields);
+  const std::int64_t digest = digest_of(request);
+  if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
+    return {200, "application/json", std::move(*answer), {{"Roadfix-Repeated", "true"}}};
+  }
+  if (!content.image.empty() || content.fields.has("cells")) {
+    const auto map = service.maps.find(track.map);
+    input.features = api::features_of(content, service.detector, map->view.cell_m, service.limits).map;
+  }
+  const api::TimeLimit limit(request.deadline);
+  StepLimits limits;
+  limits.threads = service.search_threads;
+  limits.search_time = api::time_left(request.deadline);
+  limits.stop = limit.token();
+  return {200, "application/json", service.tracks.step(track.id, input, digest, limits)};
+}
+
+http::Response list_tracks(const Service& service, const http::Request& request) {
+  json list = json::array();
+  for (const StoredTrack& track : service.tracks.of_client(request.client)) list.push_back(track_json(track));
+  return json_response({{"tracks", std::move(list)}});
+}
+
+http::Response get_track(const Service& service, const http::Request& request) {
+  const api::Fields fields(request.query);
+  const StoredTrack track = service.tracks.find(id_of(request));
+  json answer = track_json(track);
+  const auto last = service.tracks.last_step(track.id);
+  answer["last"] = last ? json::parse(last->answer) : json();
+  if (const auto count = fields.optional_integer("particles", 1, kMostParticlesShown)) {
+    answer["particles"] = api::particles_json(service.tracks.particles(track.id, static_cast<std::size_t>(*count)));
+  }
+  return json_response(answer);
+}
+
+http::Response get_history(const Service& service, const http::Request& request) {
+  const api::Fields fields(request.query);
+  const int after = fields.optional_integer("after", -1, std::numeric_limits<int>::max()).value_or(-1);
+  const int limit = fields.optional_integer("limit", 1, kMostHistory).value_or(kMostHistory);
+  std::vector<json> answers;
+  for (const StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {
+    answers.push_back(json::parse(step.answer));
+  }
+  http::Response response = json_response(api::history_json(answers));
+  response.content_type = "application/geo+json";
+  return response;
+}
+
+/// Where the client's stream was cut, by the header that browsers send; -1 = from the beginning.
+std::int64_t last_event(const http::Request& request) {
+  const std::string& text = request.header("last-event-id");
+  std::int64_t value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? value : -1;
+}
+
+http::Response get_events(const Service& service, const http::Request& request) {
+  const auto stream = service.tracks.stream(id_of(request), last_event(request));
+  http::Response response{200, "text/event-stream", {}, {{"Cache-Control", "no-store"}}};
+  bool over = false;
+  response.stream = [stream, over]() mutable -> std::optional<std::string> {
+    if (over) return std::nullopt;
+    const auto steps = stream->next();
+    over = !steps;
+    if (over) return "event: end\ndata: {}\n\n";
+    std::string text;
+    for (const StoredStep& step : *steps) {
+      text += fmt::format("id: {}\nevent: step\ndata: {}\n\n", step.sequence, step.answer);
+    }
+    return text.empty() ? ":\n\n" : text;  // a comment keeps the connection alive
+  };
+  return response;
+}
+
+http::Response delete_track(const Service& service, const http::Request& request) {
+  service.tracks.finish(id_of(request));
+  return {204, {}, {}};
+}
+
+}  // namespace
+
+void add_track_routes(http::Router& router, const Service& service) {
+  const auto add = [&](const char* method, const char* path, std::vector<std::string> query, bool heavy, auto handler) {
+    router.add({method, path, std::move(query), heavy,
+                [&service, handler](const http::Request& request) { return handler(service, request); }});
+  };
+  add("POST", "/v1/tracks", {}, false, post_track);
+  add("GET", "/v1/tracks", {}, false, list_tracks);
+  add("GET", "/v1/tracks/{id}", {"particles"}, false, get_track);
+  add("DELETE", "/v1/tracks/{id}", {}, false, delete_track);
+  add("POST", "/v1/tracks/{id}/steps", step_query(), true, post_step);
+  add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, false, get_history);
+  add("GET", "/v1/tracks/{id}/events", {}, false, get_events);
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,180 @@
+#include "server/tracks/track_store.hpp"
+
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "core/units/error.hpp"
+#include "schema/schema.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix::server {
+namespace {
+
+constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
+
+/// The map store's names of what SQLite may refuse, in the terms of this store.
+[[noreturn]] void rename_failure(const std::filesystem::path& path, const Error& error) {
+  const std::string file = path.string();
+  if (error.code() == "disk-full") {
+    throw IoFailure("track-store-full",
+                    fmt::format("{}: no space left for the tracks: the step was not taken; send it again later", file));
+  }
+  if (error.code() == "map-not-writable") {
+    throw IoFailure(
+        "track-store-read-only",
+        fmt::format("{}: the tracks cannot be written to: start the service with --tracks FILE where it may "
+                    "write",
+                    file));
+  }
+  if (error.code() == "map-corrupt" || error.code() == "map-not-ours") {
+    throw CorruptData("track-store-corrupt",
+                      fmt::format("{}: the file of the tracks is damaged or no such file: move it away and restart the "
+                                  "service",
+                                  file));
+  }
+  if (error.code() == "map-busy") {
+    throw Interrupted("track-store-busy", fmt::format("{}: another process keeps the tracks locked", file));
+  }
+  throw IoFailure("track-store-unavailable",
+                  fmt::format("{}: the tracks cannot be kept here: start the service with --tracks FILE", file));
+}
+
+StoredTrack track_of(const sqlite::Statement& row) {
+  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5), row.integer(6), row.text(7)};
+}
+
+StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.integer(1), row.text(2)}; }
+
+}  // namespace
+
+class TrackStore::Impl {
+ public:
+  explicit Impl(const std::filesystem::path& path) : path_(path) {
+    with([&] {
+      connection_.emplace(path_, sqlite::Access::kCreate);
+      connection_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+      connection_->execute(std::string(schema::tracks_sql()).c_str());
+    });
+  }
+
+  /// Runs work on the connection, one caller at a time.
+  template <typename Work>
+  auto with(Work work) -> decltype(work()) {
+    const std::lock_guard lock(mutex_);
+    try {
+      return work();
+    } catch (const Error& error) {
+      rename_failure(path_, error);
+    }
+  }
+  sqlite::Connection& connection() { return *connection_; }
+
+ private:
+  std::filesystem::path path_;
+  std::mutex mutex_;
+  std::optional<sqlite::Connection> connection_;
+};
+
+TrackStore::TrackStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+
+TrackStore::~TrackStore() = default;
+
+void TrackStore::add(const StoredTrack& t) {
+  impl_->with([&] {
+    sqlite::Statement(impl_->connection(),
+                      fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
+        .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, t.ended)
+        .run();
+  });
+}
+
+std::optional<StoredTrack> TrackStore::find(const std::string& id) const {
+  return impl_->with([&]() -> std::optional<StoredTrack> {
+    sqlite::Statement rows(impl_->connection(), fmt::format("SELECT {} FROM tracks WHERE id = ?1", kTrackColumns));
+    if (!rows.with(id).step()) return std::nullopt;
+    return track_of(rows);
+  });
+}
+
+StoredState TrackStore::state(const std::string& id) const {
+  return impl_->with([&] {
+    sqlite::Statement rows(impl_->connection(), "SELECT counters, particles FROM tracks WHERE id = ?1");
+    StoredState state;
+    if (rows.with(id).step()) {
+      state.counters = rows.text(0);
+      const auto bytes = rows.blob(1);
+      state.particles.assign(bytes.begin(), bytes.end());
+    }
+    return state;
+  });
+}
+
+std::vector<StoredTrack> TrackStore::flying() const {
+  return impl_->with([&] {
+    sqlite::Statement rows(
+        impl_->connection(),
+        fmt::format("SELECT {} FROM tracks WHERE ended = '' ORDER BY created_us DESC, id", kTrackColumns));
+    std::vector<StoredTrack> tracks;
+    while (rows.step()) tracks.push_back(track_of(rows));
+    return tracks;
+  });
+}
+
+void TrackStore::add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
+                          const StoredStep& step) {
+  impl_->with([&] {
+    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
+    sqlite::Statement(impl_->connection(),
+                      "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4 WHERE id = ?1")
+        .with(id, now_us, state.counters, std::span<const std::byte>(state.particles))
+        .run();
+    sqlite::Statement(impl_->connection(),
+                      "INSERT INTO steps (track, sequence, digest, answer) VALUES (?1, ?2, ?3, ?4)")
+        .with(id, step.sequence, step.digest, step.answer)
+        .run();
+    transaction.commit();
+  });
+}
+
+std::optional<StoredStep> TrackStore::step(const std::string& id, std::int64_t sequence) const {
+  const std::vector<StoredStep> found = steps_after(id, sequence - 1, 1);
+  if (found.empty() || found.front().sequence != sequence) return std::nullopt;
+  return found.front();
+}
+
+std::optional<StoredStep> TrackStore::last_step(const std::string& id) const {
+  return impl_->with([&]() -> std::optional<StoredStep> {
+    sqlite::Statement rows(
+        impl_->connection(),
+        "SELECT sequence, digest, answer FROM steps WHERE track = ?1 ORDER BY sequence DESC LIMIT 1");
+    if (!rows.with(id).step()) return std::nullopt;
+    return step_of(rows);
+  });
+}
+
+std::vector<StoredStep> TrackStore::steps_after(const std::string& id, std::int64_t sequence, int count) const {
+  return impl_->with([&] {
+    sqlite::Statement rows(impl_->connection(),
+                           "SELECT sequence, digest, answer FROM steps WHERE track = ?1 AND sequence > ?2 ORDER BY "
+                           "sequence LIMIT ?3");
+    std::vector<StoredStep> steps;
+    rows.with(id, sequence, count);
+    while (rows.step()) steps.push_back(step_of(rows));
+    return steps;
+  });
+}
+
+void TrackStore::end(const std::string& id, const std::string& how) {
+  impl_->with([&] {
+    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
+    sqlite::Statement(impl_->connection(),
+                      "UPDATE tracks SET ended = ?2, counters = '', particles = NULL WHERE id = ?1")
+        .with(id, how)
+        .run();
+    sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();
+    transaction.commit();
+  });
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,70 @@
+// The tracks on disk: a SQLite file in WAL mode, synchronised at every step, so that nothing that was answered is lost
+// when the process or the machine dies.
+//
+// All functions may be called from several threads and throw IoFailure ("track-store-full", "track-store-read-only",
+// "track-store-unavailable"), CorruptData ("track-store-corrupt") or Interrupted ("track-store-busy").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace roadfix::server {
+
+struct StoredTrack {
+  std::string id;
+  std::string client;
+  std::string request;  ///< JSON
+  std::string map;
+  std::string map_version;
+  std::int64_t created_us = 0;
+  std::int64_t touched_us = 0;
+  std::string ended;  ///< empty while it flies, else "finished" or "expired"
+};
+
+struct StoredState {
+  std::string counters;  ///< JSON; empty before the first step
+  std::vector<std::byte> particles;
+};
+
+struct StoredStep {
+  std::int64_t sequence = 0;
+  std::int64_t digest = 0;
+  std::string answer;
+};
+
+class TrackStore {
+ public:
+  /// Creates the file where there is none.
+  explicit TrackStore(const std::filesystem::path& path);
+  ~TrackStore();
+  TrackStore(const TrackStore&) = delete;
+  TrackStore& operator=(const TrackStore&) = delete;
+
+  void add(const StoredTrack& track);
+  std::optional<StoredTrack> find(const std::string& id) const;
+  StoredState state(const std::string& id) const;
+  /// Newest first.
+  std::vector<StoredTrack> flying() const;
+
+  /// The step and the state after it, at once.
+  void add_step(const std::string& id, std::int64_t now_us, const StoredState& state, const StoredStep& step);
+  std::optional<StoredStep> step(const std::string& id, std::int64_t sequence) const;
+  /// The last one, if there was any.
+  std::optional<StoredStep> last_step(const std::string& id) const;
+  /// Up to `count` steps above the sequence number, in order.
+  std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
+
+  /// Takes the particles and steps away and keeps that there was such a track.
+  void end(const std::string& id, const std::string& how);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadfix::server

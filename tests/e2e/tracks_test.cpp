@@ -1,0 +1,301 @@
+// Tracks as a client meets them: flights over real sockets, and the service killed amid them.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include "tests/e2e/service_fixture.hpp"
+#include "tests/support/flight.hpp"
+
+namespace roadfix {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+struct Request {
+  std::string query;
+  std::string picture;
+};
+
+/// A step as its query and its picture; without a picture it has to be sent as JSON.
+Request request_of(const StepInput& step) {
+  Request request;
+  request.query =
+      "?sequence=" + std::to_string(step.sequence) + "&time_us=" + std::to_string(step.time_us) + "&cell_m=2";
+  if (step.odometry) {
+    request.query += "&forward_m=" + std::to_string(step.odometry->forward_m) +
+                     "&right_m=" + std::to_string(step.odometry->right_m) +
+                     "&turn_deg=" + std::to_string(step.odometry->turn.degrees());
+  }
+  if (step.features) request.picture = testing::text_of(encode_feature_map(step.features->cells));
+  return request;
+}
+
+class Tracks : public ::testing::Test {
+ protected:
+  Tracks() { testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0); }
+
+  std::unique_ptr<testing::ServiceProcess> service(std::vector<std::string> options = {}) const {
+    return std::make_unique<testing::ServiceProcess>(folder_.path(), options);
+  }
+  json asked() const {
+    return {{"map", "town"},   {"lat", town_.place.lat_deg}, {"lon", town_.place.lon_deg},
+            {"radius_m", 200}, {"particles", 2000},          {"seed", 7}};
+  }
+  std::string begin(httplib::Client& client) const {
+    const auto answer = client.Post("/v1/tracks", asked().dump(), "application/json");
+    EXPECT_EQ(answer->status, 201) << answer->body;
+    return testing::json_of(answer)["id"];
+  }
+  static httplib::Result send(httplib::Client& client, const std::string& id, const Request& request) {
+    return client.Post(("/v1/tracks/" + id + "/steps" + request.query).c_str(), request.picture, "image/png");
+  }
+  std::vector<Request> flight(int steps) const {
+    testing::Flight flight(town_.roads, town_.pose, 21);
+    std::vector<Request> requests;
+    for (int i = 0; i < steps; ++i) requests.push_back(request_of(flight.step()));
+    return requests;
+  }
+
+  const testing::Town town_;
+  const testing::TemporaryFolder folder_;
+};
+
+TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
+  const auto running = service();
+  httplib::Client client = testing::client_of(*running);
+  const std::string id = begin(client);
+  testing::Flight flight(town_.roads, town_.pose, 20);
+  json answer;
+  for (int i = 0; i < 8; ++i) answer = testing::json_of(send(client, id, request_of(flight.step())));
+  ASSERT_EQ(answer["status"], "converged") << answer;
+  const GridPoint found = town_.zone.project({answer["pose"]["lat"], answer["pose"]["lon"]});
+  EXPECT_LT(distance_m(found, flight.pose().position), 12.0);
+
+  const json track = testing::json_of(client.Get(("/v1/tracks/" + id + "?particles=100").c_str()));
+  EXPECT_EQ(track["last"], answer);
+  EXPECT_EQ(track["request"]["seed"], 7);
+  EXPECT_GT(track["particles"].size(), 50U);
+  EXPECT_LE(track["particles"].size(), 100U);
+  EXPECT_EQ(testing::json_of(client.Get("/v1/tracks"))["tracks"][0]["id"], id);
+
+  const json history = testing::json_of(client.Get(("/v1/tracks/" + id + "/history").c_str()));
+  EXPECT_EQ(history["type"], "FeatureCollection");
+  EXPECT_EQ(history["features"].size(), 9U) << "eight points and the line";
+  EXPECT_EQ(history["features"][8]["geometry"]["type"], "LineString");
+  EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=5").c_str()))["features"].size(), 3U);
+}
+
+TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
+  const auto running = service();
+  httplib::Client client = testing::client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(4);
+  send(client, id, steps[0]);
+  const auto first = send(client, id, steps[1]);
+  const auto again = send(client, id, steps[1]);
+  EXPECT_EQ(again->body, first->body);
+  EXPECT_EQ(again->get_header_value("Roadfix-Repeated"), "true");
+  EXPECT_EQ(testing::refusal(send(client, id, {steps[1].query, steps[2].picture})), "409 step-differs");
+  send(client, id, steps[3]);
+  EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id).c_str()))["last"]["missed_steps"], 1);
+  EXPECT_EQ(testing::refusal(send(client, id, steps[2])), "409 step-late");
+
+  const auto refused = [&](const json& step) {
+    return testing::refusal(client.Post(("/v1/tracks/" + id + "/steps").c_str(), step.dump(), "application/json"));
+  };
+  EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 4'000'000}}), "409 time-backwards");
+  EXPECT_EQ(refused({{"sequence", 4}}), "400 missing-parameter time_us");
+  EXPECT_EQ(refused({{"sequence", 4.5}, {"time_us", 1}}), "400 bad-parameter sequence");
+  EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 9'000'000}, {"forward_m", 3}}), "400 missing-parameter right_m");
+  json bad{{"sequence", 4}, {"time_us", 9'000'000}, {"forward_m", 3}, {"right_m", 0}, {"turn_deg", 0}};
+  bad["covariance"] = {1, 2, 0, 2, 1, 0, 0, 0, 1};
+  EXPECT_EQ(refused(bad), "422 covariance-not-positive");
+  bad["covariance"] = {1, 2, 0};
+  EXPECT_EQ(refused(bad), "400 bad-parameter covariance");
+  EXPECT_EQ(
+      testing::refusal(client.Post(("/v1/tracks/" + id + "/steps").c_str(),
+                                   R"({"sequence": 4, "time_us": 9000000, "forward_m": NaN})", "application/json")),
+      "400 bad-json body");
+  EXPECT_EQ(
+      client
+          .Post(("/v1/tracks/" + id + "/steps").c_str(), R"({"sequence": 4, "time_us": 9000000})", "application/json")
+          ->status,
+      200)
+      << "dead reckoning, after all that was refused";
+
+  EXPECT_EQ(client.Delete(("/v1/tracks/" + id).c_str())->status, 204);
+  EXPECT_EQ(testing::refusal(send(client, id, steps[3])), "410 track-ended");
+  EXPECT_EQ(testing::refusal(send(client, "nobody", steps[0])), "404 track-not-found");
+}
+
+TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
+  const auto running = service({"--max-client-tracks", "1"});
+  httplib::Client client = testing::client_of(*running);
+  const auto refused = [&](const json& change) {
+    json body = asked();
+    body.update(change);
+    return testing::refusal(client.Post("/v1/tracks", body.dump(), "application/json"));
+  };
+  EXPECT_EQ(refused({{"map", "nowhere"}}), "404 map-not-found");
+  EXPECT_EQ(refused({{"lat", 10.0}, {"lon", 20.0}}), "422 prior-outside-map");
+  EXPECT_EQ(refused({{"filter", "best"}}), "400 bad-parameter filter");
+  EXPECT_EQ(refused({{"particles", 1'000'000'000}}), "400 parameter-out-of-range particles");
+  EXPECT_EQ(refused({{"color", 1}}), "400 unknown-field color");
+  begin(client);
+  EXPECT_EQ(refused(json::object()), "429 too-many-tracks");
+}
+
+TEST_F(Tracks, LoseNoAnsweredStepWhenTheServiceIsKilledAtAnyMoment) {
+  const std::vector<Request> steps = flight(24);
+  std::vector<std::string> expected;
+  {
+    const auto undisturbed = service({"--tracks", (folder_ / "undisturbed.sqlite").string()});
+    httplib::Client client = testing::client_of(*undisturbed);
+    const std::string id = begin(client);
+    for (const Request& step : steps) {
+      json answer = testing::json_of(send(client, id, step));
+      answer.erase("track");
+      expected.push_back(answer.dump());
+    }
+  }
+  auto running = service();
+  httplib::Client first = testing::client_of(*running);
+  const std::string id = begin(first);
+  std::vector<std::string> answers;
+  std::mt19937_64 random(5);
+  int kills = 0;
+  while (answers.size() < steps.size()) {
+    // More and more time, so that the search of the first step ends on any machine. The step that was cut off is sent
+    // again: it may have been taken, but must not be taken twice.
+    std::jthread killer(
+        [&, after = std::chrono::milliseconds(20 + random() % 200 + 10U * static_cast<unsigned>(kills))] {
+          std::this_thread::sleep_for(after);
+          running->send_signal(SIGKILL);
+        });
+    httplib::Client client = testing::client_of(*running);
+    for (bool alive = true; alive && answers.size() < steps.size();) {
+      const auto answer = send(client, id, steps[answers.size()]);
+      alive = answer && answer->status == 200;
+      if (!alive) break;
+      json body = json::parse(answer->body);
+      body.erase("track");
+      answers.push_back(body.dump());
+    }
+    killer.join();
+    ++kills;
+    running = service();
+    httplib::Client after = testing::client_of(*running);
+    const json track = testing::json_of(after.Get(("/v1/tracks/" + id).c_str()));
+    const auto taken = track["last"].is_null() ? 0U : track["last"]["sequence"].get<std::size_t>() + 1;
+    ASSERT_GE(taken, answers.size()) << "an answered step was lost";
+    ASSERT_LT(kills, 100);
+  }
+  EXPECT_GE(kills, 3);
+  EXPECT_EQ(answers, expected);
+}
+
+TEST_F(Tracks, PutStepsThatOvertakeEachOtherInOrder) {
+  const auto running = service({"--searches", "8"});
+  httplib::Client client = testing::client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(3);
+  send(client, id, steps[0]);
+  json later;
+  std::jthread overtaking([&] {
+    httplib::Client other = testing::client_of(*running);
+    later = testing::json_of(send(other, id, steps[2]));
+  });
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(send(client, id, steps[1])->status, 200);
+  overtaking.join();
+  EXPECT_EQ(later["missed_steps"], 0) << later;
+}
+
+TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
+  const auto running = service();
+  httplib::Client client = testing::client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(3);
+  send(client, id, steps[0]);
+  const auto listen = [&](const httplib::Headers& headers, std::atomic<bool>& connected) {
+    httplib::Client other = testing::client_of(*running);
+    std::string text;
+    other.Get(("/v1/tracks/" + id + "/events").c_str(), headers, [&](const char* data, std::size_t size) {
+      text.append(data, size);
+      connected = true;
+      return true;
+    });
+    return text;
+  };
+  std::atomic<bool> connected = false;
+  std::atomic<bool> resumed = false;
+  std::string all;
+  std::string rest;
+  std::jthread whole([&] { all = listen({{"Accept-Encoding", "gzip"}}, connected); });
+  while (!connected) std::this_thread::sleep_for(5ms);
+  const std::string second = send(client, id, steps[1])->body;
+  std::jthread tail([&] { rest = listen({{"Last-Event-ID", "0"}}, resumed); });
+  while (!resumed) std::this_thread::sleep_for(5ms);
+  client.Delete(("/v1/tracks/" + id).c_str());
+  whole.join();
+  tail.join();
+  EXPECT_THAT(all, HasSubstr("id: 0\nevent: step\ndata: {"));
+  EXPECT_THAT(rest, HasSubstr("id: 1\nevent: step\ndata: " + second + "\n\n"));
+  EXPECT_THAT(rest, Not(HasSubstr("id: 0\n")));
+  EXPECT_THAT(rest, HasSubstr("event: end\n"));
+}
+
+TEST_F(Tracks, EndWhenNothingComesOrTheirMapIsReplaced) {
+  const auto running = service({"--track-idle", "1"});
+  httplib::Client client = testing::client_of(*running);
+  const std::string idle = begin(client);
+  std::this_thread::sleep_for(1100ms);
+  EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
+  EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + idle).c_str())), "410 track-ended");
+  const std::string id = begin(client);
+  const std::string version = testing::json_of(client.Get("/v1/maps/town"))["version"];
+  {
+    MapWriter writer(folder_ / "town.gpkg", {town_.zone, 2.0});
+    writer.remove_source("town");
+  }
+  while (testing::json_of(client.Get("/v1/maps/town"))["version"] == version) std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(testing::refusal(send(client, id, flight(1)[0])), "409 map-replaced");
+}
+
+TEST_F(Tracks, SayWhyTheyCannotBeKeptWhileMapsAreServed) {
+  std::ofstream(folder_ / "broken.sqlite") << std::string(4096, 'x');
+  const auto refusal_with = [&](const std::string& store) {
+    const auto running = service({"--tracks", store});
+    httplib::Client client = testing::client_of(*running);
+    EXPECT_EQ(client.Get("/v1/maps/town")->status, 200);
+    return testing::refusal(client.Post("/v1/tracks", asked().dump(), "application/json"));
+  };
+  EXPECT_EQ(refusal_with((folder_ / "broken.sqlite").string()), "503 track-store-corrupt");
+  EXPECT_EQ(refusal_with((folder_ / "no/such/folder.sqlite").string()), "503 track-store-unavailable");
+}
+
+TEST_F(Tracks, FlySixteenVehiclesAtOnce) {
+  const auto running = service();
+  const std::vector<Request> steps = flight(6);
+  std::atomic<int> converged = 0;
+  std::vector<std::jthread> vehicles;
+  for (int i = 0; i < 16; ++i) {
+    vehicles.emplace_back([&] {
+      httplib::Client client = testing::client_of(*running);
+      const std::string id = begin(client);
+      json last;
+      for (const Request& step : steps) last = testing::json_of(send(client, id, step));
+      if (last["status"] == "converged") ++converged;
+    });
+  }
+  vehicles.clear();
+  EXPECT_EQ(converged, 16);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -32,6 +32,8 @@ struct ServeOptions {
   double idle_time_s = 15.0;
   double watch_s = 1.0;
   double track_idle_s = 3600.0;
+  double step_wait_s = 0.1;
+  std::size_t tracks_mib = static_cast<std::size_t>(service.track_limits.store_bytes) / kMiB;
   std::string log_level = "info";
   std::string calibration;
 };
@@ -51,7 +53,11 @@ server::Configuration configuration(const ServeOptions& options) {
   result.http.request_time = milliseconds(options.request_time_s);
   result.http.idle_time = milliseconds(options.idle_time_s);
   result.watch_interval = milliseconds(options.watch_s);
-  result.track_limits.idle = std::chrono::duration_cast<std::chrono::seconds>(milliseconds(options.track_idle_s));
+  result.track_limits.idle = milliseconds(options.track_idle_s);
+  result.track_limits.order_wait = milliseconds(options.step_wait_s);
+  result.track_limits.store_bytes = static_cast<std::int64_t>(options.tracks_mib * kMiB);
+  // Each takes a thread for as long as it is open.
+  result.track_limits.streams = std::min(options.service.track_limits.streams, options.service.http.threads / 2);
   return result;
 }
 
@@ -107,6 +113,9 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB");
   add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
   add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");
+  add("--max-streams", o.service.track_limits.streams, "Streams of events at the same time, at most half of --threads");
+  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB");
+  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook");
   add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends");
   add("--watch", o.watch_s, "Seconds between two looks at the folder of maps");
 }

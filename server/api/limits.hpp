@@ -13,7 +13,7 @@ struct Limits {
   int json_depth = 16;
   int modes = 64;
   int particles = 50'000;  ///< of a track
-  int frames = 16;  ///< laid together in one request
+  int frames = 16;         ///< laid together in one request
 };
 
 }  // namespace roadfix::api

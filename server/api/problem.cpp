@@ -47,6 +47,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"track-store-read-only", 503},
       {"track-store-unavailable", 503},
       {"track-store-corrupt", 503},
+      {"filter-state-corrupt", 503},
   };
   return kByCode;
 }

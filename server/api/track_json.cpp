@@ -72,10 +72,19 @@ json particles_json(std::span<const GeoPose> particles) {
   return list;
 }
 
-json history_json(const std::vector<json>& answers) {
+json stored_json(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  if (value.is_discarded()) {
+    throw CorruptData("track-store-corrupt", "what is stored of a track is damaged: delete it and begin a new one");
+  }
+  return value;
+}
+
+json history_json(std::span<const std::string> answers) {
   json features = json::array();
   json line = json::array();
-  for (const json& answer : answers) {
+  for (const std::string& text : answers) {
+    const json answer = stored_json(text);
     json properties{
         {"sequence", answer.at("sequence")}, {"time_us", answer.at("time_us")}, {"status", answer.at("status")}};
     const bool placed = answer.contains("geometry");

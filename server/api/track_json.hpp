@@ -17,7 +17,11 @@ nlohmann::json particles_json(std::span<const GeoPose> particles);
 
 /// Answers to steps as a GeoJSON FeatureCollection: a point for each, with its sequence and time; those that had not
 /// converged have no geometry. Then the flight as a line where two points had.
-nlohmann::json history_json(const std::vector<nlohmann::json>& answers);
+/// Throws CorruptData ("track-store-corrupt").
+nlohmann::json history_json(std::span<const std::string> answers);
+
+/// Text of the store. Throws CorruptData ("track-store-corrupt").
+nlohmann::json stored_json(const std::string& text);
 
 /// The tracker's state beside the particles, for the store.
 nlohmann::json counters_json(const TrackerState& state);

@@ -23,7 +23,7 @@ http::Response limits(const Service& service) {
                         {"particles", service.limits.particles},
                         {"tracks", service.tracks.limits().tracks},
                         {"tracks_per_client", service.tracks.limits().tracks_per_client},
-                        {"track_idle_s", service.tracks.limits().idle.count()},
+                        {"track_idle_s", std::chrono::duration<double>(service.tracks.limits().idle).count()},
                         {"frames", service.limits.frames},
                         {"request_time_ms", service.http.request_time.count()},
                         {"searches_at_once", service.http.heavy_running},

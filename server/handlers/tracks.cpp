@@ -18,7 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostHistory = 100'000;
+constexpr int kMostHistory = 10'000;
+constexpr std::chrono::seconds kStale{60};  // as long as core/locate trusts a measurement
 constexpr int kMostParticlesShown = 10'000;
 
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
@@ -40,12 +41,17 @@ std::int64_t digest_of(const http::Request& request) {
   return static_cast<std::int64_t>(hash);
 }
 
-json track_json(const StoredTrack& track) {
+json track_json(const Service& service, const StoredTrack& track) {
+  const auto silent = service.tracks.silent(track.id);
+  const auto left = std::max(service.tracks.limits().idle - silent, std::chrono::milliseconds(0));
   return {{"id", track.id},
           {"map", {{"name", track.map}, {"version", track.map_version}}},
-          {"request", json::parse(track.request)},
+          {"request", api::stored_json(track.request)},
           {"created_us", track.created_us},
-          {"touched_us", track.touched_us}};
+          {"touched_us", track.touched_us},
+          {"silent_s", std::chrono::duration<double>(silent).count()},
+          {"expires_in_s", std::chrono::duration<double>(left).count()},
+          {"stale", silent >= kStale}};
 }
 
 http::Response post_track(const Service& service, const http::Request& request) {
@@ -55,7 +61,7 @@ http::Response post_track(const Service& service, const http::Request& request) 
   }
   const json asked = api::parse_json(request.body, {service.limits.json_depth, 1000});
   const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
-  http::Response response = json_response(track_json(track));
+  http::Response response = json_response(track_json(service, track));
   response.status = 201;
   response.headers.emplace_back("Location", "/v1/tracks/" + track.id);
   return response;
@@ -83,16 +89,16 @@ http::Response post_step(const Service& service, const http::Request& request) {
 
 http::Response list_tracks(const Service& service, const http::Request& request) {
   json list = json::array();
-  for (const StoredTrack& track : service.tracks.of_client(request.client)) list.push_back(track_json(track));
+  for (const StoredTrack& track : service.tracks.of_client(request.client)) list.push_back(track_json(service, track));
   return json_response({{"tracks", std::move(list)}});
 }
 
 http::Response get_track(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   const StoredTrack track = service.tracks.find(id_of(request));
-  json answer = track_json(track);
+  json answer = track_json(service, track);
   const auto last = service.tracks.last_step(track.id);
-  answer["last"] = last ? json::parse(last->answer) : json();
+  answer["last"] = last ? api::stored_json(last->answer) : json();
   if (const auto count = fields.optional_integer("particles", 1, kMostParticlesShown)) {
     answer["particles"] = api::particles_json(service.tracks.particles(track.id, static_cast<std::size_t>(*count)));
   }
@@ -103,9 +109,9 @@ http::Response get_history(const Service& service, const http::Request& request)
   const api::Fields fields(request.query);
   const int after = fields.optional_integer("after", -1, std::numeric_limits<int>::max()).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMostHistory).value_or(kMostHistory);
-  std::vector<json> answers;
-  for (const StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {
-    answers.push_back(json::parse(step.answer));
+  std::vector<std::string> answers;
+  for (StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {
+    answers.push_back(std::move(step.answer));
   }
   http::Response response = json_response(api::history_json(answers));
   response.content_type = "application/geo+json";
@@ -126,13 +132,14 @@ http::Response get_events(const Service& service, const http::Request& request) 
   bool over = false;
   response.stream = [stream, over]() mutable -> std::optional<std::string> {
     if (over) return std::nullopt;
-    const auto steps = stream->next();
-    over = !steps;
-    if (over) return "event: end\ndata: {}\n\n";
+    const auto news = stream->next();
+    if (!news) return std::nullopt;  // without an end: the client may come again
     std::string text;
-    for (const StoredStep& step : *steps) {
+    for (const StoredStep& step : news->steps) {
       text += fmt::format("id: {}\nevent: step\ndata: {}\n\n", step.sequence, step.answer);
     }
+    over = !news->ended.empty();
+    if (over) text += fmt::format("event: end\ndata: {{\"reason\":\"{}\"}}\n\n", news->ended);
     return text.empty() ? ":\n\n" : text;  // a comment keeps the connection alive
   };
   return response;

@@ -1,6 +1,7 @@
 #include "server/http/exchange.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
@@ -93,7 +94,13 @@ void fill(httplib::Response& out, Response response) {
   if (response.stream) {
     out.set_chunked_content_provider(
         response.content_type, [next = std::move(response.stream)](std::size_t, httplib::DataSink& sink) {
-          const std::optional<std::string> piece = next();
+          std::optional<std::string> piece;
+          try {
+            piece = next();
+          } catch (const std::exception& error) {  // it would end the process: cpp-httplib lets it through
+            spdlog::warn("a stream was cut off: {}", error.what());
+            return false;
+          }
           if (!piece) {
             sink.done();
             return true;

@@ -36,14 +36,31 @@ api::TrackRequest parsed(const std::string& request, const api::Limits& limits) 
   return api::parse_track(fields, limits);
 }
 
+/// One that the service took once, under the limits of today.
+TrackSettings stored_settings(const StoredTrack& track, const api::Limits& limits) {
+  try {
+    return parsed(track.request, limits).settings;
+  } catch (const InvalidInput& error) {
+    throw CorruptData("track-store-corrupt",
+                      fmt::format("the track '{}' is stored with a request that cannot be taken any more ({}): delete "
+                                  "it and begin a new one",
+                                  track.id, error.what()));
+  }
+}
+
+NotFound track_ended(const std::string& id, const std::string& how) {
+  return {"track-ended", fmt::format("the track '{}' has {}: POST /v1/tracks begins a new one", id,
+                                     how == "expired" ? "expired without a step" : "been finished")};
+}
+
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 }  // namespace
 
 /// A track in memory. `turn` is told whenever a step is done.
 struct TrackRegistry::Live {
-  Live(std::shared_ptr<const ServedMap> map, TrackSettings settings)
-      : served(std::move(map)), tracker(served->view, std::move(settings)) {}
+  Live(std::shared_ptr<const ServedMap> map, const TrackSettings& settings)
+      : served(std::move(map)), tracker(served->view, settings) {}
 
   const std::shared_ptr<const ServedMap> served;
   const Tracker tracker;
@@ -51,21 +68,17 @@ struct TrackRegistry::Live {
   std::condition_variable turn;
   std::multiset<std::int64_t> waiting;  ///< sequence numbers of the steps that are here
   TrackerState state;
-  bool ended = false;
+  bool doubtful = false;  ///< the store failed: it alone knows whether the last step was taken
 };
 
-TrackRegistry::TrackRegistry(const std::filesystem::path& store, TrackLimits limits, const MapRegistry& maps,
+TrackRegistry::TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
                              const api::Limits& request_limits)
-    : limits_(limits), maps_(maps), request_limits_(request_limits) {
-  try {
-    store_ = std::make_unique<TrackStore>(store);
-  } catch (const Error&) {
-    failure_ = std::current_exception();  // maps are served without tracks; whoever wants one is told why
-  }
-}
+    : path_(std::move(store)), limits_(limits), maps_(maps), request_limits_(request_limits) {}
 
+/// Maps are served also while this fails; whoever wants a track is told why.
 TrackStore& TrackRegistry::store() const {
-  if (failure_) std::rethrow_exception(failure_);
+  const std::lock_guard lock(store_mutex_);
+  if (!store_) store_ = std::make_unique<TrackStore>(path_, limits_.store_bytes);
   return *store_;
 }
 
@@ -102,6 +115,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, ""};
   store().add(track);
   live_[track.id] = std::move(fresh);
+  heard_[track.id] = Clock::now();
   return track;
 }
 
@@ -115,11 +129,20 @@ std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) {
 StoredTrack TrackRegistry::find(const std::string& id) const {
   const auto track = store().find(id);
   if (!track) throw NotFound("track-not-found", fmt::format("there is no track '{}': POST /v1/tracks begins one", id));
-  if (!track->ended.empty()) {
-    throw NotFound("track-ended", fmt::format("the track '{}' has {}: POST /v1/tracks begins a new one", id,
-                                              track->ended == "expired" ? "expired without a step" : "been finished"));
-  }
+  if (const std::string how = ended(*track); !how.empty()) throw track_ended(id, how);
   return *track;
+}
+
+std::chrono::milliseconds TrackRegistry::silent(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto heard = heard_.find(id);
+  return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() -
+                                                               (heard == heard_.end() ? began_ : heard->second));
+}
+
+std::string TrackRegistry::ended(const StoredTrack& track) const {
+  if (!track.ended.empty()) return track.ended;
+  return silent(track.id) > limits_.idle ? "expired" : "";
 }
 
 std::optional<StoredStep> TrackRegistry::last_step(const std::string& id) const {
@@ -138,49 +161,37 @@ std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t
 
 std::shared_ptr<TrackRegistry::Live> TrackRegistry::loaded(const StoredTrack& track) const {
   const auto map = maps_.find(track.map);
-  auto result = std::make_shared<Live>(map, parsed(track.request, request_limits_).settings);
-  const StoredState stored = store().state(track.id);
-  if (!stored.counters.empty()) {
-    result->state = api::state_of(api::parse_json(stored.counters, {}), filter_state_of(stored.particles));
-  }
+  auto result = std::make_shared<Live>(map, stored_settings(track, request_limits_));
+  result->state = stored_state(track.id);
   return result;
+}
+
+TrackerState TrackRegistry::stored_state(const std::string& id) const {
+  const StoredState stored = store().state(id);
+  if (stored.counters.empty()) return {};
+  return api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
 }
 
 std::shared_ptr<TrackRegistry::Live> TrackRegistry::live(const std::string& id) {
   const StoredTrack track = find(id);
-  const auto require_same_map = [&] {
-    if (maps_.find(track.map)->view.version == track.map_version) return;
+  const bool same_map = maps_.find(track.map)->view.version == track.map_version;
+  const std::lock_guard lock(mutex_);
+  if (!same_map) {
+    live_.erase(id);  // and lets go of the old map
     throw InvalidInput("map-replaced", fmt::format("the map {} was replaced since the track began: begin a new track "
                                                    "from the last pose",
                                                    track.map));
-  };
-  require_same_map();
-  const std::lock_guard lock(mutex_);
-  auto& entry = live_[id];
-  try {
-    if (!entry) entry = loaded(track);
-  } catch (...) {
-    live_.erase(id);
-    throw;
   }
-  return entry;
+  const auto known = live_.find(id);
+  if (known != live_.end()) return known->second;
+  return live_.emplace(id, loaded(track)).first->second;
 }
 
-void TrackRegistry::end(const std::string& id, const char* how) {
-  std::shared_ptr<Live> track;
-  {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = live_.find(id); found != live_.end()) track = found->second;
-    live_.erase(id);
-  }
-  if (track) {
-    const std::lock_guard lock(track->mutex);
-    track->ended = true;
-    store().end(id, how);
-  } else {
-    store().end(id, how);
-  }
+void TrackRegistry::end(const std::string& id, const std::string& how) {
   const std::lock_guard lock(mutex_);
+  store().end(id, how);
+  live_.erase(id);
+  heard_.erase(id);
   ++changes_;
   news_.notify_all();
 }
@@ -188,9 +199,8 @@ void TrackRegistry::end(const std::string& id, const char* how) {
 void TrackRegistry::finish(const std::string& id) { end(find(id).id, "finished"); }
 
 void TrackRegistry::expire() {
-  const std::int64_t before = now_us() - std::chrono::microseconds(limits_.idle).count();
   for (const StoredTrack& track : store().flying()) {
-    if (track.touched_us < before) end(track.id, "expired");
+    if (const std::string how = ended(track); !how.empty()) end(track.id, how);
   }
 }
 
@@ -220,55 +230,63 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   track->turn.wait_for(lock, limits_.order_wait, [&] { return is_first() && follows(); });
   track->turn.wait(lock, is_first);
   if (const auto answer = answered(id, input.sequence, digest)) return *answer;
+  if (track->doubtful) track->state = stored_state(id);
+  track->doubtful = false;
   StepResult result = track->tracker.advance(track->state, input, limits);
   json answer = api::to_json(result.estimate);
   answer["track"] = id;
-  const std::string text = text_of(answer);
-  store().add_step(id, now_us(), {text_of(api::counters_json(result.state)), to_bytes(result.state.filter)},
-                   {input.sequence, digest, text});
+  std::string text = text_of(answer);
+  track->doubtful = true;
+  if (!store().add_step(id, now_us(), {text_of(api::counters_json(result.state)), to_bytes(result.state.filter)},
+                        {input.sequence, digest, text})) {
+    throw track_ended(id, "finished");
+  }
+  track->doubtful = false;
   track->state = std::move(result.state);
   const std::lock_guard registry_lock(mutex_);
+  heard_[id] = Clock::now();
   ++changes_;
   news_.notify_all();
   return text;
 }
 
-std::shared_ptr<TrackRegistry::Stream> TrackRegistry::stream(const std::string& id, std::int64_t after) {
+std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string& id, std::int64_t after) {
   find(id);
   const std::lock_guard lock(mutex_);
   if (streams_ >= limits_.streams) {
     throw http::Busy(fmt::format("{} streams of events are open, as many as may", streams_), std::chrono::seconds(5));
   }
-  return std::make_shared<Stream>(*this, id, after);
+  return std::make_shared<Listener>(*this, id, after);
 }
 
-TrackRegistry::Stream::Stream(TrackRegistry& registry, std::string id, std::int64_t after)
+TrackRegistry::Listener::Listener(TrackRegistry& registry, std::string id, std::int64_t after)
     : registry_(registry), id_(std::move(id)), after_(after) {
   ++registry_.streams_;
 }
 
-TrackRegistry::Stream::~Stream() {
+TrackRegistry::Listener::~Listener() {
   const std::lock_guard lock(registry_.mutex_);
   --registry_.streams_;
 }
 
-std::optional<std::vector<StoredStep>> TrackRegistry::Stream::next() {
+std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
   constexpr int kBatch = 64;
   constexpr std::chrono::seconds kPatience{1};
   std::unique_lock lock(registry_.mutex_);
   const std::uint64_t seen = registry_.changes_;
   lock.unlock();
-  std::vector<StoredStep> steps = registry_.store().steps_after(id_, after_, kBatch);
-  if (steps.empty()) {
-    const auto track = registry_.store().find(id_);
-    if (!track || !track->ended.empty()) return std::nullopt;
-    lock.lock();
-    registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
-    if (registry_.stopping_) return std::nullopt;
-    return steps;
+  News news{registry_.store().steps_after(id_, after_, kBatch), {}};
+  if (!news.steps.empty()) {
+    after_ = news.steps.back().sequence;
+    return news;
   }
-  after_ = steps.back().sequence;
-  return steps;
+  const auto track = registry_.store().find(id_);
+  news.ended = track ? registry_.ended(*track) : "finished";
+  if (!news.ended.empty()) return news;
+  lock.lock();
+  registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
+  if (registry_.stopping_) return std::nullopt;
+  return news;
 }
 
 }  // namespace roadfix::server

@@ -1,11 +1,14 @@
 // The tracks that fly: each with its tracker in memory and its state in the store. Steps of one track are taken one at
 // a time and in order; those of different tracks run side by side.
+//
+// How long a track has been silent is told by a clock that nobody can set, and counts from the start of the service at
+// the earliest: a machine without GPS may learn the date in mid-flight.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,14 +27,15 @@ struct TrackLimits {
   int tracks = 1000;
   int tracks_per_client = 64;
   int streams = 16;                           ///< of events, at the same time
-  std::chrono::seconds idle{3600};            ///< without a step, then a track has ended
+  std::chrono::milliseconds idle{3'600'000};  ///< without a step, then a track has ended
   std::chrono::milliseconds order_wait{100};  ///< for a step that was overtaken on its way here
+  std::int64_t store_bytes = std::int64_t{8} << 30;
 };
 
 class TrackRegistry {
  public:
-  /// A store that cannot be opened is reported by problem(), and by every call below.
-  TrackRegistry(const std::filesystem::path& store, TrackLimits limits, const MapRegistry& maps,
+  /// A store that cannot be opened is reported by problem(), and by every call below until it can.
+  TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
                 const api::Limits& request_limits);
 
   const TrackLimits& limits() const { return limits_; }
@@ -46,6 +50,8 @@ class TrackRegistry {
   std::vector<StoredTrack> of_client(const std::string& client);
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
+  /// Since its last step, its beginning or the start of the service.
+  std::chrono::milliseconds silent(const std::string& id) const;
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
   /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").
@@ -60,40 +66,50 @@ class TrackRegistry {
   std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits);
 
   /// One stream of events for as long as it lives. Throws Busy.
-  class Stream;
-  std::shared_ptr<Stream> stream(const std::string& id, std::int64_t after);
+  class Listener;
+  std::shared_ptr<Listener> stream(const std::string& id, std::int64_t after);
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Live;
   TrackStore& store() const;
   std::shared_ptr<Live> live(const std::string& id);
   std::shared_ptr<Live> loaded(const StoredTrack& track) const;
-  void end(const std::string& id, const char* how);
+  TrackerState stored_state(const std::string& id) const;
+  std::string ended(const StoredTrack& track) const;
+  void end(const std::string& id, const std::string& how);
   void expire();
 
+  const std::filesystem::path path_;
   const TrackLimits limits_;
   const MapRegistry& maps_;
   const api::Limits& request_limits_;
-  std::unique_ptr<TrackStore> store_;
-  std::exception_ptr failure_;
+  const Clock::time_point began_ = Clock::now();
+  mutable std::mutex store_mutex_;  ///< of opening it
+  mutable std::unique_ptr<TrackStore> store_;
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
   std::condition_variable news_;
   std::map<std::string, std::shared_ptr<Live>> live_;
+  std::map<std::string, Clock::time_point> heard_;  ///< of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
   int streams_ = 0;
   bool stopping_ = false;
 };
 
-class TrackRegistry::Stream {
+class TrackRegistry::Listener {
  public:
-  Stream(TrackRegistry& registry, std::string id, std::int64_t after);
-  ~Stream();
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
+  struct News {
+    std::vector<StoredStep> steps;
+    std::string ended;  ///< as StoredTrack::ended
+  };
 
-  /// Steps that were not handed out yet; waits for some, but not long. nullopt when the track has ended or the service
-  /// stops.
-  std::optional<std::vector<StoredStep>> next();
+  Listener(TrackRegistry& registry, std::string id, std::int64_t after);
+  ~Listener();
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  /// What was not handed out yet; waits for some, but not long. nullopt when the service stops.
+  std::optional<News> next();
 
  private:
   TrackRegistry& registry_;

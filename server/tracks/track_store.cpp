@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "core/units/error.hpp"
@@ -11,6 +12,10 @@
 namespace roadfix::server {
 namespace {
 
+constexpr int kBusyTimeoutMs = 500;
+constexpr std::int64_t kPageBytes = 4096;
+constexpr int kEndedKept = 100;
+constexpr int kVersion = 1;
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 /// The map store's names of what SQLite may refuse, in the terms of this store.
@@ -34,7 +39,9 @@ constexpr const char* kTrackColumns = "id, client, request, map, map_version, cr
                                   file));
   }
   if (error.code() == "map-busy") {
-    throw Interrupted("track-store-busy", fmt::format("{}: another process keeps the tracks locked", file));
+    throw Interrupted(
+        "track-store-busy",
+        fmt::format("{}: another service keeps these tracks: stop it, or start this one with --tracks FILE", file));
   }
   throw IoFailure("track-store-unavailable",
                   fmt::format("{}: the tracks cannot be kept here: start the service with --tracks FILE", file));
@@ -50,11 +57,30 @@ StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.i
 
 class TrackStore::Impl {
  public:
-  explicit Impl(const std::filesystem::path& path) : path_(path) {
+  Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
     with([&] {
       connection_.emplace(path_, sqlite::Access::kCreate);
-      connection_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+      connection_->execute(fmt::format("PRAGMA busy_timeout = {}; PRAGMA locking_mode = EXCLUSIVE; PRAGMA page_size = "
+                                       "{}; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA "
+                                       "max_page_count = {}",
+                                       kBusyTimeoutMs, kPageBytes, std::max<std::int64_t>(1, max_bytes / kPageBytes))
+                               .c_str());
+    });
+    const std::int64_t version = with([&] {
+      sqlite::Statement row(*connection_, "PRAGMA user_version");
+      row.step();
+      return row.integer(0);
+    });
+    if (version > kVersion) {
+      throw IoFailure("track-store-unavailable",
+                      fmt::format("{}: written by a newer version of roadfix: start the service with --tracks FILE",
+                                  path_.string()));
+    }
+    with([&] {
+      sqlite::Transaction transaction(*connection_, sqlite::Transaction::Kind::kWrite);
       connection_->execute(std::string(schema::tracks_sql()).c_str());
+      connection_->execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());  // and sees that it can write
+      transaction.commit();
     });
   }
 
@@ -76,7 +102,8 @@ class TrackStore::Impl {
   std::optional<sqlite::Connection> connection_;
 };
 
-TrackStore::TrackStore(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes)
+    : impl_(std::make_unique<Impl>(path, max_bytes)) {}
 
 TrackStore::~TrackStore() = default;
 
@@ -121,19 +148,22 @@ std::vector<StoredTrack> TrackStore::flying() const {
   });
 }
 
-void TrackStore::add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
+bool TrackStore::add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
                           const StoredStep& step) {
-  impl_->with([&] {
+  return impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    sqlite::Statement(impl_->connection(),
-                      "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4 WHERE id = ?1")
-        .with(id, now_us, state.counters, std::span<const std::byte>(state.particles))
-        .run();
+    sqlite::Statement update(impl_->connection(),
+                             "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4 WHERE id = ?1 AND ended "
+                             "= '' RETURNING 1");
+    update.with(id, now_us, state.counters, std::span<const std::byte>(state.particles));
+    if (!update.step()) return false;
+    update.reset();
     sqlite::Statement(impl_->connection(),
                       "INSERT INTO steps (track, sequence, digest, answer) VALUES (?1, ?2, ?3, ?4)")
         .with(id, step.sequence, step.digest, step.answer)
         .run();
     transaction.commit();
+    return true;
   });
 }
 
@@ -173,6 +203,11 @@ void TrackStore::end(const std::string& id, const std::string& how) {
         .with(id, how)
         .run();
     sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();
+    sqlite::Statement(impl_->connection(),
+                      "DELETE FROM tracks WHERE ended <> '' AND id NOT IN (SELECT id FROM tracks WHERE ended <> '' "
+                      "ORDER BY touched_us DESC, id LIMIT ?1)")
+        .with(kEndedKept)
+        .run();
     transaction.commit();
   });
 }

@@ -1,5 +1,5 @@
 // The tracks on disk: a SQLite file in WAL mode, synchronised at every step, so that nothing that was answered is lost
-// when the process or the machine dies.
+// when the process or the machine dies. One process at a time has it open.
 //
 // All functions may be called from several threads and throw IoFailure ("track-store-full", "track-store-read-only",
 // "track-store-unavailable"), CorruptData ("track-store-corrupt") or Interrupted ("track-store-busy").
@@ -39,8 +39,8 @@ struct StoredStep {
 
 class TrackStore {
  public:
-  /// Creates the file where there is none.
-  explicit TrackStore(const std::filesystem::path& path);
+  /// Creates the file where there is none. Beyond `max_bytes` it is full.
+  TrackStore(const std::filesystem::path& path, std::int64_t max_bytes);
   ~TrackStore();
   TrackStore(const TrackStore&) = delete;
   TrackStore& operator=(const TrackStore&) = delete;
@@ -51,15 +51,17 @@ class TrackStore {
   /// Newest first.
   std::vector<StoredTrack> flying() const;
 
-  /// The step and the state after it, at once.
-  void add_step(const std::string& id, std::int64_t now_us, const StoredState& state, const StoredStep& step);
+  /// The step and the state after it, at once. False where the track has ended; nothing is written then.
+  [[nodiscard]] bool add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
+                              const StoredStep& step);
   std::optional<StoredStep> step(const std::string& id, std::int64_t sequence) const;
   /// The last one, if there was any.
   std::optional<StoredStep> last_step(const std::string& id) const;
   /// Up to `count` steps above the sequence number, in order.
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
 
-  /// Takes the particles and steps away and keeps that there was such a track.
+  /// Takes the particles and steps away and keeps that there was such a track, for as long as it is among the last
+  /// 100 that ended.
   void end(const std::string& id, const std::string& how);
 
  private:

@@ -39,12 +39,19 @@ class Tracks : public ::testing::Test {
  protected:
   Tracks() { testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0); }
 
+  /// With time for everything: a loaded machine may take minutes.
   std::unique_ptr<testing::ServiceProcess> service(std::vector<std::string> options = {}) const {
+    options.insert(options.end(), {"--request-time", "600"});
     return std::make_unique<testing::ServiceProcess>(folder_.path(), options);
   }
   json asked() const {
     return {{"map", "town"},   {"lat", town_.place.lat_deg}, {"lon", town_.place.lon_deg},
             {"radius_m", 200}, {"particles", 2000},          {"seed", 7}};
+  }
+  static httplib::Client client_of(const testing::ServiceProcess& service) {
+    httplib::Client client = testing::client_of(service);
+    client.set_read_timeout(600);
+    return client;
   }
   std::string begin(httplib::Client& client) const {
     const auto answer = client.Post("/v1/tracks", asked().dump(), "application/json");
@@ -67,7 +74,7 @@ class Tracks : public ::testing::Test {
 
 TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
   const auto running = service();
-  httplib::Client client = testing::client_of(*running);
+  httplib::Client client = client_of(*running);
   const std::string id = begin(client);
   testing::Flight flight(town_.roads, town_.pose, 20);
   json answer;
@@ -92,7 +99,7 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
 
 TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
   const auto running = service();
-  httplib::Client client = testing::client_of(*running);
+  httplib::Client client = client_of(*running);
   const std::string id = begin(client);
   const std::vector<Request> steps = flight(4);
   send(client, id, steps[0]);
@@ -135,7 +142,7 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
 
 TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   const auto running = service({"--max-client-tracks", "1"});
-  httplib::Client client = testing::client_of(*running);
+  httplib::Client client = client_of(*running);
   const auto refused = [&](const json& change) {
     json body = asked();
     body.update(change);
@@ -152,78 +159,105 @@ TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
 
 TEST_F(Tracks, LoseNoAnsweredStepWhenTheServiceIsKilledAtAnyMoment) {
   const std::vector<Request> steps = flight(24);
+  const auto without_track = [](const httplib::Result& answer) {
+    json body = testing::json_of(answer);
+    body.erase("track");
+    return body.dump();
+  };
   std::vector<std::string> expected;
   {
     const auto undisturbed = service({"--tracks", (folder_ / "undisturbed.sqlite").string()});
-    httplib::Client client = testing::client_of(*undisturbed);
+    httplib::Client client = client_of(*undisturbed);
     const std::string id = begin(client);
-    for (const Request& step : steps) {
-      json answer = testing::json_of(send(client, id, step));
-      answer.erase("track");
-      expected.push_back(answer.dump());
-    }
+    for (const Request& step : steps) expected.push_back(without_track(send(client, id, step)));
   }
   auto running = service();
-  httplib::Client first = testing::client_of(*running);
-  const std::string id = begin(first);
+  std::string id;
+  {
+    httplib::Client client = client_of(*running);
+    id = begin(client);
+  }
   std::vector<std::string> answers;
   std::mt19937_64 random(5);
-  int kills = 0;
   while (answers.size() < steps.size()) {
-    // More and more time, so that the search of the first step ends on any machine. The step that was cut off is sent
-    // again: it may have been taken, but must not be taken twice.
-    std::jthread killer(
-        [&, after = std::chrono::milliseconds(20 + random() % 200 + 10U * static_cast<unsigned>(kills))] {
-          std::this_thread::sleep_for(after);
-          running->send_signal(SIGKILL);
-        });
-    httplib::Client client = testing::client_of(*running);
-    for (bool alive = true; alive && answers.size() < steps.size();) {
+    // After one to four answers, and then at any moment of the next steps. The step that was cut off is sent again: it
+    // may have been taken, but must not be taken twice.
+    std::atomic<std::size_t> answered = answers.size();
+    const std::size_t kill_after = answers.size() + 1 + random() % 4;
+    const std::chrono::microseconds moment(random() % 30'000);
+    std::jthread killer([&] {
+      for (std::size_t now = answered; now < kill_after && now < steps.size(); now = answered) answered.wait(now);
+      std::this_thread::sleep_for(moment);
+      running->send_signal(SIGKILL);
+    });
+    httplib::Client client = client_of(*running);
+    while (answers.size() < steps.size()) {
       const auto answer = send(client, id, steps[answers.size()]);
-      alive = answer && answer->status == 200;
-      if (!alive) break;
-      json body = json::parse(answer->body);
-      body.erase("track");
-      answers.push_back(body.dump());
+      if (!answer) break;
+      EXPECT_EQ(answer->status, 200) << answer->body;
+      answers.push_back(without_track(answer));
+      answered = answers.size();
+      answered.notify_one();
     }
+    answered = steps.size();
+    answered.notify_one();
     killer.join();
-    ++kills;
+    ASSERT_NE(running->wait(10min), -1);
     running = service();
-    httplib::Client after = testing::client_of(*running);
+    httplib::Client after = client_of(*running);
     const json track = testing::json_of(after.Get(("/v1/tracks/" + id).c_str()));
-    const auto taken = track["last"].is_null() ? 0U : track["last"]["sequence"].get<std::size_t>() + 1;
-    ASSERT_GE(taken, answers.size()) << "an answered step was lost";
-    ASSERT_LT(kills, 100);
+    ASSERT_GE(track["last"]["sequence"].get<std::size_t>() + 1, answers.size()) << "an answered step was lost";
   }
-  EXPECT_GE(kills, 3);
   EXPECT_EQ(answers, expected);
 }
 
 TEST_F(Tracks, PutStepsThatOvertakeEachOtherInOrder) {
-  const auto running = service({"--searches", "8"});
-  httplib::Client client = testing::client_of(*running);
+  const auto running = service({"--searches", "8", "--step-wait", "600"});
+  httplib::Client client = client_of(*running);
   const std::string id = begin(client);
-  const std::vector<Request> steps = flight(3);
+  const std::vector<Request> steps = flight(5);
   send(client, id, steps[0]);
-  json later;
-  std::jthread overtaking([&] {
-    httplib::Client other = testing::client_of(*running);
-    later = testing::json_of(send(other, id, steps[2]));
-  });
-  std::this_thread::sleep_for(20ms);
+  std::vector<std::jthread> overtaking;
+  std::atomic<int> missed = 0;
+  for (const std::size_t i : {4U, 3U, 2U}) {
+    overtaking.emplace_back([&, i] {
+      httplib::Client other = client_of(*running);
+      missed += testing::json_of(send(other, id, steps[i]))["missed_steps"].get<int>();
+    });
+  }
   EXPECT_EQ(send(client, id, steps[1])->status, 200);
-  overtaking.join();
-  EXPECT_EQ(later["missed_steps"], 0) << later;
+  overtaking.clear();
+  EXPECT_EQ(missed, 0);
+  EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id).c_str()))["last"]["sequence"], 4);
+}
+
+TEST_F(Tracks, TakeAStepThatComesManyTimesAtOnceOnlyOnce) {
+  const auto running = service({"--searches", "8"});
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(2);
+  send(client, id, steps[0]);
+  std::vector<std::string> answers(6);
+  std::vector<std::jthread> senders;
+  for (std::string& answer : answers) {
+    senders.emplace_back([&] {
+      httplib::Client other = client_of(*running);
+      answer = send(other, id, steps[1])->body;
+    });
+  }
+  senders.clear();
+  EXPECT_THAT(answers, ::testing::Each(answers[0]));
+  EXPECT_EQ(json::parse(answers[0])["sequence"], 1);
 }
 
 TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   const auto running = service();
-  httplib::Client client = testing::client_of(*running);
+  httplib::Client client = client_of(*running);
   const std::string id = begin(client);
   const std::vector<Request> steps = flight(3);
   send(client, id, steps[0]);
   const auto listen = [&](const httplib::Headers& headers, std::atomic<bool>& connected) {
-    httplib::Client other = testing::client_of(*running);
+    httplib::Client other = client_of(*running);
     std::string text;
     other.Get(("/v1/tracks/" + id + "/events").c_str(), headers, [&](const char* data, std::size_t size) {
       text.append(data, size);
@@ -247,16 +281,47 @@ TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   EXPECT_THAT(all, HasSubstr("id: 0\nevent: step\ndata: {"));
   EXPECT_THAT(rest, HasSubstr("id: 1\nevent: step\ndata: " + second + "\n\n"));
   EXPECT_THAT(rest, Not(HasSubstr("id: 0\n")));
-  EXPECT_THAT(rest, HasSubstr("event: end\n"));
+  EXPECT_THAT(rest, HasSubstr("event: end\ndata: {\"reason\":\"finished\"}\n"));
 }
 
-TEST_F(Tracks, EndWhenNothingComesOrTheirMapIsReplaced) {
-  const auto running = service({"--track-idle", "1"});
-  httplib::Client client = testing::client_of(*running);
+TEST_F(Tracks, EndEventsInOrderWhenTheServiceStopsAndLimitTheirNumber) {
+  const auto running = service({"--max-streams", "1"});
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  std::atomic<bool> connected = false;
+  std::string text;
+  bool whole = false;
+  std::jthread listener([&] {
+    httplib::Client other = client_of(*running);
+    const auto answer = other.Get(("/v1/tracks/" + id + "/events").c_str(), [&](const char* data, std::size_t size) {
+      text.append(data, size);
+      connected = true;
+      return true;
+    });
+    whole = static_cast<bool>(answer);
+  });
+  while (!connected) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + id + "/events").c_str())), "503 server-busy");
+  running->send_signal(SIGTERM);
+  EXPECT_EQ(running->wait(10min), 0);
+  listener.join();
+  EXPECT_TRUE(whole) << "the stream ends as a whole answer";
+  EXPECT_THAT(text, Not(HasSubstr("event: end"))) << "the track goes on with the next service";
+}
+
+TEST_F(Tracks, EndWhenNothingComes) {
+  const auto running = service({"--track-idle", "0.2"});
+  httplib::Client client = client_of(*running);
   const std::string idle = begin(client);
-  std::this_thread::sleep_for(1100ms);
-  EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
+  while (client.Get(("/v1/tracks/" + idle).c_str())->status == 200) std::this_thread::sleep_for(20ms);
   EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + idle).c_str())), "410 track-ended");
+  EXPECT_EQ(testing::refusal(send(client, idle, flight(1)[0])), "410 track-ended");
+  EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
+}
+
+TEST_F(Tracks, RefuseStepsOverAMapThatWasReplaced) {
+  const auto running = service();
+  httplib::Client client = client_of(*running);
   const std::string id = begin(client);
   const std::string version = testing::json_of(client.Get("/v1/maps/town"))["version"];
   {
@@ -265,13 +330,15 @@ TEST_F(Tracks, EndWhenNothingComesOrTheirMapIsReplaced) {
   }
   while (testing::json_of(client.Get("/v1/maps/town"))["version"] == version) std::this_thread::sleep_for(20ms);
   EXPECT_EQ(testing::refusal(send(client, id, flight(1)[0])), "409 map-replaced");
+  const json track = testing::json_of(client.Get(("/v1/tracks/" + id).c_str()));
+  EXPECT_TRUE(track["last"].is_null()) << "nothing was taken";
 }
 
 TEST_F(Tracks, SayWhyTheyCannotBeKeptWhileMapsAreServed) {
   std::ofstream(folder_ / "broken.sqlite") << std::string(4096, 'x');
   const auto refusal_with = [&](const std::string& store) {
     const auto running = service({"--tracks", store});
-    httplib::Client client = testing::client_of(*running);
+    httplib::Client client = client_of(*running);
     EXPECT_EQ(client.Get("/v1/maps/town")->status, 200);
     return testing::refusal(client.Post("/v1/tracks", asked().dump(), "application/json"));
   };
@@ -286,7 +353,7 @@ TEST_F(Tracks, FlySixteenVehiclesAtOnce) {
   std::vector<std::jthread> vehicles;
   for (int i = 0; i < 16; ++i) {
     vehicles.emplace_back([&] {
-      httplib::Client client = testing::client_of(*running);
+      httplib::Client client = client_of(*running);
       const std::string id = begin(client);
       json last;
       for (const Request& step : steps) last = testing::json_of(send(client, id, step));

@@ -1,0 +1,186 @@
+#include "server/tracks/track_registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/map_file.hpp"
+#include "tests/support/street_map.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix::server {
+namespace {
+
+using roadfix::testing::code_of;
+
+using nlohmann::json;
+
+/// Dead reckoning: what a track is kept for does not depend on what was seen.
+StepInput step_of(std::int64_t sequence) {
+  StepInput step;
+  step.sequence = sequence;
+  step.time_us = 1'000'000 * (sequence + 1);
+  step.odometry = Odometry{20.0, 0.5, Angle::degrees(3.0)};
+  return step;
+}
+
+class TrackRegistryTest : public ::testing::Test {
+ protected:
+  TrackRegistryTest() {
+    testing::write_map_file(folder_ / "town.gpkg", testing::street_map(3, {2.0, {300'100, -3'200'050}, 200, 200}), 2.0);
+    maps_.refresh();
+  }
+
+  std::unique_ptr<TrackRegistry> registry(const TrackLimits& limits = {}, const char* file = "tracks.sqlite") const {
+    return std::make_unique<TrackRegistry>(folder_ / file, limits, maps_, limits_);
+  }
+  static std::string begin(TrackRegistry& tracks, const std::string& client = "::1") {
+    return tracks.create(client, R"({"map": "town", "particles": 500, "start": "uniform", "seed": 9})").id;
+  }
+  /// The answer without the name of the track.
+  static std::string take(TrackRegistry& tracks, const std::string& id, std::int64_t sequence) {
+    json answer = json::parse(tracks.step(id, step_of(sequence), sequence, {}));
+    answer.erase("track");
+    return answer.dump();
+  }
+  std::vector<std::string> undisturbed(int steps) const {
+    const auto tracks = registry({}, "undisturbed.sqlite");
+    const std::string id = begin(*tracks);
+    std::vector<std::string> answers;
+    for (int i = 0; i < steps; ++i) answers.push_back(take(*tracks, id, i));
+    return answers;
+  }
+
+  const testing::TemporaryFolder folder_;
+  const api::Limits limits_;
+  MapRegistry maps_{folder_.path(), 1 << 20};
+};
+
+TEST_F(TrackRegistryTest, GoesOnAfterARestartAsWithoutOne) {
+  const std::vector<std::string> expected = undisturbed(6);
+  std::string id;
+  for (int i = 0; i < 6; ++i) {
+    const auto tracks = registry();
+    if (i == 0) id = begin(*tracks);
+    EXPECT_EQ(take(*tracks, id, i), expected[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_EQ(registry()->steps_after(id, -1, 100).size(), 6U);
+}
+
+TEST_F(TrackRegistryTest, IsAsItWasAfterAStepThatTheFullStoreRefused) {
+  const std::vector<std::string> expected = undisturbed(100);
+  TrackLimits limits;
+  limits.store_bytes = 120 << 10;
+  const auto tracks = registry(limits);
+  const std::string other = begin(*tracks);
+  const std::string id = begin(*tracks);
+  take(*tracks, other, 0);
+  std::size_t next = 0;
+  std::string refusal;
+  for (; refusal.empty() && next < expected.size(); ++next) {
+    refusal = code_of([&] { EXPECT_EQ(take(*tracks, id, static_cast<std::int64_t>(next)), expected[next]); });
+    if (refusal == "no error") refusal.clear();
+  }
+  ASSERT_EQ(refusal, "track-store-full");
+  const auto refused = static_cast<std::int64_t>(next - 1);
+  EXPECT_EQ(tracks->last_step(id)->sequence, refused - 1);
+  tracks->finish(other);
+  EXPECT_EQ(take(*tracks, id, refused), expected[next - 1]);
+}
+
+TEST_F(TrackRegistryTest, SaysThatTheStoredStateIsDamaged) {
+  const std::string id = [&] {
+    const auto tracks = registry();
+    std::string begun = begin(*tracks);
+    take(*tracks, begun, 0);
+    return begun;
+  }();
+  const auto damaged_by = [&](const char* sql) {
+    std::filesystem::copy_file(folder_ / "tracks.sqlite", folder_ / "damaged.sqlite",
+                               std::filesystem::copy_options::overwrite_existing);
+    sqlite::Connection(folder_ / "damaged.sqlite", sqlite::Access::kReadWrite).execute(sql);
+    const auto tracks = registry({}, "damaged.sqlite");
+    EXPECT_EQ(code_of([&] { (void)tracks->find(id); }), "no error") << "it can still be ended";
+    return code_of([&] { take(*tracks, id, 1); });
+  };
+  EXPECT_EQ(damaged_by("UPDATE tracks SET particles = zeroblob(200)"), "filter-state-corrupt");
+  EXPECT_EQ(damaged_by("UPDATE tracks SET counters = '{'"), "track-store-corrupt");
+  EXPECT_EQ(damaged_by("UPDATE tracks SET counters = '{}'"), "track-store-corrupt");
+  EXPECT_EQ(damaged_by("UPDATE tracks SET request = 'nothing'"), "track-store-corrupt");
+}
+
+TEST_F(TrackRegistryTest, KeepsTracksAsSoonAsTheStoreCanBeOpened) {
+  const auto tracks = registry({}, "later/tracks.sqlite");
+  EXPECT_TRUE(tracks->problem());
+  EXPECT_EQ(code_of([&] { begin(*tracks); }), "track-store-unavailable");
+  std::filesystem::create_directory(folder_ / "later");
+  EXPECT_FALSE(tracks->problem());
+  EXPECT_EQ(code_of([&] { begin(*tracks); }), "no error");
+}
+
+TEST_F(TrackRegistryTest, LimitsTheTracksOfAClientAndOfAll) {
+  TrackLimits limits;
+  limits.tracks = 3;
+  limits.tracks_per_client = 2;
+  const auto tracks = registry(limits);
+  const std::string first = begin(*tracks, "a");
+  begin(*tracks, "a");
+  EXPECT_EQ(code_of([&] { begin(*tracks, "a"); }), "too-many-tracks");
+  begin(*tracks, "b");
+  EXPECT_EQ(code_of([&] { begin(*tracks, "c"); }), "too-many-tracks");
+  tracks->finish(first);
+  EXPECT_EQ(code_of([&] { begin(*tracks, "c"); }), "no error");
+  EXPECT_EQ(tracks->of_client("a").size(), 1U);
+}
+
+TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
+  TrackLimits limits;
+  limits.idle = std::chrono::milliseconds(-1);  // at once
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  EXPECT_EQ(code_of([&] { tracks->find(id); }), "track-ended");
+  EXPECT_EQ(code_of([&] { take(*tracks, id, 0); }), "track-ended");
+  EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "track-ended");
+}
+
+TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
+  TrackLimits limits;
+  limits.streams = 1;
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  const std::string answer = tracks->step(id, step_of(0), 0, {});
+  const auto stream = tracks->stream(id, -1);
+  EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "server-busy");
+  EXPECT_EQ(stream->next()->steps.at(0).answer, answer);
+  tracks->finish(id);
+  EXPECT_EQ(stream->next()->ended, "finished");
+  tracks->stop();
+}
+
+TEST_F(TrackRegistryTest, TakesStepsOfSeveralThreadsInOrder) {
+  TrackLimits limits;
+  limits.order_wait = std::chrono::minutes(10);
+  const auto tracks = registry(limits);
+  const std::vector<std::string> expected = undisturbed(40);
+  const std::string id = begin(*tracks);
+  take(*tracks, id, 0);
+  std::atomic<std::int64_t> next = 1;
+  std::atomic<int> different = 0;
+  std::vector<std::jthread> senders;
+  for (int i = 0; i < 4; ++i) {
+    senders.emplace_back([&] {
+      for (std::int64_t sequence = next++; sequence < 40; sequence = next++) {
+        if (take(*tracks, id, sequence) != expected[static_cast<std::size_t>(sequence)]) ++different;
+      }
+    });
+  }
+  senders.clear();
+  EXPECT_EQ(different, 0);
+}
+
+}  // namespace
+}  // namespace roadfix::server

@@ -1,0 +1,120 @@
+#include "server/tracks/track_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix::server {
+namespace {
+
+using roadfix::testing::code_of;
+
+constexpr std::int64_t kPlenty = std::int64_t{1} << 30;
+
+StoredTrack track(const std::string& id) { return {id, "::1", "{}", "town", "v1", 1, 1, ""}; }
+
+StoredState state(std::size_t bytes) { return {"{}", std::vector<std::byte>(bytes, std::byte{7})}; }
+
+TEST(TrackStore, KeepsTracksAndStepsWhenItIsOpenedAgain) {
+  const testing::TemporaryFolder folder;
+  {
+    TrackStore store(folder / "tracks.sqlite", kPlenty);
+    store.add(track("a"));
+    store.add(track("b"));
+    for (const std::int64_t sequence : {3, 4, 9}) {
+      EXPECT_TRUE(store.add_step("a", 10 + sequence, state(100), {sequence, 77, "answer " + std::to_string(sequence)}));
+    }
+  }
+  const TrackStore store(folder / "tracks.sqlite", kPlenty);
+  EXPECT_EQ(store.flying().size(), 2U);
+  EXPECT_EQ(store.find("a")->touched_us, 19);
+  EXPECT_EQ(store.state("a").particles, state(100).particles);
+  EXPECT_TRUE(store.state("b").counters.empty());
+  EXPECT_EQ(store.last_step("a")->answer, "answer 9");
+  EXPECT_EQ(store.step("a", 4)->answer, "answer 4");
+  EXPECT_FALSE(store.step("a", 5));
+  EXPECT_EQ(store.steps_after("a", 3, 10).size(), 2U);
+  EXPECT_EQ(store.steps_after("a", -1, 1).front().sequence, 3);
+}
+
+TEST(TrackStore, TakesNoStepOfATrackThatEnded) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  store.add(track("a"));
+  ASSERT_TRUE(store.add_step("a", 2, state(100), {0, 0, "answer"}));
+  store.end("a", "finished");
+  EXPECT_FALSE(store.add_step("a", 3, state(100), {1, 0, "answer"}));
+  EXPECT_FALSE(store.last_step("a")) << "its steps went with it";
+  EXPECT_TRUE(store.flying().empty());
+  EXPECT_EQ(store.find("a")->ended, "finished");
+}
+
+TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  for (int i = 0; i <= 100; ++i) {
+    StoredTrack ended = track("t" + std::to_string(i));
+    ended.touched_us = i;
+    ended.ended = "expired";
+    store.add(ended);
+  }
+  store.add(track("flying"));
+  store.end("t100", "finished");
+  EXPECT_FALSE(store.find("t0"));
+  EXPECT_TRUE(store.find("t1"));
+  EXPECT_TRUE(store.find("flying"));
+}
+
+TEST(TrackStore, IsAsBeforeWhenItIsFullAndGoesOnWhenThereIsRoom) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", 144 << 10);
+  store.add(track("a"));
+  store.add(track("b"));
+  ASSERT_TRUE(store.add_step("a", 5, state(40'000), {0, 0, "first"}));
+  ASSERT_TRUE(store.add_step("b", 5, state(40'000), {0, 0, "first"}));
+  EXPECT_EQ(code_of([&] { (void)store.add_step("a", 6, state(80'000), {1, 0, "second"}); }), "track-store-full");
+  EXPECT_EQ(store.last_step("a")->answer, "first");
+  EXPECT_EQ(store.state("a").particles.size(), 40'000U);
+  EXPECT_EQ(store.find("a")->touched_us, 5);
+  store.end("b", "finished");
+  EXPECT_TRUE(store.add_step("a", 6, state(80'000), {1, 0, "second"}));
+  EXPECT_EQ(store.last_step("a")->answer, "second");
+}
+
+TEST(TrackStore, IsHeldByOneServiceAtATime) {
+  const testing::TemporaryFolder folder;
+  auto first = std::make_unique<TrackStore>(folder / "tracks.sqlite", kPlenty);
+  const auto open = [&] { const TrackStore second(folder / "tracks.sqlite", kPlenty); };
+  EXPECT_EQ(code_of(open), "track-store-busy");
+  first.reset();
+  EXPECT_EQ(code_of(open), "no error");
+}
+
+/// Byte 18 of the header is the version that a writer must know: SQLite reads newer ones and writes none.
+/// https://www.sqlite.org/fileformat2.html#file_format_version_numbers
+TEST(TrackStore, SaysThatItMayNotBeWrittenTo) {
+  const testing::TemporaryFolder folder;
+  { const TrackStore store(folder / "tracks.sqlite", kPlenty); }
+  {
+    std::fstream file(folder / "tracks.sqlite", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(18);
+    file.put(3);
+  }
+  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "tracks.sqlite", kPlenty); }), "track-store-read-only");
+}
+
+TEST(TrackStore, SaysWhyItCannotBeOpened) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "noise.sqlite") << std::string(8192, 'x');
+  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "noise.sqlite", kPlenty); }), "track-store-corrupt");
+  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); }), "track-store-unavailable");
+  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 2");
+  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
+}
+
+}  // namespace
+}  // namespace roadfix::server

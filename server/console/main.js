@@ -1,7 +1,8 @@
 // The operator's console: the maps, a fix for a picture at hand, and what a place promises before the flight. All of it
 // is what the HTTP interface offers to any program.
 import { square } from './geometry.js';
-import { drawModes, element, showFix, showProblem, showStatus } from './show.js';
+import { drawModes, element, request, showFix, showProblem, showStatus } from './show.js';
+import { Tracks } from './tracks.js';
 
 const by = (id) => document.getElementById(id);
 const view = L.map('map', { preferCanvas: true, zoomSnap: 0.5 }).setView([0, 0], 2);
@@ -10,13 +11,6 @@ const promises = L.layerGroup().addTo(view);
 L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
 let tiles = null;
-
-async function request(url, options) {
-  const answer = await fetch(url, options);
-  const body = await answer.json();
-  if (!answer.ok) throw body;
-  return body;
-}
 
 /// Runs `work`; what goes wrong is said in `output`.
 async function attempt(output, work) {
@@ -122,3 +116,4 @@ by('ask').addEventListener('submit', ask);
 view.on('click', promiseOf);
 acceptDrops(by('drop'), by('ask').elements.picture);
 attempt(by('about'), listMaps);
+new Tracks(view, by('tracks'), by('track'));

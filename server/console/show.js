@@ -3,6 +3,14 @@ import { arrow, ellipse95 } from './geometry.js';
 
 const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
 
+/// The JSON of an answer; throws the problem (RFC 9457) of any other.
+export async function request(url, options) {
+  const answer = await fetch(url, options);
+  const body = await answer.json();
+  if (!answer.ok) throw body;
+  return body;
+}
+
 /// An element with text, never HTML: names of maps and messages come from outside.
 export function element(name, text = '', className = '') {
   const made = document.createElement(name);
@@ -29,8 +37,9 @@ function modeText(mode) {
   return `${place(mode.pose)}, heading ${degrees(mode.pose.heading_deg, 1)}, σ ${long.toFixed(1)} × ${short.toFixed(1)} m, weight ${mode.weight.toFixed(3)}`;
 }
 
-export function showStatus(output, status, lines) {
-  output.replaceChildren(element('span', status.replace('_', ' '), `status ${status}`));
+/// `look` is a class of console.css, `word` what is read.
+export function showStatus(output, look, lines, word = look) {
+  output.replaceChildren(element('span', word.replaceAll('_', ' '), `status ${look}`));
   for (const line of lines.filter(Boolean)) output.append(element('div', line));
 }
 

@@ -137,7 +137,8 @@ BENCHMARK(read_store_and_fuse)->MeasureProcessCPUTime()->UseRealTime()->Unit(ben
 BENCHMARK(ingest_by_network)
     ->Arg(1)
     ->Arg(tbb::info::default_concurrency())
-    ->MeasureProcessCPUTime()->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -28,7 +28,8 @@ void detect(benchmark::State& state) {
   state.counters["MP/s"] = benchmark::Counter(static_cast<double>(image.pixels.total()) / 1e6,
                                               benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(detect)->Args({512, 1})->Args({512, 4})->Args({2048, 1})->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(detect)->Args({512, 1})->Args({512, 4})->Args({2048, 1})->MeasureProcessCPUTime()->UseRealTime()->Unit(
+    benchmark::kMillisecond);
 
 void bare_network(benchmark::State& state) {
   const auto model = default_model();

@@ -64,6 +64,10 @@ void print_text(const Fix& fix) {
     if (!fix.modes.empty()) fmt::print("best places, not to be flown on:\n");
     for (const FixMode& mode : fix.modes) print_mode(mode);
   }
+  if (fix.scales > 1) {
+    fmt::print("tried {} sizes of the ground; {:.3f} times that of the feature map fits best\n", fix.scales,
+               fix.modes.empty() ? 1.0 : fix.modes.front().scale);
+  }
   fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
              fix.search_time.count());
   if (!fix.complete)
@@ -122,6 +126,10 @@ void add_fix_command(CLI::App& app) {
   command->add_option("--modes", o->fix.max_modes, "Places to report at most")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  command
+      ->add_option("--scale-range", o->fix.scale_range, "The ground may be smaller by this share, or larger by as much")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, kMostScaleRange));
   command->add_option("--threads", o->fix.threads, "Threads of the search")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));

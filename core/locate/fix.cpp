@@ -51,6 +51,7 @@ FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight,
   const GridPoint at = mode.pose.position;
   FixMode result;
   result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};
+  result.scale = mode.scale;
   result.weight = weight;
   result.rho = mode.rho;
   result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
@@ -66,6 +67,10 @@ void require_valid(const FixOptions& options, double area_km2) {
   if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
     throw InvalidInput("confidence-out-of-range",
                        fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
+  }
+  if (!(options.scale_range >= 0.0 && options.scale_range <= kMostScaleRange)) {
+    throw InvalidInput("scale-range-out-of-range", fmt::format("the scale range is {}: give a share from 0 to {}",
+                                                               options.scale_range, kMostScaleRange));
   }
   if (options.max_search_km2 > 0.0 && area_km2 > options.max_search_km2) {
     throw LimitExceeded("search-area-too-large",
@@ -89,6 +94,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
 
   SearchOptions search_options;
   search_options.max_modes = options.max_modes;
+  search_options.scale_range = options.scale_range;
   search_options.threads = options.threads;
   search_options.stop = options.stop;
   search_options.proof_time = options.proof_time;
@@ -109,6 +115,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.searched_share = found.scanned_share;
   fix.complete = found.complete();
   fix.headings = found.headings;
+  fix.scales = found.scales;
   fix.proof = found.proof;
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;

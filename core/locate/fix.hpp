@@ -50,6 +50,9 @@ struct Prior {
 struct FixOptions {
   double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it
   int max_modes = 8;
+  /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
+  /// [0, kMostScaleRange].
+  double scale_range = 0.0;
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
@@ -67,6 +70,7 @@ inline constexpr double kRegionSigmas = 4.0;
 
 struct FixMode {
   GeoPose pose;
+  double scale = 1.0;   ///< of the feature map's size
   double weight = 0.0;  ///< share of the posterior of this mode, all modes sum to at most 1
   double rho = 0.0;
   std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
@@ -87,6 +91,7 @@ struct Fix {
   double searched_share = 1.0;
   bool complete = true;  ///< false where the time limit ended the search
   int headings = 0;
+  int scales = 1;
   std::optional<SearchProof> proof;  ///< where one was asked for
   std::string map_name;
   std::string map_version;

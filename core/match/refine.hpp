@@ -7,28 +7,44 @@
 #include "core/match/correlation.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
+#include "core/match/scales.hpp"
 #include "core/match/search.hpp"
 #include "core/match/work.hpp"
 
 namespace roadfix {
 
+/// The feature map in the cells of a level, at one scale.
+struct LevelFeatures {
+  FeatureMap map;
+  std::int64_t full_cells = 0;  ///< observed
+  double least_cells = 1.0;     ///< observed in both, below which a pose has no score
+
+  LevelFeatures(FeatureMap features, double least_share);
+};
+
 /// One level of the pyramid.
 struct Level {
   const GridReader& read;
-  FeatureMap features;  ///< in the cells of this level
+  const FeatureMap& source;  ///< what the search was given
+  LevelFeatures features;    ///< in the cells of this level, as large as it was given
+  double least_share = 0.5;
   HeadingBins bins{2};
-  double least_cells = 0.0;
+  Scales scales;
   int threads = 1;
 
-  double cell_m() const { return features.cell_m; }
+  double cell_m() const { return features.map.cell_m; }
+  LevelFeatures at_scale(int index) const;
+  /// Cells that the footprint reaches at a scale.
+  int reach(int scale) const;
   GridPose pose_of(const LatticePose& pose) const;
 };
 
-/// Replaces each candidate by the best pose within +- `cells` and +- `bins` of it. False if time was over before: then
-/// they are left as they were.
+/// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it. False if
+/// time was over before: then they are left as they were.
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);
 
-/// Scores around a pose: index [bin][row][col], each from -kPeakRadius to +kPeakRadius; the bins count as headings.
+/// Scores around a pose, at its scale: index [bin][row][col], each from -kPeakRadius to +kPeakRadius; the bins count as
+/// headings.
 inline constexpr int kPeakRadius = 3;
 inline constexpr int kPeakSize = 2 * kPeakRadius + 1;
 using PeakScores = std::array<std::array<std::array<double, kPeakSize>, kPeakSize>, kPeakSize>;

@@ -67,13 +67,16 @@ class Search {
         options_(options),
         deadline_(options.stop, options.deadline),
         coarsest_(coarse_level(finest_cell_m, features, region)) {
+    const double radius_m = 0.5 * side_m(features);
+    const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest_);
+    const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
     for (int k = 0; k <= coarsest_; ++k) {
       const double cell_m = std::ldexp(finest_cell_m, k);
-      const HeadingBins bins = HeadingBins::for_footprint(0.5 * side_m(features), std::ldexp(finest_cell_m, coarsest_));
+      const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
       FeatureMap scaled = k == 0 && features.cell_m == cell_m ? features : resampled(features, cell_m);
-      const double least = options.min_observed_share * static_cast<double>(scaled.cells.observed_count());
-      levels_.push_back({read, std::move(scaled), HeadingBins(bins.count() << (coarsest_ - k)), std::max(1.0, least),
-                         options.threads});
+      levels_.push_back({read, features, LevelFeatures(std::move(scaled), options.min_observed_share),
+                         options.min_observed_share, HeadingBins(bins.count() << (coarsest_ - k)),
+                         scales.finer(1 << (coarsest_ - k)), options.threads});
     }
     separation_m_ = std::max(2.5 * coarse().cell_m(), 0.1 * side_m(features));
     plan_scan();
@@ -142,27 +145,37 @@ class Search {
     request.min_observed_share = options_.min_observed_share;
     request.keep = kScanMaxima;
     request.threads = options_.threads;
-    const int reach = footprint_reach(coarse().features);
+    const int largest = coarse().scales.reach();
+    const int reach = coarse().reach(largest);
     const GridGeometry& positions = request.positions;
     const GridGeometry window{cell_m,
                               {positions.origin.col - reach, positions.origin.row - reach},
                               positions.cols + 2 * reach,
                               positions.rows + 2 * reach};
-    const ScanResult found = coarse_scan(read_(window), coarse().features, request, deadline_.after(kScanTimeShare));
-
-    result.scanned_share = found.share;
-    result.headings = static_cast<int>(request.headings.size());
-    result.background.poses = found.poses;
-    if (found.poses > 0) {
-      result.background.sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
-    }
+    const RoadGrid map = read_(window);
+    const Deadline end = deadline_.after(kScanTimeShare);
     std::vector<LatticePose> inside;
     std::vector<LatticePose> outside;
-    for (const ScanPose& pose : found.maxima) {
-      const LatticePose lattice{{positions.origin.col + pose.col, positions.origin.row + pose.row},
-                                pose.bin,
-                                static_cast<double>(pose.score)};
-      (within_region(coarse(), lattice) ? inside : outside).push_back(lattice);
+    double squares = 0.0;
+    result.scales = 2 * largest + 1;
+    double shares = 0.0;
+    for (int scale = -largest; scale <= largest; ++scale) {
+      const ScanResult found = coarse_scan(map, coarse().at_scale(scale).map, request, end);
+      shares += found.share;
+      result.background.poses += found.poses;
+      squares += found.score_square_sum;
+      for (const ScanPose& pose : found.maxima) {
+        const LatticePose lattice{{positions.origin.col + pose.col, positions.origin.row + pose.row},
+                                  pose.bin,
+                                  static_cast<double>(pose.score),
+                                  scale};
+        (within_region(coarse(), lattice) ? inside : outside).push_back(lattice);
+      }
+    }
+    result.scanned_share = shares / result.scales;
+    result.headings = static_cast<int>(request.headings.size());
+    if (result.background.poses > 0) {
+      result.background.sd = std::sqrt(squares / static_cast<double>(result.background.poses));
     }
     std::vector<LatticePose> candidates = distinct(inside, coarse(), 2.5 * cell_m, 2, followed(coarsest_));
     const std::vector<LatticePose> others = distinct(outside, coarse(), 2.5 * cell_m, 2, kCandidates);
@@ -174,7 +187,7 @@ class Search {
     int level = 0;
     for (int k = 1; k <= coarsest_; ++k) {
       const double cell_m = levels_[static_cast<std::size_t>(k)].cell_m();
-      if (cell_m <= kProofCellM && side_m(levels_.front().features) / cell_m >= kProofFootprintCells) level = k;
+      if (cell_m <= kProofCellM && side_m(levels_.front().features.map) / cell_m >= kProofFootprintCells) level = k;
     }
     return level;
   }
@@ -184,21 +197,20 @@ class Search {
     if (options_.proof_time.count() <= 0) return;
     const Level& level = levels_[static_cast<std::size_t>(k)];
     BoundedSearch bounded;
-    bounded.features = &level.features;
     bounded.bins = level.bins;
     for (int bin = 0; bin < level.bins.count(); ++bin) {
       if (region_.contains(level.bins.heading(bin))) bounded.headings.push_back(bin);
     }
     bounded.positions = GridGeometry::covering(region_.box, level.cell_m());
     bounded.eligible = [&](int col, int row) { return region_.contains(bounded.positions.cell_center(col, row)); };
-    bounded.least_cells = level.least_cells;
     bounded.threads = options_.threads;
     for (const LatticePose& pose : candidates) {
       const GridPose at = level.pose_of(pose);
       if (region_.contains(at.position) && region_.contains(at.heading))
         bounded.known = std::max(bounded.known, pose.score);
     }
-    const int reach = footprint_reach(level.features) + BoundMap::kFrame;
+    const int largest = level.scales.reach();
+    const int reach = level.reach(largest) + BoundMap::kFrame;
     const GridGeometry& positions = bounded.positions;
     const BoundMap map(level.read({level.cell_m(),
                                    {positions.origin.col - reach, positions.origin.row - reach},
@@ -209,12 +221,25 @@ class Search {
     const auto now = std::chrono::steady_clock::now();
     auto end = now + options_.proof_time;
     if (options_.deadline) end = std::min(end, now + (*options_.deadline - now) / 2);
-    const BoundedResult found = search_with_bound(bounded, Deadline(options_.stop, end));
-    const double best = found.poses.empty() ? bounded.known : found.poses.front().score;
-    result.proof =
-        SearchProof{level.cell_m(),      static_cast<int>(bounded.headings.size()), best, found.bound, found.complete,
-                    found.excluded_share};
-    candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
+    const Deadline deadline(options_.stop, end);
+    SearchProof proof{level.cell_m(), static_cast<int>(bounded.headings.size()), 2 * largest + 1, 0.0, 0.0, true, 0.0};
+    for (int scale = -largest; scale <= largest; ++scale) {
+      const LevelFeatures features = level.at_scale(scale);
+      bounded.features = &features.map;
+      bounded.least_cells = features.least_cells;
+      BoundedResult found = search_with_bound(bounded, deadline);
+      for (LatticePose& pose : found.poses) {
+        pose.scale = scale;
+        bounded.known = std::max(bounded.known, pose.score);
+      }
+      candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
+      proof.bound = std::max(proof.bound, found.bound);
+      proof.complete = proof.complete && found.complete;
+      proof.excluded_share += found.excluded_share;
+    }
+    proof.best_score = bounded.known;
+    proof.excluded_share /= proof.scales;
+    result.proof = proof;
   }
 
   bool within_region(const Level& level, const LatticePose& pose) const {
@@ -252,6 +277,7 @@ class Search {
     for (LatticePose& pose : candidates) {
       pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};
       pose.bin *= 2;
+      pose.scale *= 2;
     }
   }
 
@@ -292,7 +318,7 @@ class Search {
     for (int moves = 0; moves < 3; ++moves) {
       const std::array<int, 3> top = highest(peak.scores);
       if (top == std::array<int, 3>{}) break;
-      pose = {{pose.cell.col + top[0], pose.cell.row + top[1]}, pose.bin + top[2], 0.0};
+      pose = {{pose.cell.col + top[0], pose.cell.row + top[1]}, pose.bin + top[2], 0.0, pose.scale};
       peak = peak_around(level, pose);
     }
     const PeakShape shape = shape_of(peak.scores, background);
@@ -303,6 +329,7 @@ class Search {
     mode.pose.position.east_m += unit[0] * shape.offset[0];
     mode.pose.position.north_m += unit[1] * shape.offset[1];
     mode.pose.heading += Angle::radians(unit[2] * shape.offset[2]);
+    mode.scale = level.scales.factor(pose.scale);
     mode.score = peak.scores[kPeakRadius][kPeakRadius][kPeakRadius];
     mode.pearson = pearson(peak.centre).value_or(0.0);
     mode.rho = rho(peak.centre).value_or(0.0);

@@ -42,8 +42,12 @@ struct SearchRegion {
   double area_km2() const;
 };
 
+inline constexpr double kMostScaleRange = 0.3;
+
 struct SearchOptions {
   int max_modes = 8;
+  /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMostScaleRange].
+  double scale_range = 0.0;
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;
   std::stop_token stop;
@@ -54,8 +58,9 @@ struct SearchOptions {
 
 /// What is known of all poses of the region, not just of the candidates.
 struct SearchProof {
-  double cell_m = 0.0;          ///< of the lattice of positions that it speaks of
-  int headings = 0;             ///< bins within the range
+  double cell_m = 0.0;  ///< of the lattice of positions that it speaks of
+  int headings = 0;     ///< bins within the range
+  int scales = 1;
   double best_score = 0.0;      ///< of the best pose found, on this lattice
   double bound = 1.0;           ///< no pose on this lattice scores more; equal to best_score if `complete`
   bool complete = false;        ///< the best pose is proven to be the best; else time was over before
@@ -65,6 +70,7 @@ struct SearchProof {
 /// A place that fits, apart from the others by a tenth of the footprint or several heading bins.
 struct SearchMode {
   GridPose pose;
+  double scale = 1.0;  ///< of the feature map's size, within the scale range
   double score = 0.0;
   double rho = 0.0;      ///< equation (5) at the nearest cell
   double pearson = 0.0;  ///< the same about the separate means
@@ -98,6 +104,7 @@ struct SearchResult {
   double cell_m = 0.0;               ///< finest cell
   double coarse_cell_m = 0.0;        ///< of the exhaustive scan
   int headings = 0;                  ///< bins of the exhaustive scan within the range
+  int scales = 1;                    ///< of the exhaustive scan
   std::optional<SearchProof> proof;  ///< where one was asked for
   /// Of all poses, scored at the coarse cells before the deadline. Of the others nothing is known.
   double scanned_share = 1.0;

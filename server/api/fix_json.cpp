@@ -14,6 +14,7 @@ json mode_json(const FixMode& mode) {
   const LatLon at = mode.pose.position;
   return {{"pose", pose_json(mode.pose)},
           {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}},
+          {"scale", mode.scale},
           {"weight", mode.weight},
           {"rho", mode.rho},
           {"sigma_m", mode.sigma_m},
@@ -50,12 +51,14 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
   for (const FixMode& mode : fix.modes) answer["modes"].push_back(mode_json(mode));
   answer["searched"] = {{"area_km2", fix.searched_km2},
                         {"headings", fix.headings},
+                        {"scales", fix.scales},
                         {"complete", fix.complete},
                         {"share", fix.searched_share}};
   if (fix.proof) {
     answer["searched"]["proof"] = {{"complete", fix.proof->complete}, {"best_score", fix.proof->best_score},
                                    {"bound", fix.proof->bound},       {"excluded_share", fix.proof->excluded_share},
-                                   {"cell_m", fix.proof->cell_m},     {"headings", fix.proof->headings}};
+                                   {"cell_m", fix.proof->cell_m},     {"headings", fix.proof->headings},
+                                   {"scales", fix.proof->scales}};
   }
   answer["map"] = {{"name", fix.map_name}, {"version", fix.map_version}};
   answer["time_ms"] = {{"search", fix.search_time.count()}};

@@ -159,6 +159,18 @@ TEST_F(Service, SearchesOnlyWhereThePriorAllows) {
             "422 prior-outside-map");
 }
 
+TEST_F(Service, FixesWhatWasSeenFromAnAltitudeKnownRoughly) {
+  // The cells of 2 m are said to be of 2.2 m.
+  const std::string url = "/v1/maps/town/fix?cell_m=2.2&scale_range=";
+  const json fix = testing::json_of(client_.Post(url + "0.15" + place(), town->seen(), "image/png"));
+  ASSERT_EQ(fix["status"], "fix") << fix;
+  expect_pose(fix["pose"], town->place, town->heading_deg, 6.0, 2.0);
+  EXPECT_NEAR(fix["scale"].get<double>(), 1.0 / 1.1, 0.02);
+  EXPECT_GT(fix["searched"]["scales"], 1);
+  EXPECT_EQ(testing::refusal(client_.Post(url + "0.5", town->seen(), "image/png")),
+            "400 parameter-out-of-range scale_range");
+}
+
 TEST_F(Service, SaysWhatItHasWhereTheTimeLimitEndsTheSearch) {
   const std::string url = "/v1/maps/town/fix?cell_m=2&time_limit_s=";
   const auto answer = client_.Post(url + "0.001", town->seen(), "image/png");

@@ -177,6 +177,9 @@ TEST_F(Locate, RefusesWhatItCannotUse) {
   options = {};
   options.confidence = 1.5;
   EXPECT_EQ(code(good, {}, options), "confidence-out-of-range");
+  options = {};
+  options.scale_range = 0.31;
+  EXPECT_EQ(code(good, {}, options), "scale-range-out-of-range");
   MapView empty = view_;
   empty.extent = {{1.0, 1.0}, {0.0, 0.0}};
   EXPECT_EQ(code_of([&] { locate(empty, good, {}, {}); }), "map-unobserved");

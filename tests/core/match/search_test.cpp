@@ -100,6 +100,54 @@ TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   EXPECT_LT(found.modes[0].observed_cells, 160 * 160 * 9 / 10);
 }
 
+TEST(Search, FindsAWindowWhoseSizeIsKnownRoughly) {
+  const RoadGrid map = street_map(16, town(1600, 1400));
+  std::mt19937_64 random(17);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  for (const double scale : {0.88, 1.12}) {
+    const GridPose truth = pose_within(region.box, 350.0, random);
+    // Cells of other than 2 m, said to be of 2 m.
+    FeatureMap window = cut_out(map, truth, 220, 220, 2.0 * scale);
+    window.cell_m = 2.0;
+    region.heading = truth.heading;
+    region.heading_half_width = Angle::degrees(20.0);
+    SearchOptions options;
+    const SearchResult as_given = search(reader_of(map), 2.0, window, region, options);
+    options.scale_range = 0.15;
+    const SearchResult found = search(reader_of(map), 2.0, window, region, options);
+    ASSERT_FALSE(found.modes.empty());
+    EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 2.0);
+    EXPECT_NEAR(found.modes[0].scale, scale, 0.01);
+    EXPECT_GT(found.modes[0].score, 0.8);
+    EXPECT_LT(as_given.modes[0].score, 0.7);
+    EXPECT_EQ(found.scales % 2, 1);
+    EXPECT_TRUE(found.complete());
+    EXPECT_GT(found.background.poses, as_given.background.poses * (found.scales - 1));
+  }
+}
+
+TEST(Search, ProvesOverAllScalesToo) {
+  const RoadGrid map = street_map(18, town(700, 600));
+  std::mt19937_64 random(19);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const GridPose truth = pose_within(region.box, 180.0, random);
+  FeatureMap window = cut_out(map, truth, 130, 130, 2.1);
+  window.cell_m = 2.0;
+  region.heading = truth.heading;
+  region.heading_half_width = Angle::degrees(10.0);
+  SearchOptions options;
+  options.scale_range = 0.06;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult found = search(reader_of(map), 2.0, window, region, options);
+  ASSERT_TRUE(found.proof.has_value());
+  EXPECT_TRUE(found.proof->complete);
+  EXPECT_GT(found.proof->scales, found.scales);
+  EXPECT_EQ(found.proof->bound, found.proof->best_score);
+  EXPECT_NEAR(found.modes[0].scale, 1.05, 0.01);
+}
+
 TEST(Search, StaysWithinItsRegionAndHeadingRange) {
   const RoadGrid map = street_map(5, town(1600, 1600));
   std::mt19937_64 random(6);

@@ -23,7 +23,7 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   fix.probability = 0.996;
   fix.modes = {mode()};
   fix.searched_km2 = 24.6;
-  fix.proof = SearchProof{4.0, 472, 0.6, 0.8, false, 0.97};
+  fix.proof = SearchProof{4.0, 472, 1, 0.6, 0.8, false, 0.97};
   fix.headings = 360;
   fix.map_name = "adiyaman";
   const auto answer = to_json(fix, std::chrono::milliseconds(140));

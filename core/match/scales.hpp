@@ -1,0 +1,25 @@
+// How large the ground in a feature map may be, where the altitude is known only roughly: the fourth dimension of a
+// search.
+#pragma once
+
+namespace roadfix {
+
+/// Factors exp(index * step) on the feature map's size, for |index| <= reach. Reach 0: the size is as it was given.
+class Scales {
+ public:
+  Scales() = default;
+  /// From 1 - range to 1 / (1 - range), range in [0, 1): neighbours differ by at most a cell at the footprint's edge.
+  static Scales for_footprint(double radius_m, double cell_m, double range);
+
+  int reach() const { return reach_; }
+  double factor(int index) const;
+  /// The same range in so many times finer steps: indices are multiplied by it.
+  Scales finer(int times) const;
+
+ private:
+  Scales(double step, int reach) : step_(step), reach_(reach) {}
+  double step_ = 0.0;
+  int reach_ = 0;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,62 @@
+#include "server/api/tile_ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/api/geo_bounds.hpp"
+
+namespace roadfix::api {
+namespace {
+
+constexpr int kLongestStep = 16;
+
+}  // namespace
+
+PixelBox touched_pixels(const MapView& map, TileAddress tile) {
+  const GeoBounds bounds = bounds_of(map.zone, map.extent);
+  const MercatorPixel north_west = mercator_pixel({bounds.north_east.lat_deg, bounds.south_west.lon_deg}, tile.z);
+  const MercatorPixel south_east = mercator_pixel({bounds.south_west.lat_deg, bounds.north_east.lon_deg}, tile.z);
+  const auto within = [](double value) { return static_cast<int>(std::clamp(value, 0.0, double{kTilePixels})); };
+  const double x0 = double{kTilePixels} * tile.x;
+  const double y0 = double{kTilePixels} * tile.y;
+  return {within(std::floor(north_west.x - x0)), within(std::floor(north_west.y - y0)),
+          within(std::ceil(south_east.x - x0)), within(std::ceil(south_east.y - y0))};
+}
+
+PixelToGrid::PixelToGrid(const UtmZone& zone, TileAddress tile, const PixelBox& box)
+    : box_(box),
+      step_(std::min(kLongestStep, std::max(box.right - box.left, box.bottom - box.top))),
+      cols_(nodes(box.right - box.left)),
+      rows_(nodes(box.bottom - box.top)) {
+  for (int j = 0; j < rows_; ++j) {
+    for (int i = 0; i < cols_; ++i) {
+      const MercatorPixel pixel{double{kTilePixels} * tile.x + box.left + i * step_ + 0.5,
+                                double{kTilePixels} * tile.y + box.top + j * step_ + 0.5};
+      points_.push_back(zone.project(lat_lon(pixel, tile.z)));
+    }
+  }
+}
+
+GridPoint PixelToGrid::at(int x, int y) const {
+  const int i = (x - box_.left) / step_;
+  const int j = (y - box_.top) / step_;
+  const double u = static_cast<double>(x - box_.left - i * step_) / step_;
+  const double v = static_cast<double>(y - box_.top - j * step_) / step_;
+  const auto blend = [&](double GridPoint::*axis) {
+    const double top = (1.0 - u) * (node(i, j).*axis) + u * (node(i + 1, j).*axis);
+    const double bottom = (1.0 - u) * (node(i, j + 1).*axis) + u * (node(i + 1, j + 1).*axis);
+    return (1.0 - v) * top + v * bottom;
+  };
+  return {blend(&GridPoint::east_m), blend(&GridPoint::north_m)};
+}
+
+GridBox PixelToGrid::box() const {
+  GridBox box{points_.front(), points_.front()};
+  for (const GridPoint p : points_) {
+    box.min = {std::min(box.min.east_m, p.east_m), std::min(box.min.north_m, p.north_m)};
+    box.max = {std::max(box.max.east_m, p.east_m), std::max(box.max.north_m, p.north_m)};
+  }
+  return box;
+}
+
+}  // namespace roadfix::api

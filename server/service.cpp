@@ -13,7 +13,7 @@ http::Router make_router(const Service& service) {
   add_tile_routes(router, service);
   add_match_route(router, service);
   add_fix_route(router, service);
-  add_localizability_route(router, service);
+  add_localizability_routes(router, service);
   add_detect_route(router, service);
   add_track_routes(router, service);
   return router;

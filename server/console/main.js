@@ -11,6 +11,7 @@ const promises = L.layerGroup().addTo(view);
 L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
 let tiles = null;
+let layer = null;
 
 /// Runs `work`; what goes wrong is said in `output`.
 async function attempt(output, work) {
@@ -35,6 +36,7 @@ async function openMap() {
   }).addTo(view);
   const [west, south, east, north] = info.bbox;
   view.fitBounds([[south, west], [north, east]]);
+  await drawLayer();
   by('about').replaceChildren(
     element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
     ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));
@@ -101,6 +103,28 @@ async function promiseOf({ latlng }) {
   });
 }
 
+/// Tiles that are not ready in time are asked for again: the service goes on where it was.
+function askAgain({ tile }) {
+  const tries = Number(tile.dataset.tries ?? 0);
+  if (tries >= 20) return;
+  tile.dataset.tries = tries + 1;
+  const url = tile.src;
+  setTimeout(() => { if (tile.isConnected) tile.src = url; }, 3000);
+}
+
+async function drawLayer() {
+  if (layer) layer.remove();
+  layer = null;
+  if (!tiles || !by('layer').checked) return;
+  const query = `footprint_m=${Number(by('footprint').value)}`;
+  const tileset = await request(`${mapUrl()}/localizability/tilejson.json?${query}`);
+  const [west, south, east, north] = tileset.bounds;
+  layer = L.tileLayer(`${mapUrl()}/localizability/tiles/{z}/{x}/{y}.png?${query}`, {
+    minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom: tiles.options.maxZoom, bounds: [[south, west], [north, east]],
+  }).on('tileerror', askAgain).addTo(view);
+  if (view.getZoom() < tileset.minzoom) view.setZoom(tileset.minzoom);
+}
+
 function acceptDrops(target, input) {
   for (const name of ['dragover', 'dragleave', 'drop']) {
     target.addEventListener(name, (event) => {
@@ -114,6 +138,7 @@ function acceptDrops(target, input) {
 by('maps').addEventListener('change', () => attempt(by('about'), openMap));
 by('ask').addEventListener('submit', ask);
 view.on('click', promiseOf);
+for (const id of ['layer', 'footprint']) by(id).addEventListener('change', () => attempt(by('place'), drawLayer));
 acceptDrops(by('drop'), by('ask').elements.picture);
 attempt(by('about'), listMaps);
 new Tracks(view, by('tracks'), by('track'));

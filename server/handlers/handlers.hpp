@@ -17,7 +17,8 @@ void add_window_route(http::Router& router, const Service& service);
 void add_tile_routes(http::Router& router, const Service& service);
 void add_match_route(http::Router& router, const Service& service);
 void add_fix_route(http::Router& router, const Service& service);
-void add_localizability_route(http::Router& router, const Service& service);
+/// The answer for a place, and tiles of them
+void add_localizability_routes(http::Router& router, const Service& service);
 void add_detect_route(http::Router& router, const Service& service);
 void add_track_routes(http::Router& router, const Service& service);
 

@@ -1,37 +1,168 @@
 #include "core/locate/localizability.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+
+#include "core/locate/decision.hpp"
+#include "core/units/error.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/geo_bounds.hpp"
+#include "server/api/localizability_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/http/admission.hpp"
 
 namespace roadfix::server {
 namespace {
 
-std::vector<std::string> query_fields() { return {"lat", "lon", "footprint_m", "radius_m"}; }
+constexpr std::array<std::string_view, 2> kStyles{"colour", "grey"};
+constexpr const char* kCacheControl = "public, max-age=60";
+constexpr api::Range kFootprint{20.0, 5000.0};
+constexpr double kUsualFootprintM = 400.0;
+/// Less of a footprint on the map says nothing about the place.
+constexpr double kLeastObservedShare = 0.5;
+/// Tiles are drawn one at a time, and those that wait leave most of the service's connections to others.
+constexpr int kTilesDrawn = 1;
+constexpr int kThreadsPerWaitingTile = 4;
+
+FixOptions fix_options(const Service& service, const http::Request& request) {
+  FixOptions options;
+  options.max_search_km2 = service.limits.search_km2;
+  options.calibration = service.calibration;
+  api::shorten(options, request.deadline);
+  return options;
+}
 
 http::Response get_localizability(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Fields fields(request.query);
   LocalizabilityQuery query;
   query.position = {fields.number("lat", api::kLatitude), fields.number("lon", api::kLongitude)};
-  query.footprint_m = fields.number("footprint_m", {20.0, 5000.0});
+  query.footprint_m = fields.number("footprint_m", kFootprint);
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
-  query.fix.max_search_km2 = service.limits.search_km2;
-  query.fix.calibration = service.calibration;
+  query.fix = fix_options(service, request);
   query.fix.threads = service.search_threads;
-  api::shorten(query.fix, request.deadline);
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = {{"name", map->name}, {"version", map->view.version}};
   return json_response(answer);
 }
 
+/// What tells one picture of a tile from another.
+struct Layer {
+  std::shared_ptr<const ServedMap> map;
+  double footprint_m = 0.0;
+  std::string style;
+
+  std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name, map->view.version, footprint_m); }
+};
+
+Layer layer_of(const Service& service, const http::Request& request) {
+  const api::Fields fields(request.query);
+  return {service.maps.find(request.path_parameters.at("map")),
+          fields.optional_number("footprint_m", kFootprint).value_or(kUsualFootprintM), fields.word("style", kStyles)};
+}
+
+/// Of a place, searched for once and kept beside the tiles that show it: a tile that runs out of time goes on where it
+/// was when it is asked for again.
+std::optional<double> promise(const Service& service, const http::Request& request, const Layer& layer,
+                              GridPoint place) {
+  const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
+  std::optional<std::string> kept = service.pictures.find(key);
+  if (!kept) {
+    LocalizabilityQuery query;
+    query.position = layer.map->view.zone.unproject(place);
+    query.footprint_m = layer.footprint_m;
+    query.fix = fix_options(service, request);
+    const Localizability found = localizability(layer.map->view, query);
+    if (found.reason == kTimeLimitReason) {
+      throw Interrupted("request-deadline", "the request's time ended before the tile was complete; ask again");
+    }
+    kept = found.observed_share < kLeastObservedShare ? "" : fmt::format("{:.4f}", found.probability);
+    service.pictures.keep(key, *kept);
+  }
+  return api::parse_number(*kept);
+}
+
+std::string drawn(const Service& service, const http::Request& request, const Layer& layer, api::TileAddress tile,
+                  http::Admission& turns) {
+  const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
+  if (auto kept = service.pictures.find(key)) return *kept;
+  const http::Admission::Ticket turn = turns.enter(request.deadline);
+  const auto png = api::localizability_png(layer.map->view, tile, layer.footprint_m,
+                                           layer.style == "grey" ? api::TileStyle::kGrey : api::TileStyle::kColour,
+                                           [&](GridPoint place) { return promise(service, request, layer, place); });
+  std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
+  service.pictures.keep(key, bytes);
+  return bytes;
+}
+
+/// A service that is started with another calibration draws other tiles.
+std::string variation(const Service& service, const Layer& layer, const std::string& path) {
+  const Calibration& c = service.calibration ? *service.calibration : default_calibration();
+  return fmt::format("{} {} {} {} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.surprise.weight,
+                     c.lead.weight, c.gap.weight, c.highest);
+}
+
+http::Response get_tile(const Service& service, const http::Request& request, http::Admission& turns) {
+  const auto& at = request.path_parameters;
+  const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
+  const Layer layer = layer_of(service, request);
+  const std::string tag = entity_tag(layer.map->view.version, variation(service, layer, request.path));
+  http::Response response{304, {}, {}, {{"ETag", tag}, {"Cache-Control", kCacheControl}}};
+  if (is_known_to_client(request, tag)) return response;
+  response.body = drawn(service, request, layer, tile, turns);
+  response.status = response.body.empty() ? 204 : 200;
+  if (response.status == 200) response.content_type = "image/png";
+  return response;
+}
+
+http::Response get_tilejson(const Service& service, const http::Request& request) {
+  const Layer layer = layer_of(service, request);
+  const std::string url = base_url(request) + request.path.substr(0, request.path.rfind('/')) +
+                          fmt::format("/tiles/{{z}}/{{x}}/{{y}}.png?footprint_m={}", layer.footprint_m) +
+                          (layer.style == kStyles[0] ? "" : "&style=" + layer.style);
+  nlohmann::json answer{{"tilejson", "3.0.0"},
+                        {"name", layer.map->name + ", localizability"},
+                        {"version", "1.0.0"},
+                        {"scheme", "xyz"},
+                        {"tiles", {url}}};
+  const GridBox& extent = layer.map->view.extent;
+  if (!extent.empty()) {
+    const api::GeoBounds b = api::bounds_of(layer.map->view.zone, extent);
+    const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
+    answer["bounds"] = {b.south_west.lon_deg, b.south_west.lat_deg, b.north_east.lon_deg, b.north_east.lat_deg};
+    answer["minzoom"] = zooms.first;
+    answer["maxzoom"] = zooms.last;
+  }
+  http::Response response = json_response(answer);
+  response.headers.emplace_back("Cache-Control", kCacheControl);
+  return response;
+}
+
 }  // namespace
 
-void add_localizability_route(http::Router& router, const Service& service) {
-  router.add({"GET", "/v1/maps/{map}/localizability", query_fields(), true,
+void add_localizability_routes(http::Router& router, const Service& service) {
+  router.add({"GET",
+              "/v1/maps/{map}/localizability",
+              {"lat", "lon", "footprint_m", "radius_m"},
+              true,
               [&service](const http::Request& request) { return get_localizability(service, request); }});
+  // Not among the heavy requests: a screen of these tiles must not hold up a fix.
+  const auto turns = std::make_shared<http::Admission>(kTilesDrawn, service.http.threads / kThreadsPerWaitingTile);
+  router.add({"GET",
+              "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
+              {"footprint_m", "style"},
+              false,
+              [&service, turns](const http::Request& request) { return get_tile(service, request, *turns); }});
+  router.add({"GET",
+              "/v1/maps/{map}/localizability/tilejson.json",
+              {"footprint_m", "style"},
+              false,
+              [&service](const http::Request& request) { return get_tilejson(service, request); }});
 }
 
 }  // namespace roadfix::server

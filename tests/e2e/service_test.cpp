@@ -249,6 +249,33 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
   EXPECT_EQ(testing::refusal(client_.Get("/v1/maps/town/tiles/16/70000/0.png")), "404 tile-not-found");
 }
 
+TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
+  const json description = testing::json_of(client_.Get("/v1/maps/town/localizability/tilejson.json?footprint_m=500"));
+  EXPECT_THAT(description["tiles"][0].get<std::string>(),
+              HasSubstr("/v1/maps/town/localizability/tiles/{z}/{x}/{y}.png?footprint_m=500"));
+  EXPECT_LT(description["minzoom"], description["maxzoom"]);
+  const auto path = [&](int zoom, const std::string& query) {
+    const api::MercatorPixel pixel = api::mercator_pixel(town->place, zoom);
+    return "/v1/maps/town/localizability/tiles/" + std::to_string(zoom) + "/" +
+           std::to_string(static_cast<int>(pixel.x / 256)) + "/" + std::to_string(static_cast<int>(pixel.y / 256)) +
+           ".png" + query;
+  };
+  // A slow machine may need several requests; each goes on where the one before it ended.
+  auto tile = client_.Get(path(19, "?footprint_m=500&style=grey"));
+  for (int i = 0; i < 20 && tile->status == 503; ++i) tile = client_.Get(path(19, "?footprint_m=500&style=grey"));
+  ASSERT_EQ(tile->status, 200) << tile->body;
+  EXPECT_EQ(tile->get_header_value("Content-Type"), "image/png");
+  const std::vector<std::uint8_t> png(tile->body.begin(), tile->body.end());
+  const cv::Mat picture = cv::imdecode(png, cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(picture.size(), cv::Size(256, 256));
+  EXPECT_EQ(cv::mean(picture)[3], 255.0) << "all of it is on the map";
+  const httplib::Headers known{{"If-None-Match", tile->get_header_value("ETag")}};
+  EXPECT_EQ(client_.Get(path(19, "?footprint_m=500&style=grey"), known)->status, 304);
+  EXPECT_EQ(client_.Get(path(10, "?footprint_m=500"))->status, 204) << "one place does not speak for a province";
+  EXPECT_EQ(client_.Get("/v1/maps/town/localizability/tiles/16/0/0.png")->status, 204);
+  EXPECT_EQ(testing::refusal(client_.Get(path(19, "?footprint_m=3"))), "400 parameter-out-of-range footprint_m");
+}
+
 TEST_F(Service, GivesWindowsAsGeoTiffToo) {
   const auto tiff = client_.Get(window_query(20.0), {{"Accept", "image/tiff"}});
   EXPECT_EQ(tiff->get_header_value("Content-Type"), "image/tiff");

@@ -1,0 +1,106 @@
+#include "server/api/localizability_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "server/api/tile_ground.hpp"
+
+namespace roadfix::api {
+namespace {
+
+constexpr double kFinest = 0.5;    // of the footprint: places nearer to each other see mostly the same
+constexpr double kCoarsest = 4.0;  // of the footprint
+
+double tile_m(const MapView& map, int zoom) {
+  const GridPoint middle{0.5 * (map.extent.min.east_m + map.extent.max.east_m),
+                         0.5 * (map.extent.min.north_m + map.extent.max.north_m)};
+  return kTilePixels * metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
+}
+
+/// The promises of the squares, each asked for once.
+class Squares {
+ public:
+  Squares(const MapView& map, double side_m, const PromiseOf& promise_of)
+      : map_(map), side_m_(side_m), promise_of_(promise_of) {}
+
+  std::optional<double> at(GridPoint point) {
+    if (!map_.extent.contains(point)) return std::nullopt;
+    const Index index{std::lround(point.east_m / side_m_), std::lround(point.north_m / side_m_)};
+    const auto known = known_.find(index);
+    if (known != known_.end()) return known->second;
+    // The middle of a square that the border of the map cuts may lie outside.
+    const GridPoint middle{side_m_ * static_cast<double>(index.first), side_m_ * static_cast<double>(index.second)};
+    return known_[index] = map_.extent.contains(middle) ? promise_of_(middle) : std::nullopt;
+  }
+
+ private:
+  using Index = std::pair<long, long>;
+  const MapView& map_;
+  double side_m_;
+  const PromiseOf& promise_of_;
+  std::map<Index, std::optional<double>> known_;
+};
+
+cv::Vec4b pixel_of(double probability, TileStyle style) {
+  const auto byte = [](double value) { return static_cast<unsigned char>(std::lround(value)); };
+  if (style == TileStyle::kGrey) {
+    const unsigned char grey = byte(255.0 * probability);
+    return {grey, grey, grey, 255};
+  }
+  // Blue, green, red of no fix, ambiguous, fix on the operator's page.
+  constexpr std::array<std::array<double, 3>, 3> kColours{{{130, 139, 242}, {93, 201, 244}, {161, 224, 126}}};
+  const std::size_t below = probability < 0.5 ? 0 : 1;
+  const double share = 2.0 * probability - static_cast<double>(below);
+  const auto blend = [&](std::size_t channel) {
+    return byte((1.0 - share) * kColours[below][channel] + share * kColours[below + 1][channel]);
+  };
+  return {blend(0), blend(1), blend(2), 128};
+}
+
+}  // namespace
+
+std::optional<double> square_m(const MapView& map, int zoom, double footprint_m) {
+  double side_m = kFinest * footprint_m;
+  const double least_m = tile_m(map, zoom) / kSquaresAcross;
+  while (side_m < least_m) side_m *= 2.0;
+  return side_m > kCoarsest * footprint_m ? std::nullopt : std::optional(side_m);
+}
+
+ZoomRange localizability_zooms(const MapView& map, double footprint_m) {
+  ZoomRange zooms;
+  while (zooms.first < kMaxZoom && !square_m(map, zooms.first, footprint_m)) ++zooms.first;
+  zooms.last = zooms.first;
+  while (zooms.last < kMaxZoom && square_m(map, zooms.last, footprint_m) > kFinest * footprint_m) ++zooms.last;
+  return zooms;
+}
+
+std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
+                                                            TileStyle style, const PromiseOf& promise_of) {
+  if (map.extent.empty()) return std::nullopt;
+  const std::optional<double> side_m = square_m(map, tile.z, footprint_m);
+  const PixelBox box = touched_pixels(map, tile);
+  if (!side_m || box.empty()) return std::nullopt;
+  const PixelToGrid ground(map.zone, tile, box);
+  Squares squares(map, *side_m, promise_of);
+  cv::Mat picture(kTilePixels, kTilePixels, CV_8UC4, cv::Scalar::all(0));
+  bool any = false;
+  for (int y = box.top; y < box.bottom; ++y) {
+    auto* const row = picture.ptr<cv::Vec4b>(y);
+    for (int x = box.left; x < box.right; ++x) {
+      const auto probability = squares.at(ground.at(x, y));
+      if (!probability) continue;
+      row[x] = pixel_of(*probability, style);
+      any = true;
+    }
+  }
+  if (!any) return std::nullopt;
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  return png;
+}
+
+}  // namespace roadfix::api

@@ -4,88 +4,19 @@
 #include <cassert>
 #include <cmath>
 #include <mutex>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <span>
 
 #include "core/grid/resample.hpp"
+#include "core/match/correlator.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
 namespace {
 
-/// Correlates one fixed plane of numbers with many small patches. A large plane is cut into tiles that overlap by a
-/// patch: their transforms stay within the cache of a core.
-class Correlator {
- public:
-  /// Patches have at most patch x patch cells.
-  Correlator(const cv::Mat1f& plane, int patch)
-      : size_(side(plane.cols, patch), side(plane.rows, patch)), patch_(patch), plane_size_(plane.size()) {
-    const cv::Size step(size_.width - patch_ + 1, size_.height - patch_ + 1);
-    for (int top = -kLead; top == -kLead || top + patch_ <= plane.rows + kLead; top += step.height) {
-      for (int left = -kLead; left == -kLead || left + patch_ <= plane.cols + kLead; left += step.width) {
-        const cv::Rect tile(left, top, size_.width, size_.height);
-        const cv::Rect seen = tile & cv::Rect(0, 0, plane.cols, plane.rows);
-        cv::Mat1f padded(size_, 0.0F);
-        if (!seen.empty()) plane(seen).copyTo(padded(seen - tile.tl()));
-        cv::Mat1f spectrum;
-        cv::dft(padded, spectrum);
-        tiles_.push_back({tile.tl(), spectrum});
-      }
-    }
-  }
-
-  cv::Mat1f spectrum_of(const cv::Mat1f& patch) const {
-    cv::Mat1f padded(size_, 0.0F);
-    patch.copyTo(padded(cv::Rect(0, 0, patch.cols, patch.rows)));
-    cv::Mat1f spectrum;
-    cv::dft(padded, spectrum, 0, patch.rows);
-    return spectrum;
-  }
-
-  /// Sum over the patch at each place from kLead cells before the plane to as many after it where it stays within that
-  /// frame, else 0; the patch's first cell lies there. Turned by half a turn it is the patch's last cell (counted in
-  /// the turned patch) instead.
-  cv::Mat1f correlate(const cv::Mat1f& patch_spectrum, bool half_turn) const {
-    const cv::Rect places(-kLead, -kLead, plane_size_.width + 2 * kLead, plane_size_.height + 2 * kLead);
-    cv::Mat1f result(places.size(), 0.0F);
-    cv::Mat1f product;
-    cv::Mat1f sums;
-    // Where a tile's cyclic sums do not wrap around.
-    const int first = half_turn ? patch_ - 1 : 0;
-    const cv::Rect whole(first, first, size_.width - patch_ + 1, size_.height - patch_ + 1);
-    for (const Tile& tile : tiles_) {
-      const cv::Rect target = (whole + tile.corner) & places;
-      if (target.empty()) continue;
-      cv::mulSpectrums(tile.spectrum, patch_spectrum, product, 0, !half_turn);
-      cv::dft(product, sums, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
-      sums(target - tile.corner).copyTo(result(target - places.tl()));
-    }
-    return result;
-  }
-
-  static constexpr int kLead = 2;
-
- private:
-  static int side(int cells, int patch) {
-    constexpr int kInCache = 512;
-    const int whole = std::max(cells + 2 * kLead, patch);
-    return cv::getOptimalDFTSize(whole <= kInCache ? whole : std::min(whole, std::max(kInCache, 4 * patch)));
-  }
-
-  struct Tile {
-    cv::Point corner;
-    cv::Mat1f spectrum;
-  };
-  cv::Size size_;
-  int patch_;
-  cv::Size plane_size_;
-  std::vector<Tile> tiles_;
-};
-
 /// Observed cells as three planes: 1 where observed, the value less `mean`, and its square.
 struct Planes {
-  cv::Mat1f observed, value, square;
+  FloatPlane observed, value, square;
 };
 
 double mean_of(const CellArray& cells) {
@@ -100,27 +31,27 @@ double mean_of(const CellArray& cells) {
 }
 
 Planes planes_of(const CellArray& cells, double mean) {
-  Planes planes{cv::Mat1f(cells.rows(), cells.cols(), 0.0F), cv::Mat1f(cells.rows(), cells.cols(), 0.0F),
-                cv::Mat1f(cells.rows(), cells.cols(), 0.0F)};
+  const FloatPlane empty(cells.cols(), cells.rows());
+  Planes planes{empty, empty, empty};
   for (int row = 0; row < cells.rows(); ++row) {
     for (int col = 0; col < cells.cols(); ++col) {
       const Cell cell = cells.at(col, row);
       if (!is_observed(cell)) continue;
       const auto value = static_cast<float>(probability(cell) - mean);
-      planes.observed(row, col) = 1.0F;
-      planes.value(row, col) = value;
-      planes.square(row, col) = value * value;
+      planes.observed.at(col, row) = 1.0F;
+      planes.value.at(col, row) = value;
+      planes.square.at(col, row) = value * value;
     }
   }
   return planes;
 }
 
 /// Sum over blocks of q x q cells, the first block starting `lead` cells before the first cell.
-cv::Mat1f block_sums(const cv::Mat1f& plane, int q, int lead) {
+FloatPlane block_sums(const FloatPlane& plane, int q, int lead) {
   const auto blocks = [&](int cells) { return (cells + lead + q - 1) / q; };
-  cv::Mat1f sums(blocks(plane.rows), blocks(plane.cols), 0.0F);
+  FloatPlane sums(blocks(plane.cols), blocks(plane.rows));
   for (int row = 0; row < plane.rows; ++row) {
-    for (int col = 0; col < plane.cols; ++col) sums((row + lead) / q, (col + lead) / q) += plane(row, col);
+    for (int col = 0; col < plane.cols; ++col) sums.at((col + lead) / q, (row + lead) / q) += plane.at(col, row);
   }
   return sums;
 }
@@ -141,14 +72,14 @@ class Scan {
         q_(std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, 4)) {
     assert(lead_col_ >= reach_ && lead_row_ >= reach_);
     const Planes planes = planes_of(map.cells, mean_of(map.cells));
-    cross_.emplace(planes.value, 2 * reach_ + 1);
+    cross_.emplace(planes.value, FloatPlane(), 2 * reach_ + 1);
     const int block_patch = (2 * reach_ + 1 + q_ - 1) / q_ + 1;
-    observed_.emplace(block_sums(planes.observed, q_, 0), block_patch);
-    value_.emplace(block_sums(planes.value, q_, 0), block_patch);
-    square_.emplace(block_sums(planes.square, q_, 0), block_patch);
-    eligible_ = cv::Mat1b(request.positions.rows, request.positions.cols, std::uint8_t{0});
+    observed_.emplace(block_sums(planes.observed, q_, 0), FloatPlane(), block_patch);
+    values_.emplace(block_sums(planes.value, q_, 0), block_sums(planes.square, q_, 0), block_patch);
+    eligible_.reserve(static_cast<std::size_t>(request.positions.cols) *
+                      static_cast<std::size_t>(request.positions.rows));
     for (int row = 0; row < request.positions.rows; ++row) {
-      for (int col = 0; col < request.positions.cols; ++col) eligible_(row, col) = request.eligible(col, row) ? 1 : 0;
+      for (int col = 0; col < request.positions.cols; ++col) eligible_.push_back(request.eligible(col, row));
     }
   }
 
@@ -173,27 +104,26 @@ class Scan {
   }
 
  private:
-  struct PatchSpectra {
-    cv::Mat1f cross, observed, value, square;
-  };
-
-  /// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them.
-  static constexpr int kSharing = 3;
+  /// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them,
+  /// and a transform.
+  static constexpr int kSharing = 2;
 
   void scan_pairs(std::span<const int> bases) {
     if (deadline_.over()) return;
-    const PatchSpectra middle = spectra_of(bases[bases.size() / 2]);
+    const Planes first = patch_at(bases.front());
+    const Planes last = bases.size() > 1 ? patch_at(bases.back()) : Planes{};
+    const ComplexPlane cross = cross_->spectrum_of(first.value, last.value);
+    const MeanSpectra means = means_of(first);
     for (const bool half_turn : {false, true}) {
       const int turn = half_turn ? request_.bins.count() / 2 : 0;
       const auto wanted = [&](int base) { return std::ranges::binary_search(request_.headings, base + turn); };
       if (std::ranges::none_of(bases, wanted)) continue;
       if (deadline_.over()) return;
-      const Blocks blocks = blocks_of(middle, half_turn);
-      for (const int base : bases) {
-        if (!wanted(base)) continue;
-        if (deadline_.over()) return;
-        collect(scores(base == bases[bases.size() / 2] ? middle.cross : cross_spectrum_of(base), blocks, half_turn),
-                base + turn);
+      const Blocks blocks = blocks_of(means, half_turn);
+      const FloatPlanes sums = cross_->correlate(cross, half_turn);
+      if (wanted(bases.front())) collect(scores(sums.first, blocks, half_turn), bases.front() + turn);
+      if (bases.size() > 1 && wanted(bases.back())) {
+        collect(scores(sums.second, blocks, half_turn), bases.back() + turn);
       }
     }
   }
@@ -207,17 +137,19 @@ class Scan {
     return planes_of(square, feature_mean_);
   }
 
-  cv::Mat1f cross_spectrum_of(int bin) const { return cross_->spectrum_of(patch_at(bin).value); }
+  struct MeanSpectra {
+    ComplexPlane observed_and_value, square, observed;
+  };
 
-  PatchSpectra spectra_of(int bin) const {
-    const Planes planes = patch_at(bin);
-    const auto means = [&](const cv::Mat1f& plane) {
-      cv::Mat1f sums = block_sums(plane, q_, block_lead());
-      sums *= 1.0 / (q_ * q_);
+  MeanSpectra means_of(const Planes& planes) const {
+    const auto means = [&](const FloatPlane& plane) {
+      FloatPlane sums = block_sums(plane, q_, block_lead());
+      for (float& sum : sums.values) sum /= static_cast<float>(q_ * q_);
       return sums;
     };
-    return {cross_->spectrum_of(planes.value), observed_->spectrum_of(means(planes.observed)),
-            observed_->spectrum_of(means(planes.value)), observed_->spectrum_of(means(planes.square))};
+    const FloatPlane observed = means(planes.observed);
+    return {observed_->spectrum_of(observed, means(planes.value)), observed_->spectrum_of(means(planes.square), {}),
+            values_->spectrum_of(observed, {})};
   }
 
   /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
@@ -227,38 +159,35 @@ class Scan {
 
   /// Score = (cross - correction) * gain; both vary slowly and are known per block of positions.
   struct Blocks {
-    cv::Mat1f correction, gain;
+    FloatPlane correction, gain;
     int first = 0;  ///< block whose result lies in the first row and column
   };
 
-  Blocks blocks_of(const PatchSpectra& patch, bool half_turn) const {
-    const cv::Mat1f n = observed_->correlate(patch.observed, half_turn);
-    const cv::Mat1f m = value_->correlate(patch.observed, half_turn);
-    const cv::Mat1f mm = square_->correlate(patch.observed, half_turn);
-    const cv::Mat1f l = observed_->correlate(patch.value, half_turn);
-    const cv::Mat1f ll = observed_->correlate(patch.square, half_turn);
-    Blocks blocks{cv::Mat1f(n.size(), 0.0F), cv::Mat1f(n.size(), 0.0F), half_turn ? -nadir_block() : nadir_block()};
+  Blocks blocks_of(const MeanSpectra& patch, bool half_turn) const {
+    const auto [n, l] = observed_->correlate(patch.observed_and_value, half_turn);
+    const FloatPlane ll = observed_->correlate(patch.square, half_turn).first;
+    const auto [m, mm] = values_->correlate(patch.observed, half_turn);
+    Blocks blocks{FloatPlane(n.cols, n.rows), FloatPlane(n.cols, n.rows), half_turn ? -nadir_block() : nadir_block()};
     const double least = std::max(1.0, request_.min_observed_share * full_cells_);
     for (int row = 0; row < n.rows; ++row) {
       for (int col = 0; col < n.cols; ++col) {
-        const auto cells = static_cast<double>(n(row, col));
+        const auto cells = static_cast<double>(n.at(col, row));
         if (cells < least) continue;
-        const auto m_sum = static_cast<double>(m(row, col));
-        const auto l_sum = static_cast<double>(l(row, col));
-        const double map_spread = static_cast<double>(mm(row, col)) - m_sum * m_sum / cells;
-        const double feature_spread = static_cast<double>(ll(row, col)) - l_sum * l_sum / cells;
+        const auto m_sum = static_cast<double>(m.at(col, row));
+        const auto l_sum = static_cast<double>(l.at(col, row));
+        const double map_spread = static_cast<double>(mm.at(col, row)) - m_sum * m_sum / cells;
+        const double feature_spread = static_cast<double>(ll.at(col, row)) - l_sum * l_sum / cells;
         if (map_spread < kLeastSpread * cells || feature_spread < kLeastSpread * cells) continue;
-        blocks.correction(row, col) = static_cast<float>(m_sum * l_sum / cells);
-        blocks.gain(row, col) = static_cast<float>(std::sqrt(cells / full_cells_ / (map_spread * feature_spread)));
+        blocks.correction.at(col, row) = static_cast<float>(m_sum * l_sum / cells);
+        blocks.gain.at(col, row) = static_cast<float>(std::sqrt(cells / full_cells_ / (map_spread * feature_spread)));
       }
     }
     return blocks;
   }
 
-  cv::Mat1f scores(const cv::Mat1f& spectrum, const Blocks& blocks, bool half_turn) const {
-    const cv::Mat1f cross = cross_->correlate(spectrum, half_turn);
+  FloatPlane scores(const FloatPlane& cross, const Blocks& blocks, bool half_turn) const {
     const GridGeometry& positions = request_.positions;
-    cv::Mat1f result(positions.rows, positions.cols, 0.0F);
+    FloatPlane result(positions.cols, positions.rows);
     // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
     const int shift = half_turn ? reach_ : -reach_;
     // A block result with its nadir block at B stands for the nadir at B * q + half_block, turned around at
@@ -272,16 +201,17 @@ class Scan {
       const Mix down = rows[static_cast<std::size_t>(row)];
       for (std::size_t i = 0; i < gain.size(); ++i) {
         const int col = static_cast<int>(i);
-        correction[i] = down.of(blocks.correction(down.first, col), blocks.correction(down.second, col));
-        gain[i] = down.of(blocks.gain(down.first, col), blocks.gain(down.second, col));
+        correction[i] = down.of(blocks.correction.at(col, down.first), blocks.correction.at(col, down.second));
+        gain[i] = down.of(blocks.gain.at(col, down.first), blocks.gain.at(col, down.second));
       }
-      const float* sums = cross[row + lead_row_ + shift + Correlator::kLead] + lead_col_ + shift + Correlator::kLead;
+      const float* sums =
+          cross.row(row + lead_row_ + shift + Correlator::kLead) + lead_col_ + shift + Correlator::kLead;
       for (int col = 0; col < positions.cols; ++col) {
-        if (eligible_(row, col) == 0) continue;
+        if (!eligible_[index(col, row)]) continue;
         const Mix right = cols[static_cast<std::size_t>(col)];
         const auto left = static_cast<std::size_t>(right.first);
         const auto next = static_cast<std::size_t>(right.second);
-        result(row, col) =
+        result.at(col, row) =
             (sums[col] - right.of(correction[left], correction[next])) * right.of(gain[left], gain[next]);
       }
     }
@@ -309,14 +239,14 @@ class Scan {
   }
 
   /// Local maxima among the eight neighbours, and the spread of all scores.
-  void collect(const cv::Mat1f& scores, int bin) {
+  void collect(const FloatPlane& scores, int bin) {
     std::vector<ScanPose> found;
     double squares = 0.0;
     std::int64_t poses = 0;
     const float floor = current_floor();
     for (int row = 0; row < scores.rows; ++row) {
       for (int col = 0; col < scores.cols; ++col) {
-        const float score = scores(row, col);
+        const float score = scores.at(col, row);
         if (score == 0.0F) continue;  // not eligible, or not enough observed
         squares += static_cast<double>(score) * static_cast<double>(score);
         ++poses;
@@ -335,10 +265,15 @@ class Scan {
     result_.maxima.erase(cut, result_.maxima.end());
   }
 
-  static bool is_peak(const cv::Mat1f& scores, int row, int col) {
+  std::size_t index(int col, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(request_.positions.cols) +
+           static_cast<std::size_t>(col);
+  }
+
+  static bool is_peak(const FloatPlane& scores, int row, int col) {
     for (int r = std::max(0, row - 1); r <= std::min(scores.rows - 1, row + 1); ++r) {
       for (int c = std::max(0, col - 1); c <= std::min(scores.cols - 1, col + 1); ++c) {
-        if (scores(r, c) > scores(row, col)) return false;
+        if (scores.at(c, r) > scores.at(col, row)) return false;
       }
     }
     return true;
@@ -357,9 +292,9 @@ class Scan {
   int lead_row_;
   double full_cells_;
   double feature_mean_;
-  int q_;  ///< cells per block, an edge
-  std::optional<Correlator> cross_, observed_, value_, square_;
-  cv::Mat1b eligible_;
+  int q_;                                                ///< cells per block, an edge
+  std::optional<Correlator> cross_, observed_, values_;  ///< values_: the map's values, and their squares
+  std::vector<bool> eligible_;
   std::mutex mutex_;
   float floor_ = 0.0F;
   std::size_t scanned_ = 0;  ///< headings

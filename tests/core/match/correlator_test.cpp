@@ -1,0 +1,68 @@
+#include "core/match/correlator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace roadfix {
+namespace {
+
+FloatPlane noise(int cols, int rows, std::mt19937_64& random) {
+  std::uniform_real_distribution<float> values(-1.0F, 1.0F);
+  FloatPlane plane(cols, rows);
+  for (float& value : plane.values) value = values(random);
+  return plane;
+}
+
+double at(const FloatPlane& plane, int col, int row) {
+  const bool within = col >= 0 && row >= 0 && col < plane.cols && row < plane.rows;
+  return within ? static_cast<double>(plane.at(col, row)) : 0.0;
+}
+
+/// With the patch's first cell at (col, row), or turned by half a turn its last one.
+double sum_at(const FloatPlane& plane, const FloatPlane& patch, int col, int row, bool half_turn) {
+  const int sign = half_turn ? -1 : 1;
+  double sum = 0.0;
+  for (int r = 0; r < patch.rows; ++r) {
+    for (int c = 0; c < patch.cols; ++c) sum += at(plane, col + sign * c, row + sign * r) * at(patch, c, r);
+  }
+  return sum;
+}
+
+void expect_sums(const FloatPlane& plane, const FloatPlane& patch, int side, bool half_turn, const FloatPlane& sums) {
+  constexpr int kLead = Correlator::kLead;
+  const int before = half_turn ? side - 1 : 0;
+  const int after = half_turn ? 0 : side - 1;
+  for (int row = before - kLead; row < plane.rows + kLead - after; ++row) {
+    for (int col = before - kLead; col < plane.cols + kLead - after; ++col) {
+      ASSERT_NEAR(at(sums, col + kLead, row + kLead), sum_at(plane, patch, col, row, half_turn), 2e-4)
+          << plane.cols << " x " << plane.rows << ", " << side << " at " << col << ", " << row;
+    }
+  }
+}
+
+TEST(Correlator, SumsPairsOfPatchesAndPairsOfPlanesAsPlainLoopsDo) {
+  std::mt19937_64 random(1);
+  // One tile, many tiles, a patch as large as the plane, and larger.
+  const std::vector<std::array<int, 3>> sizes{{20, 30, 5},  {70, 41, 9}, {90, 100, 31},
+                                              {13, 12, 12}, {7, 9, 12},  {300, 11, 11}};
+  for (const auto& [cols, rows, side] : sizes) {
+    const FloatPlane plane = noise(cols, rows, random);
+    const FloatPlane other = noise(cols, rows, random);
+    const FloatPlane patch = noise(side, side, random);
+    const FloatPlane second = noise(side, side - 1, random);
+    const Correlator one(plane, {}, side);
+    const Correlator two(plane, other, side);
+    for (const bool half_turn : {false, true}) {
+      const FloatPlanes patches = one.correlate(one.spectrum_of(patch, second), half_turn);
+      expect_sums(plane, patch, side, half_turn, patches.first);
+      expect_sums(plane, second, side, half_turn, patches.second);
+      const FloatPlanes planes = two.correlate(two.spectrum_of(patch, {}), half_turn);
+      expect_sums(plane, patch, side, half_turn, planes.first);
+      expect_sums(other, patch, side, half_turn, planes.second);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -109,7 +109,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
                         "larger footprint or a narrower prior, or fly on and ask again",
                         decision.probability, confidence);
   } else {
-    decision.reason = "not-above-chance";
+    decision.reason = kNotAboveChanceReason;
     decision.explanation =
         "the best place fits no better than chance would have it among so many: use a larger footprint or a narrower "
         "prior, or the UAV is not over this map";

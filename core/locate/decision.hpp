@@ -27,6 +27,9 @@ struct Decision {
 /// Of a search that its time limit ended: whatever it has, it is no fix.
 inline constexpr const char* kTimeLimitReason = "search-time-limit";
 
+/// Chance explains the best place: the UAV is not over the map, or what it sees looks like everywhere.
+inline constexpr const char* kNotAboveChanceReason = "not-above-chance";
+
 inline constexpr double kModeShare = 0.01;
 
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence);

@@ -44,6 +44,16 @@ bool hopeless(const FeatureMap& features, Fix& fix) {
   return false;
 }
 
+/// One road across the footprint places a frame nowhere: it looks like every other road.
+bool shows_less_than_a_road_across(const FeatureMap& features) {
+  constexpr double kRoadWidthM = 6.0;
+  const double cell_m2 = features.cell_m * features.cell_m;
+  const auto roads = std::ranges::count_if(features.cells.cells(),
+                                           [](Cell cell) { return is_observed(cell) && probability(cell) > 0.5; });
+  const double across_m = std::sqrt(cell_m2 * static_cast<double>(features.cells.observed_count()));
+  return cell_m2 * static_cast<double>(roads) < kRoadWidthM * across_m;
+}
+
 FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight, const Calibration& calibration) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const auto& c = mode.covariance;
@@ -106,6 +116,11 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);
   fix.explanation = std::move(decision.explanation);
+  if (fix.reason == kNotAboveChanceReason && shows_less_than_a_road_across(cells)) {
+    fix.reason = "too-few-roads";
+    fix.explanation =
+        "less road was seen than one across the footprint has: use a larger footprint, or fly on to where roads are";
+  }
   fix.probability = decision.probability;
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {
     fix.modes.push_back(to_geographic(map, found.modes[i], decision.weights[i], calibration));

@@ -110,7 +110,7 @@ TEST_F(Locate, SaysNoFixOverAnotherTown) {
     const GridPose pose = pose_within(view_.extent, 300.0, random_);
     const Fix fix = locate(view_, cut_out(elsewhere, pose, 160, 160, 2.0), {}, {});
     EXPECT_EQ(fix.status, FixStatus::kNoFix);
-    EXPECT_TRUE(fix.reason == "not-above-chance" || fix.reason == "too-few-roads") << fix.reason;
+    EXPECT_EQ(fix.reason, "not-above-chance") << "roads enough, but others";
     EXPECT_LT(fix.probability, 0.9);
   }
 }
@@ -133,6 +133,15 @@ TEST_F(Locate, SaysWhyAFeatureMapCannotTell) {
   EXPECT_EQ(unseen.reason, "footprint-unobserved");
   EXPECT_EQ(unseen.status, FixStatus::kNoFix);
   EXPECT_TRUE(unseen.modes.empty());
+}
+
+TEST_F(Locate, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {
+  CellArray field(160, 160, kNoRoad);
+  for (int row = 60; row < 100; ++row) field.at(80, row) = field.at(81, row) = kRoad;
+  const Fix fix = locate(view_, FeatureMap::centred(field, 2.0), {}, {});
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "too-few-roads");
+  EXPECT_FALSE(fix.modes.empty()) << "it was looked for";
 }
 
 TEST_F(Locate, SaysWhenTheMapHoldsNothingThere) {

@@ -80,8 +80,13 @@ nlohmann::json document(const BenchArguments& arguments, const std::string& dete
                         const std::vector<bench::SetResult>& results) {
   nlohmann::json sets = nlohmann::json::array();
   for (const auto& result : results) sets.push_back(to_json(result));
-  return {{"roadfix", ROADFIX_VERSION}, {"manifest", arguments.manifest}, {"seed", arguments.options.seed},
-          {"cell_m", arguments.cell_m}, {"detector", detector},           {"results", sets}};
+  return {{"roadfix", ROADFIX_VERSION},
+          {"manifest", arguments.manifest},
+          {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m},
+          {"detector", detector},
+          {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
+          {"results", sets}};
 }
 
 void write_text(const std::string& text, const std::string& file) {
@@ -108,6 +113,20 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
   std::filesystem::create_directories(folder);
   write_text(bench::reliability_svg(honesty), folder + "/reliability.svg");
   write_text(bench::answered_svg(results), folder + "/answered.svg");
+  struct Curve {
+    const char* file;
+    double FeatureQuality::*property;
+    const char* name;
+  };
+  for (const Curve& curve : {Curve{"erased", &FeatureQuality::erase, "share of the road cells erased"},
+                             {"invented", &FeatureQuality::invent, "invented road cells, as a share of the true ones"},
+                             {"blocked", &FeatureQuality::block, "share of the footprint not observed"},
+                             {"shifted", &FeatureQuality::shift_m, "shift of map against ground, m (1 sigma per axis)"},
+                             {"scaled", &FeatureQuality::scale, "relative error of the scale (1 sigma)"},
+                             {"tilted", &FeatureQuality::tilt_deg, "tilt, degrees (1 sigma per axis)"}}) {
+    if (const auto svg = bench::degraded_svg(results, curve.property, curve.name))
+      write_text(*svg, fmt::format("{}/{}.svg", folder, curve.file));
+  }
 }
 
 void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
@@ -162,7 +181,8 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
-  command->add_option("--curves", a->curves, "Draw reliability and answered share as SVG into this folder");
+  command->add_option("--curves", a->curves,
+                      "Draw reliability and answered share, over footprint and quality, as SVG into this folder");
   command->add_option("--calibrate", a->calibrate_file,
                       "Learn from the answers how sure they may be, and write it to this file");
   add_calibration_option(*command, a->calibration_file);

@@ -50,6 +50,33 @@ class Plot {
   std::string svg_;
 };
 
+struct Share {
+  int n = 0;
+  int answered = 0;
+  int right = 0;
+};
+
+bool is_on_map(const SetResult& result) { return result.method == "roads" && !result.elsewhere; }
+
+void add(const SetResult& result, Share& share) {
+  for (const Outcome& outcome : result.outcomes) {
+    ++share.n;
+    share.answered += outcome.answer.status == FixStatus::kFix ? 1 : 0;
+    share.right += outcome.error_m && *outcome.error_m <= kFalseFixM ? 1 : 0;
+  }
+}
+
+std::string shares_svg(const std::map<double, Share>& shares, const std::string& across) {
+  const double widest = shares.empty() ? 1.0 : 1.2 * shares.rbegin()->first;
+  Plot plot(widest, across, "answered (blue), best guess right (grey)");
+  for (const auto& [x, share] : shares) {
+    const double n = share.n;
+    plot.point(x + 0.01 * widest, share.right / n, clopper_pearson(share.right, share.n), kGrey);
+    plot.point(x, share.answered / n, clopper_pearson(share.answered, share.n), kBlue);
+  }
+  return plot.finished();
+}
+
 }  // namespace
 
 std::string reliability_svg(const Honesty& honesty) {
@@ -62,29 +89,24 @@ std::string reliability_svg(const Honesty& honesty) {
 }
 
 std::string answered_svg(std::span<const SetResult> results) {
-  struct Share {
-    int n = 0;
-    int answered = 0;
-    int right = 0;
-  };
   std::map<double, Share> shares;
   for (const SetResult& result : results) {
-    if (result.method != "roads" || result.elsewhere || result.footprint_m <= 0.0) continue;
-    Share& share = shares[result.footprint_m];
-    for (const Outcome& outcome : result.outcomes) {
-      ++share.n;
-      share.answered += outcome.answer.status == FixStatus::kFix ? 1 : 0;
-      share.right += outcome.error_m && *outcome.error_m <= kFalseFixM ? 1 : 0;
-    }
+    if (is_on_map(result) && result.footprint_m > 0.0) add(result, shares[result.footprint_m]);
   }
-  const double widest = shares.empty() ? 1.0 : 1.2 * shares.rbegin()->first;
-  Plot plot(widest, "footprint, m", "answered (blue), best guess right (grey)");
-  for (const auto& [side_m, share] : shares) {
-    const double n = share.n;
-    plot.point(side_m + 0.01 * widest, share.right / n, clopper_pearson(share.right, share.n), kGrey);
-    plot.point(side_m, share.answered / n, clopper_pearson(share.answered, share.n), kBlue);
+  return shares_svg(shares, "footprint, m");
+}
+
+std::optional<std::string> degraded_svg(std::span<const SetResult> results, double FeatureQuality::*property,
+                                        const std::string& name) {
+  std::map<double, Share> shares;
+  for (const SetResult& result : results) {
+    if (!is_on_map(result) || !result.quality) continue;
+    FeatureQuality others = *result.quality;
+    others.*property = 0.0;
+    if (others == FeatureQuality{}) add(result, shares[(*result.quality).*property]);
   }
-  return plot.finished();
+  if (shares.size() < 2) return std::nullopt;
+  return shares_svg(shares, name);
 }
 
 }  // namespace roadfix::bench

@@ -26,6 +26,11 @@ json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(*value) : json(nullptr);
 }
 
+json evidence_json(const std::optional<SearchEvidence>& evidence) {
+  if (!evidence) return nullptr;
+  return {{"surprise", evidence->surprise}, {"lead", evidence->lead}, {"gap", evidence->gap}};
+}
+
 json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
@@ -34,6 +39,7 @@ json outcome_json(const Outcome& outcome) {
           {"reason", answer.reason},
           {"answer", answer.best ? pose_json(*answer.best) : json(nullptr)},
           {"probability", answer.probability},
+          {"evidence", evidence_json(answer.evidence)},
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
           {"position_nees", number_or_null(outcome.position_nees)},

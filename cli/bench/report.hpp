@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/bench/query.hpp"
+#include "core/locate/simulate.hpp"
 
 namespace roadfix::bench {
 
@@ -49,8 +50,9 @@ struct SetResult {
   std::string map;
   std::string query_set;  ///< file name of the imagery or frames, or "simulated", and the footprint
   std::vector<Outcome> outcomes;
-  double footprint_m = 0.0;  ///< shorter side, 0 for real frames
-  bool elsewhere = false;    ///< no query shows ground of the map
+  double footprint_m = 0.0;                    ///< shorter side, 0 for real frames
+  bool elsewhere = false;                      ///< no query shows ground of the map
+  std::optional<FeatureQuality> quality = {};  ///< of simulated queries, where it is the same for all of them
 };
 
 /// With the honesty of the set (honesty.hpp).

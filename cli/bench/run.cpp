@@ -45,6 +45,11 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   return outcomes;
 }
 
+std::optional<FeatureQuality> common_quality(const QuerySet& set) {
+  if (set.kind != QuerySet::Kind::kSimulated || set.noise.low != set.noise.high) return std::nullopt;
+  return set.noise.low;
+}
+
 }  // namespace
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
@@ -65,7 +70,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));
         results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, options),
-                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere});
+                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere,
+                           common_quality(set)});
       }
     }
   }

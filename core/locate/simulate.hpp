@@ -17,6 +17,8 @@ struct FeatureQuality {
   double scale = 0.0;     ///< 1 sigma of the relative error of the footprint's size (altitude, focal length)
   double tilt_deg = 0.0;  ///< 1 sigma per axis of a tilt that rectification did not know, seen from as high as the
                           ///< footprint is long; the nadir stays where it is
+
+  friend bool operator==(const FeatureQuality&, const FeatureQuality&) = default;
 };
 
 /// The map under a footprint of cols x rows cells (of the map's size) centred on the pose, in the body frame, with the

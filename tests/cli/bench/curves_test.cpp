@@ -26,5 +26,21 @@ TEST(Curves, LeaveOutQueriesElsewhereAndRealFrames) {
   EXPECT_THAT(answered_svg({}), HasSubstr("</svg>"));
 }
 
+TEST(Curves, OfAPropertyTakeTheSetsThatDifferInNothingElse) {
+  const auto set_of = [](const FeatureQuality& quality) {
+    SetResult set{"roads", "town", "simulated", {Outcome{}}, 400.0, false, quality};
+    set.outcomes[0].error_m = 3.0;
+    return set;
+  };
+  const std::vector<SetResult> results{set_of({}), set_of({.erase = 0.5}), set_of({.erase = 0.25, .invent = 0.5})};
+  const auto erased = degraded_svg(results, &FeatureQuality::erase, "erased");
+  ASSERT_TRUE(erased);
+  EXPECT_THAT(*erased, HasSubstr("cx=\"322.7\" cy=\"376.0\""));  // 0.5 of 0.6, nothing answered
+  EXPECT_THAT(*erased, HasSubstr("cx=\"325.9\" cy=\"56.0\""));   // beside it, all right
+  EXPECT_THAT(*erased, Not(HasSubstr("cx=\"189.3\""))) << "0.25, where roads were invented too";
+  EXPECT_FALSE(degraded_svg(results, &FeatureQuality::invent, "invented")) << "a point makes no curve";
+  EXPECT_FALSE(degraded_svg({}, &FeatureQuality::erase, "erased"));
+}
+
 }  // namespace
 }  // namespace roadfix::bench

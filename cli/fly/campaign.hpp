@@ -1,0 +1,47 @@
+// Many flights, each told to several filters.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "cli/fly/flight.hpp"
+#include "cli/fly/localizer.hpp"
+#include "cli/fly/summary.hpp"
+
+namespace roadfix::fly {
+
+struct FilterRuns {
+  std::string filter;
+  std::vector<Run> runs;
+};
+
+/// Makes the localizer of a flight: by the name of the filter, with that seed.
+using LocalizerFactory = std::function<std::unique_ptr<Localizer>(const std::string& filter, std::uint64_t seed)>;
+
+struct Campaign {
+  FlightPlan plan;
+  GridBox box;  ///< where the vehicle flies
+  std::function<std::unique_ptr<Pilot>()> pilot;
+  const Sensor* sensor = nullptr;
+  LocalizerFactory localizer;
+  std::vector<std::string> filters;
+  int runs = 1;
+  std::uint64_t seed = 1;  ///< of the first flight; the next ones count up
+  int jobs = 1;            ///< flights at a time; results do not depend on it
+  /// Of the first flight, from one thread, filter by filter.
+  std::function<void(const std::string& filter, const Record& record, const Localizer& localizer)> watch;
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  std::stop_token stop;
+};
+
+/// In the order of the filters. Throws what flights and filters throw, and Interrupted "flight-stopped".
+std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone);
+
+/// Filters of the library on one map.
+LocalizerFactory library_localizers(const MapView& map, int particles, int measure_every, const VehicleNoise& vehicle,
+                                    std::stop_token stop);
+
+}  // namespace roadfix::fly

@@ -1,0 +1,170 @@
+#include "cli/fly/film.hpp"
+
+#include <fmt/format.h>
+#include <gif_lib.h>
+
+#include <array>
+#include <cassert>
+#include <fstream>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+// 6 x 7 x 6 shades of red, green and blue.
+constexpr int kReds = 6;
+constexpr int kGreens = 7;
+constexpr int kBlues = 6;
+
+constexpr int kColours = 256;
+
+std::array<GifColorType, kColours> palette() {
+  std::array<GifColorType, kColours> colours{};
+  const auto shade = [](int step, int steps) { return static_cast<GifByteType>(255 * step / (steps - 1)); };
+  for (int i = 0; i < kReds * kGreens * kBlues; ++i) {
+    colours[static_cast<std::size_t>(i)] = {shade(i / (kGreens * kBlues), kReds), shade(i / kBlues % kGreens, kGreens),
+                                            shade(i % kBlues, kBlues)};
+  }
+  return colours;
+}
+
+/// Ordered dithering: still ground stays still from frame to frame.
+int dithered(int value, int steps, int threshold) {
+  constexpr int kThresholds = 16;
+  const int scaled = value * (steps - 1) * kThresholds + 255 * threshold;
+  return std::min(scaled / (255 * kThresholds), steps - 1);
+}
+
+cv::Mat indexed(const cv::Mat& picture) {
+  constexpr std::array<std::array<int, 4>, 4> kBayer{{{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}}};
+  cv::Mat indices(picture.size(), CV_8UC1);
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) {
+      const cv::Vec3b& bgr = picture.at<cv::Vec3b>(y, x);
+      const int threshold = kBayer[static_cast<std::size_t>(y % 4)][static_cast<std::size_t>(x % 4)];
+      const int red = dithered(bgr[2], kReds, threshold);
+      const int green = dithered(bgr[1], kGreens, threshold);
+      const int blue = dithered(bgr[0], kBlues, threshold);
+      indices.at<uchar>(y, x) = static_cast<uchar>((red * kGreens + green) * kBlues + blue);
+    }
+  }
+  return indices;
+}
+
+[[noreturn]] void fail(const std::string& file, int code) {
+  const char* why = GifErrorString(code);
+  throw IoFailure("film-unwritable",
+                  fmt::format("{} cannot be written: {}", file, why != nullptr ? why : "unknown reason"));
+}
+
+/// Closes what it writes; what could not be finished is an error of its own.
+class Writer {
+ public:
+  explicit Writer(const std::string& file) : file_(file), out_(file, std::ios::binary) {
+    int code = E_GIF_ERR_OPEN_FAILED;
+    if (out_) gif_ = EGifOpen(this, &Writer::put, &code);
+    if (gif_ == nullptr) fail(file_, code);
+    EGifSetGifVersion(gif_, true);
+  }
+  ~Writer() {
+    if (gif_ != nullptr) EGifCloseFile(gif_, nullptr);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void start(cv::Size size) {
+    const auto colours = palette();
+    const std::unique_ptr<ColorMapObject, decltype(&GifFreeMapObject)> map(GifMakeMapObject(kColours, colours.data()),
+                                                                           GifFreeMapObject);
+    require(EGifPutScreenDesc(gif_, size.width, size.height, 8, 0, map.get()));
+    constexpr std::array<unsigned char, 3> kForEver{1, 0, 0};
+    require(EGifPutExtensionLeader(gif_, APPLICATION_EXT_FUNC_CODE));
+    require(EGifPutExtensionBlock(gif_, 11, "NETSCAPE2.0"));
+    require(EGifPutExtensionBlock(gif_, kForEver.size(), kForEver.data()));
+    require(EGifPutExtensionTrailer(gif_));
+  }
+
+  /// Only the changed part of a picture is written.
+  void add(const cv::Mat& frame, const cv::Rect& changed, int hundredths) {
+    const GraphicsControlBlock control{DISPOSE_DO_NOT, false, hundredths, NO_TRANSPARENT_COLOR};
+    std::array<GifByteType, 4> bytes{};
+    EGifGCBToExtension(&control, bytes.data());
+    require(EGifPutExtension(gif_, GRAPHICS_EXT_FUNC_CODE, bytes.size(), bytes.data()));
+    require(EGifPutImageDesc(gif_, changed.x, changed.y, changed.width, changed.height, false, nullptr));
+    cv::Mat part = frame(changed).clone();
+    for (int y = 0; y < part.rows; ++y) require(EGifPutLine(gif_, part.ptr(y), part.cols));
+  }
+
+  void finish() {
+    int code = 0;
+    const bool closed = EGifCloseFile(std::exchange(gif_, nullptr), &code) == GIF_OK;
+    out_.close();
+    if (!closed || !out_) fail(file_, closed ? E_GIF_ERR_WRITE_FAILED : code);
+  }
+
+ private:
+  /// A file that giflib opens itself nobody else may read.
+  static int put(GifFileType* gif, const GifByteType* bytes, int count) {
+    auto& out = static_cast<Writer*>(gif->UserData)->out_;
+    out.write(reinterpret_cast<const char*>(bytes), count);
+    return out ? count : 0;
+  }
+
+  void require(int result) const {
+    if (result != GIF_OK) fail(file_, gif_->Error);
+  }
+
+  std::string file_;
+  std::ofstream out_;
+  GifFileType* gif_ = nullptr;
+};
+
+cv::Rect changed_part(const cv::Mat& before, const cv::Mat& frame) {
+  std::vector<cv::Point> places;
+  const cv::Mat different = before != frame;
+  cv::findNonZero(different, places);
+  if (places.empty()) return {0, 0, 1, 1};
+  int left = frame.cols;
+  int top = frame.rows;
+  int right = 0;
+  int bottom = 0;
+  for (const cv::Point& p : places) {
+    left = std::min(left, p.x);
+    right = std::max(right, p.x + 1);
+    top = std::min(top, p.y);
+    bottom = std::max(bottom, p.y + 1);
+  }
+  return {left, top, right - left, bottom - top};
+}
+
+}  // namespace
+
+void Film::add(const cv::Mat& picture) {
+  assert(frames_.empty() || frames_.front().size() == picture.size());
+  frames_.push_back(indexed(picture));
+}
+
+void Film::append_right(const Film& other) {
+  assert(frames_.size() == other.frames_.size());
+  for (std::size_t i = 0; i < frames_.size(); ++i) cv::hconcat(frames_[i], other.frames_[i], frames_[i]);
+}
+
+void Film::write(const std::string& file, int frames_per_second) const {
+  assert(!frames_.empty());
+  constexpr int kLastHundredths = 200;
+  Writer writer(file);
+  writer.start(frames_.front().size());
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const bool last = i + 1 == frames_.size();
+    const cv::Rect all({0, 0}, frames_[i].size());
+    writer.add(frames_[i], i == 0 ? all : changed_part(frames_[i - 1], frames_[i]),
+               last ? kLastHundredths : 100 / frames_per_second);
+  }
+  writer.finish();
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,25 @@
+// An animated GIF: plays in every browser and viewer, and its library comes with GDAL anyway. OpenCV's video writer
+// would bring FFmpeg and GStreamer for a few seconds of film.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace roadfix::fly {
+
+class Film {
+ public:
+  /// CV_8UC3, all of one size. Kept with 256 fixed colours, a byte for each pixel.
+  void add(const cv::Mat& picture);
+  std::size_t size() const { return frames_.size(); }
+  /// Frame i of this film beside frame i of the other; both equally long and high.
+  void append_right(const Film& other);
+  /// Repeats for ever. Throws IoFailure "film-unwritable".
+  void write(const std::string& file, int frames_per_second) const;
+
+ private:
+  std::vector<cv::Mat> frames_;  ///< CV_8UC1, indices of the palette
+};
+
+}  // namespace roadfix::fly

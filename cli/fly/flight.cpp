@@ -1,0 +1,88 @@
+#include "cli/fly/flight.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using bench::Random;
+using bench::stream;
+using bench::uniform;
+
+constexpr int kTries = 10'000;
+
+// Streams of a seed: the flight, and one for the camera of each step.
+constexpr std::uint64_t kMotion = 0;
+constexpr std::uint64_t kCamera = 1;
+
+GridPose first_pose(Pilot& pilot, const Sensor& sensor, Random& random) {
+  for (int i = 0; i < kTries; ++i) {
+    const GridPose pose = pilot.start(random);
+    if (sensor.shows(pose.position)) return pose;
+  }
+  throw InvalidInput("no-place-to-fly",
+                     "no start was found where the vehicle sees ground: check that imagery, map and waypoints overlap");
+}
+
+GridPose jumped(const GridPose& from, double distance_m, const GridBox& box, const Sensor& sensor, Random& random) {
+  for (int i = 0; i < kTries; ++i) {
+    const Angle direction = Angle::degrees(uniform(random, -180.0, 180.0));
+    const GridPoint to{from.position.east_m + distance_m * sin(direction),
+                       from.position.north_m + distance_m * cos(direction)};
+    if (box.contains(to) && sensor.shows(to)) return {to, from.heading};
+  }
+  throw InvalidInput("kidnapping-too-far",
+                     fmt::format("no place {} m away lies in the area: choose a shorter distance", distance_m));
+}
+
+class Sight {
+ public:
+  Sight(const FlightPlan& plan, const Sensor& sensor, std::uint64_t seed) : plan_(plan), sensor_(sensor), seed_(seed) {}
+
+  std::optional<FeatureMap> at(int step, const GridPose& pose) const {
+    Random random = stream(seed_, kCamera, static_cast<std::uint64_t>(step));
+    const bool lost = uniform(random, 0.0, 1.0) < plan_.missing_share;
+    if (lost || step % plan_.frame_every != 0) return std::nullopt;
+    if (plan_.outage && plan_.outage->contains(step)) return std::nullopt;
+    return sensor_.see(pose, random);
+  }
+
+ private:
+  const FlightPlan& plan_;
+  const Sensor& sensor_;
+  std::uint64_t seed_;
+};
+
+}  // namespace
+
+Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,
+           const std::function<void()>& seen) {
+  Random random = stream(seed, kMotion, 0);
+  Vehicle vehicle(first_pose(pilot, sensor, random), plan.handling, plan.odometry, random);
+  const Sight sight(plan, sensor, seed);
+  Flight flight;
+  for (int step = 0; step < plan.steps; ++step) {
+    StepInput input;
+    input.sequence = step;
+    input.time_us = std::llround(1e6 * plan.handling.step_s * (step + 1));
+    if (step > 0) {
+      const std::optional<Angle> turn = pilot.steer(vehicle.pose(), random);
+      if (!turn) break;
+      const Odometry told = vehicle.move(*turn, random);
+      if (plan.tells_odometry) input.odometry = told;
+    }
+    if (plan.kidnapping && plan.kidnapping->step == step) {
+      vehicle.jump_to(jumped(vehicle.pose(), plan.kidnapping->distance_m, box, sensor, random));
+    }
+    input.features = sight.at(step, vehicle.pose());
+    flight.push_back({vehicle.pose(), std::move(input)});
+    seen();
+  }
+  return flight;
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,53 @@
+// One flight: what was true at each step and what the vehicle told of it.
+//
+// A flight knows no filter, so that several filters can be asked about the very same frames.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "cli/fly/pilot.hpp"
+#include "cli/fly/sensor.hpp"
+#include "cli/fly/vehicle.hpp"
+#include "core/locate/tracker.hpp"
+
+namespace roadfix::fly {
+
+/// Steps first <= k < end.
+struct StepRange {
+  int first = 0;
+  int end = 0;
+  bool contains(int step) const { return step >= first && step < end; }
+};
+
+struct Kidnapping {
+  int step = 0;
+  double distance_m = 0.0;  ///< by which the vehicle is somewhere else, unnoticed by its odometry
+};
+
+struct FlightPlan {
+  int steps = 100;  ///< at most; a plan of waypoints may end before
+  Handling handling;
+  OdometryErrors odometry;
+  bool tells_odometry = true;
+  int frame_every = 1;              ///< a frame in every k-th step
+  double missing_share = 0.0;       ///< of the frames, at random
+  std::optional<StepRange> outage;  ///< steps without frames
+  std::optional<Kidnapping> kidnapping;
+};
+
+struct Moment {
+  GridPose truth;
+  StepInput input;
+};
+
+using Flight = std::vector<Moment>;
+
+/// Equal arguments give equal flights; what the steps see does not depend on the other steps. `seen` is called after
+/// each step. Throws InvalidInput "no-place-to-fly", "kidnapping-too-far".
+Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,
+           const std::function<void()>& seen);
+
+}  // namespace roadfix::fly

@@ -1,0 +1,131 @@
+#include "cli/fly/flight_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace roadfix::fly {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kEllipse95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom
+
+const char* word(Measurement measurement) {
+  switch (measurement) {
+    case Measurement::kNone:
+      return "none";
+    case Measurement::kSkipped:
+      return "skipped";
+    case Measurement::kSearched:
+      return "searched";
+    case Measurement::kAccepted:
+      return "accepted";
+    case Measurement::kRejected:
+      return "rejected";
+    case Measurement::kUseless:
+      break;
+  }
+  return "useless";
+}
+
+struct Covariance {
+  double ee = 0.0;
+  double en = 0.0;
+  double nn = 0.0;
+};
+
+Angle axis_of(const Record& record, const UtmZone& zone) {
+  return zone.grid_from_true(record.estimate.clusters.front().ellipse_heading, record.best.position);
+}
+
+Covariance covariance_of(const Record& record, const UtmZone& zone) {
+  const auto& sigma = record.estimate.clusters.front().sigma_m;
+  const Angle axis = axis_of(record, zone);
+  const double s = sin(axis);
+  const double c = cos(axis);
+  const double along = sigma[0] * sigma[0];
+  const double across = sigma[1] * sigma[1];
+  return {along * s * s + across * c * c, (along - across) * s * c, along * c * c + across * s * s};
+}
+
+json place(GridPoint point, const UtmZone& zone) {
+  const LatLon at = zone.unproject(point);
+  return {at.lon_deg, at.lat_deg};
+}
+
+json ellipse(const Record& record, const UtmZone& zone) {
+  constexpr int kCorners = 36;
+  const auto& sigma = record.estimate.clusters.front().sigma_m;
+  const Angle axis = axis_of(record, zone);
+  json ring = json::array();
+  for (int i = 0; i <= kCorners; ++i) {
+    // Against the clock, as GeoJSON wants its outer rings.
+    const double t = -2.0 * std::numbers::pi * (i % kCorners) / kCorners;
+    const double along = kEllipse95 * sigma[0] * std::cos(t);
+    const double across = kEllipse95 * sigma[1] * std::sin(t);
+    ring.push_back(place({record.best.position.east_m + along * sin(axis) + across * cos(axis),
+                          record.best.position.north_m + along * cos(axis) - across * sin(axis)},
+                         zone));
+  }
+  return {{"type", "Polygon"}, {"coordinates", json::array({ring})}};
+}
+
+json feature(json geometry, json properties) {
+  return {{"type", "Feature"}, {"geometry", std::move(geometry)}, {"properties", std::move(properties)}};
+}
+
+json line(const json& places, const std::string& what, const std::string& filter, const Run& run) {
+  return feature({{"type", "LineString"}, {"coordinates", places}},
+                 {{"what", what}, {"filter", filter}, {"seed", run.seed}});
+}
+
+}  // namespace
+
+std::string csv_header() {
+  return "seed,filter,step,time_s,true_lat,true_lon,true_heading_deg,lat,lon,heading_deg,error_m,heading_error_deg,"
+         "weight,converged,sigma_major_m,sigma_minor_m,ellipse_heading_deg,heading_sigma_deg,cov_ee_m2,cov_en_m2,"
+         "cov_nn_m2,clusters,particles,measurement,doubt,resets,cpu_ms\n";
+}
+
+std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& zone) {
+  std::string lines;
+  for (const Record& r : run.records) {
+    const TrackCluster& best = r.estimate.clusters.front();
+    const LatLon truth = zone.unproject(r.truth.position);
+    const Covariance covariance = covariance_of(r, zone);
+    lines += fmt::format(
+        "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{:.3f},{:.3f},{:.2f},{:.3f},"
+        "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.3f}\n",
+        run.seed, filter, r.sequence, r.time_s, truth.lat_deg, truth.lon_deg,
+        zone.true_from_grid(r.truth.heading, r.truth.position).compass_degrees(), best.pose.position.lat_deg,
+        best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
+        r.estimate.converged ? 1 : 0, best.sigma_m[0], best.sigma_m[1], best.ellipse_heading.degrees(),
+        best.heading_sigma.degrees(), covariance.ee, covariance.en, covariance.nn, r.estimate.cluster_count,
+        r.estimate.particles, word(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, r.cpu_ms);
+  }
+  return lines;
+}
+
+json geojson_features(const std::string& filter, const Run& run, const UtmZone& zone) {
+  json features = json::array();
+  json truth = json::array();
+  json claimed = json::array();
+  for (const Record& record : run.records) {
+    truth.push_back(place(record.truth.position, zone));
+    if (!record.estimate.converged) continue;
+    claimed.push_back(place(record.best.position, zone));
+    features.push_back(feature(ellipse(record, zone), {{"what", "ellipse95"},
+                                                       {"filter", filter},
+                                                       {"seed", run.seed},
+                                                       {"step", record.sequence},
+                                                       {"error_m", record.error_m}}));
+  }
+  if (truth.size() > 1) features.push_back(line(truth, "truth", filter, run));
+  if (claimed.size() > 1) features.push_back(line(claimed, "estimate", filter, run));
+  return features;
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,100 @@
+#include "cli/fly/localizer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+class LibraryLocalizer : public Localizer {
+ public:
+  LibraryLocalizer(const Tracker& tracker, std::stop_token stop) : tracker_(tracker) { limits_.stop = std::move(stop); }
+
+  TrackEstimate advance(const StepInput& step) override {
+    StepResult result = tracker_.advance(state_, step, limits_);
+    state_ = std::move(result.state);
+    return std::move(result.estimate);
+  }
+
+  std::vector<GeoPose> particles(std::size_t count) const override { return tracker_.particles(state_, count); }
+
+ private:
+  const Tracker& tracker_;
+  StepLimits limits_;
+  TrackerState state_;
+};
+
+/// Of this thread: wall-clock time says little on a machine that others use too.
+double cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+double nees_of(const TrackCluster& cluster, GridPoint error, Angle grid_axis) {
+  const double along = error.east_m * sin(grid_axis) + error.north_m * cos(grid_axis);
+  const double across = error.east_m * cos(grid_axis) - error.north_m * sin(grid_axis);
+  const auto squared = [](double value, double sigma) { return value * value / std::max(sigma * sigma, 1e-6); };
+  return squared(along, cluster.sigma_m[0]) + squared(across, cluster.sigma_m[1]);
+}
+
+Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone) {
+  Record record;
+  record.sequence = moment.input.sequence;
+  record.time_s = 1e-6 * static_cast<double>(moment.input.time_us);
+  record.truth = moment.truth;
+  record.saw = moment.input.features.has_value();
+  record.estimate = std::move(estimate);
+  const TrackCluster& best = record.estimate.clusters.front();
+  const GridPoint at = zone.project(best.pose.position);
+  record.best = {at, zone.grid_from_true(best.pose.heading, at)};
+  record.error_m = distance_m(at, moment.truth.position);
+  record.heading_error_deg = angular_distance(record.best.heading, moment.truth.heading).degrees();
+  record.nees = nees_of(best, {moment.truth.position.east_m - at.east_m, moment.truth.position.north_m - at.north_m},
+                        zone.grid_from_true(best.ellipse_heading, at));
+  return record;
+}
+
+}  // namespace
+
+std::unique_ptr<Localizer> make_localizer(const Tracker& tracker, std::stop_token stop) {
+  return std::make_unique<LibraryLocalizer>(tracker, std::move(stop));
+}
+
+TrackSettings filter_named(const std::string& name, int particles) {
+  TrackSettings settings = TrackSettings::paper(particles);
+  if (name == "paper") return settings;
+  settings.evidence = {};
+  if (name == "likelihood") return settings;
+  settings.filter = {};
+  settings.filter.max_particles = particles;
+  settings.filter.min_particles = std::min(settings.filter.min_particles, particles);
+  settings.filter.adapts_count = false;
+  if (name == "injection") return settings;
+  settings.start = TrackStart::kSearch;
+  settings.recovers = true;
+  if (name == "search") return settings;
+  settings.filter.adapts_count = true;
+  if (name == "default") return settings;
+  throw InvalidInput("filter-unknown", fmt::format("no filter is called '{}'; there are {}", name, kFilterNames));
+}
+
+std::vector<Record> localize(const Flight& flight, Localizer& localizer, const UtmZone& zone, const Watcher& watch) {
+  std::vector<Record> records;
+  for (const Moment& moment : flight) {
+    const double before = cpu_ms();
+    TrackEstimate estimate = localizer.advance(moment.input);
+    const double spent = cpu_ms() - before;
+    records.push_back(judged(moment, std::move(estimate), zone));
+    records.back().cpu_ms = spent;
+    watch(records.back(), localizer);
+  }
+  return records;
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,49 @@
+// Who is told what the vehicle tells, and answers where it is: the library, or a service.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/fly/flight.hpp"
+#include "core/locate/tracker.hpp"
+
+namespace roadfix::fly {
+
+class Localizer {
+ public:
+  virtual ~Localizer() = default;
+  virtual TrackEstimate advance(const StepInput& step) = 0;
+  /// Of the belief after the last step.
+  virtual std::vector<GeoPose> particles(std::size_t count) const = 0;
+};
+
+/// The tracker of the library, which must outlive the localizer.
+std::unique_ptr<Localizer> make_localizer(const Tracker& tracker, std::stop_token stop);
+
+/// From the paper's filter to the default, one improvement after the other.
+inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default";
+
+/// Throws InvalidInput "filter-unknown". At most `particles` of them.
+TrackSettings filter_named(const std::string& name, int particles);
+
+/// One step with its truth.
+struct Record {
+  std::int64_t sequence = 0;
+  double time_s = 0.0;
+  GridPose truth;
+  bool saw = false;  ///< a frame was there
+  TrackEstimate estimate;
+  GridPose best;  ///< of the heaviest cluster
+  double error_m = 0.0;
+  double heading_error_deg = 0.0;
+  double nees = 0.0;    ///< squared error of the position in units of the stated ellipse
+  double cpu_ms = 0.0;  ///< of the filter's thread, without detection
+};
+
+/// Called after each step.
+using Watcher = std::function<void(const Record& record, const Localizer& localizer)>;
+
+std::vector<Record> localize(const Flight& flight, Localizer& localizer, const UtmZone& zone, const Watcher& watch);
+
+}  // namespace roadfix::fly

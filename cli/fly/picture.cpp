@@ -1,0 +1,161 @@
+#include "cli/fly/picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <opencv2/imgproc.hpp>
+
+namespace roadfix::fly {
+namespace {
+
+const cv::Scalar kOrange(0, 140, 255);
+const cv::Scalar kGreen(60, 220, 60);
+const cv::Scalar kRed(40, 40, 255);
+const cv::Scalar kBlue(255, 160, 60);
+const cv::Scalar kBlack(0, 0, 0);
+const cv::Scalar kWhite(255, 255, 255);
+constexpr int kShift = 4;  // fractional bits of OpenCV's drawing coordinates
+
+cv::Point fine(cv::Point2d p) {
+  const double scale = 1 << kShift;
+  return {static_cast<int>(std::lround(p.x * scale)), static_cast<int>(std::lround(p.y * scale))};
+}
+
+/// Dark outlines keep colours visible on any ground.
+template <typename Draw>
+void outlined(const cv::Scalar& colour, int thickness, Draw draw) {
+  draw(kBlack, thickness + 2);
+  draw(colour, thickness);
+}
+
+void draw_path(cv::Mat& picture, const std::vector<cv::Point2d>& points, bool closed, const cv::Scalar& colour,
+               int thickness) {
+  std::vector<cv::Point> line;
+  line.reserve(points.size());
+  for (const cv::Point2d& p : points) line.push_back(fine(p));
+  outlined(colour, thickness,
+           [&](const cv::Scalar& c, int t) { cv::polylines(picture, line, closed, c, t, cv::LINE_AA, kShift); });
+}
+
+void draw_pose(cv::Mat& picture, const Backdrop& backdrop, const GridPose& pose, const cv::Scalar& colour,
+               double length_px) {
+  const cv::Point2d from = backdrop.at(pose.position);
+  const cv::Point2d to = from + length_px * cv::Point2d(sin(pose.heading), -cos(pose.heading));
+  outlined(colour, 2, [&](const cv::Scalar& c, int t) {
+    cv::arrowedLine(picture, from, to, c, t, cv::LINE_AA, 0, 0.35);
+    cv::circle(picture, from, 3 + (t > 2 ? 1 : 0), c, cv::FILLED, cv::LINE_AA);
+  });
+}
+
+void draw_estimate(cv::Mat& picture, const Backdrop& backdrop, const UtmZone& zone, const Record& record) {
+  constexpr double kEllipse95 = 2.4477;
+  const TrackCluster& best = record.estimate.clusters.front();
+  const cv::Point2d at = backdrop.at(record.best.position);
+  const double radius = std::max(best.radius95_m / backdrop.m_per_px, 3.0);
+  outlined(kBlue, 1, [&](const cv::Scalar& c, int t) {
+    cv::circle(picture, fine(at), fine({radius, 0}).x, c, t, cv::LINE_AA, kShift);
+  });
+  const double axis_deg = zone.grid_from_true(best.ellipse_heading, record.best.position).degrees();
+  const cv::Size2d half(std::max(kEllipse95 * best.sigma_m[0] / backdrop.m_per_px, 2.0),
+                        std::max(kEllipse95 * best.sigma_m[1] / backdrop.m_per_px, 2.0));
+  outlined(kRed, 1, [&](const cv::Scalar& c, int t) {
+    // OpenCV turns clockwise from the x axis, headings count from north.
+    cv::ellipse(picture, fine(at), cv::Size(fine({half.width, half.height})), axis_deg - 90.0, 0.0, 360.0, c, t,
+                cv::LINE_AA, kShift);
+  });
+  draw_pose(picture, backdrop, record.best, kRed, 18.0);
+}
+
+void draw_caption(cv::Mat& picture, const std::string& caption) {
+  constexpr int kHeight = 22;
+  cv::rectangle(picture, {0, 0, picture.cols, kHeight}, kBlack, cv::FILLED);
+  cv::putText(picture, caption, {6, kHeight - 7}, cv::FONT_HERSHEY_SIMPLEX, 0.42, kWhite, 1, cv::LINE_AA);
+}
+
+/// Cells of the map, coarse enough for the picture.
+RoadGrid overview(const MapView& map, double m_per_px) {
+  double cell_m = map.cell_m;
+  while (2.0 * cell_m <= m_per_px) cell_m *= 2.0;
+  return map.read(GridGeometry::covering(map.extent, cell_m));
+}
+
+/// The road probability that is drawn darkest: maps of detectors seldom reach 1.
+double darkest_of(const RoadGrid& grid) {
+  constexpr double kShare = 0.98;
+  std::vector<Cell> seen;
+  std::ranges::copy_if(grid.cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
+  if (seen.empty()) return 1.0;
+  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
+  std::ranges::nth_element(seen, at);
+  return probability(*at);
+}
+
+cv::Mat shades(const RoadGrid& grid) {
+  constexpr double kGround = 235.0;
+  const double darkest = darkest_of(grid);
+  cv::Mat grey(grid.cells.rows(), grid.cells.cols(), CV_8UC1);
+  for (int row = 0; row < grey.rows; ++row) {
+    for (int col = 0; col < grey.cols; ++col) {
+      const Cell cell = grid.cells.at(col, row);
+      grey.at<uchar>(row, col) =
+          is_observed(cell)
+              ? cv::saturate_cast<uchar>(kGround * (1.0 - 0.8 * std::min(1.0, probability(cell) / darkest)))
+              : uchar{160};
+    }
+  }
+  return grey;
+}
+
+void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
+  const double scale = backdrop.m_per_px / imagery.image.gsd_m;
+  const double x = (backdrop.box.min.east_m - imagery.north_west.east_m) / imagery.image.gsd_m;
+  const double y = (imagery.north_west.north_m - backdrop.box.max.north_m) / imagery.image.gsd_m;
+  const cv::Matx23d source_from_target(scale, 0.0, x + 0.5 * scale - 0.5, 0.0, scale, y + 0.5 * scale - 0.5);
+  cv::Mat colour = imagery.image.pixels;
+  if (colour.channels() == 1) cv::cvtColor(colour, colour, cv::COLOR_GRAY2BGR);
+  if (scale > 1.0) cv::blur(colour, colour, cv::Size(1 + static_cast<int>(scale), 1 + static_cast<int>(scale)));
+  cv::Mat shown;
+  cv::Mat observed;
+  const int flags = cv::INTER_LINEAR | cv::WARP_INVERSE_MAP;
+  cv::warpAffine(colour, shown, source_from_target, backdrop.pixels.size(), flags);
+  cv::warpAffine(imagery.image.observed, observed, source_from_target, backdrop.pixels.size(),
+                 cv::INTER_NEAREST | cv::WARP_INVERSE_MAP);
+  shown.copyTo(backdrop.pixels, observed);
+}
+
+}  // namespace
+
+Backdrop backdrop_of(const MapView& map, const Orthoimage* imagery, int longest_px) {
+  Backdrop backdrop;
+  backdrop.m_per_px = std::max(map.extent.width_m(), map.extent.height_m()) / longest_px;
+  const RoadGrid grid = overview(map, backdrop.m_per_px);
+  backdrop.box = grid.geometry.box();
+  const cv::Size size(std::max(1, static_cast<int>(backdrop.box.width_m() / backdrop.m_per_px)),
+                      std::max(1, static_cast<int>(backdrop.box.height_m() / backdrop.m_per_px)));
+  cv::Mat grey;
+  cv::resize(shades(grid), grey, size, 0, 0, cv::INTER_AREA);
+  cv::cvtColor(grey, backdrop.pixels, cv::COLOR_GRAY2BGR);
+  if (imagery != nullptr) lay_imagery(backdrop, *imagery);
+  return backdrop;
+}
+
+cv::Mat drawn(const Backdrop& backdrop, const UtmZone& zone, const Scene& scene) {
+  cv::Mat picture = backdrop.pixels.clone();
+  const auto pixels = [&](const auto& points) {
+    std::vector<cv::Point2d> result;
+    for (const GridPoint& point : points) result.push_back(backdrop.at(point));
+    return result;
+  };
+  for (const GridPose& particle : scene.particles) {
+    const cv::Point2d at = backdrop.at(particle.position);
+    cv::circle(picture, fine(at), 24, kOrange, cv::FILLED, cv::LINE_AA, kShift);
+  }
+  draw_path(picture, pixels(scene.path), false, kGreen, 1);
+  draw_path(picture, pixels(corners(scene.footprint, scene.record->truth)), true, kGreen, 1);
+  draw_pose(picture, backdrop, scene.record->truth, kGreen, 30.0);
+  draw_estimate(picture, backdrop, zone, *scene.record);
+  draw_caption(picture, scene.caption);
+  return picture;
+}
+
+}  // namespace roadfix::fly

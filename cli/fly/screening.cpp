@@ -1,0 +1,85 @@
+#include "cli/fly/screening.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+constexpr std::size_t kParticles = 3000;
+
+std::string caption_of(const std::string& filter, const Record& record) {
+  return fmt::format("step {}   {}   error {:.0f} m   {}   {} particles, {} clusters", record.sequence, filter,
+                     record.error_m, record.estimate.converged ? "converged" : "searching", record.estimate.particles,
+                     record.estimate.cluster_count);
+}
+
+}  // namespace
+
+Screening::Screening(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
+                     ScreeningOptions options)
+    : map_(map), footprint_(footprint), options_(std::move(options)) {
+  if (options_.folder.empty() && options_.film.empty()) return;
+  if (options_.steps.empty()) options_.steps = {0, 1, 5, 20, 80};
+  backdrop_ = backdrop_of(map, imagery, options_.longest_px);
+  if (options_.folder.empty()) return;
+  std::error_code failed;
+  std::filesystem::create_directories(options_.folder, failed);
+  if (failed) {
+    throw IoFailure("picture-unwritable",
+                    fmt::format("the folder {} cannot be made: {}", options_.folder, failed.message()));
+  }
+}
+
+void Screening::show(const std::string& filter, const Record& record, const Localizer& localizer) {
+  if (backdrop_.pixels.empty()) return;
+  Reel& reel = reel_of(filter);
+  reel.path.push_back(record.truth.position);
+  Scene scene{caption_of(filter, record), &record, reel.path, {}, footprint_};
+  for (const GeoPose& pose : localizer.particles(kParticles)) {
+    const GridPoint at = map_.zone.project(pose.position);
+    scene.particles.push_back({at, map_.zone.grid_from_true(pose.heading, at)});
+  }
+  reel.last = drawn(backdrop_, map_.zone, scene);
+  reel.last_step = record.sequence;
+  if (!options_.film.empty()) reel.film.add(reel.last);
+  if (chosen(record.sequence)) write(reel, reel.last, record.sequence);
+}
+
+void Screening::finish() {
+  if (reels_.empty()) return;
+  for (const Reel& reel : reels_) {
+    if (!chosen(reel.last_step)) write(reel, reel.last, reel.last_step);
+  }
+  if (options_.film.empty()) return;
+  Film& film = reels_.front().film;
+  for (std::size_t i = 1; i < reels_.size(); ++i) film.append_right(reels_[i].film);
+  film.write(options_.film, options_.frames_per_second);
+}
+
+Screening::Reel& Screening::reel_of(const std::string& filter) {
+  const auto known = std::ranges::find(reels_, filter, &Reel::filter);
+  if (known != reels_.end()) return *known;
+  reels_.push_back({filter, {}, {}, {}, 0});
+  return reels_.back();
+}
+
+bool Screening::chosen(std::int64_t step) const {
+  return std::ranges::find(options_.steps, static_cast<int>(step)) != options_.steps.end();
+}
+
+void Screening::write(const Reel& reel, const cv::Mat& picture, std::int64_t step) const {
+  if (options_.folder.empty()) return;
+  const std::string file = fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step);
+  if (!cv::imwrite(file, picture)) {
+    throw IoFailure("picture-unwritable", fmt::format("{} cannot be written", file));
+  }
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,92 @@
+#include "cli/fly/sensor.hpp"
+
+#include <cmath>
+
+#include "cli/fly/vehicle.hpp"
+#include "core/detect/frame.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+class ImagingSensor : public Sensor {
+ public:
+  ImagingSensor(const Orthoimage& imagery, const RoadDetector& detector, const Footprint& footprint,
+                const CameraErrors& errors, double cell_m)
+      : imagery_(imagery), detector_(detector), footprint_(footprint), errors_(errors), cell_m_(cell_m) {}
+
+  FeatureMap see(const GridPose& pose, bench::Random& random) const override {
+    // A small tilt moves what is seen; that it also stretches it by a share of that is left out.
+    const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
+    const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
+    const double scale = std::max(0.5, 1.0 + errors_.altitude * normal(random));
+    const GridPose seen{{pose.position.east_m + forward * sin(pose.heading) + right * cos(pose.heading),
+                         pose.position.north_m + forward * cos(pose.heading) - right * sin(pose.heading)},
+                        pose.heading};
+    const double gsd = imagery_.image.gsd_m;
+    const Footprint covered{scale * footprint_.width_m, scale * footprint_.height_m};
+    GroundImage frame = cut_out(around(seen, covered), seen, covered, scale * gsd);
+    frame.gsd_m = gsd;
+    return detect_features(detector_, rectified(std::move(frame)), cell_m_, random());
+  }
+
+  bool shows(GridPoint point) const override { return sees(imagery_, point); }
+
+ private:
+  /// The part of the imagery that a cut can touch: what is blurred for it should not be the whole city.
+  Orthoimage around(const GridPose& pose, const Footprint& covered) const {
+    const GroundImage& all = imagery_.image;
+    const double reach = std::hypot(covered.width_m, covered.height_m) / 2.0 + 4.0 * all.gsd_m;
+    const auto pixel = [&](double metres) { return static_cast<int>(std::floor(metres / all.gsd_m)); };
+    const int left = pixel(pose.position.east_m - reach - imagery_.north_west.east_m);
+    const int top = pixel(imagery_.north_west.north_m - pose.position.north_m - reach);
+    const int side = pixel(2.0 * reach) + 2;
+    const cv::Rect part = cv::Rect(left, top, side, side) & cv::Rect({0, 0}, all.pixels.size());
+    if (part.empty()) return imagery_;
+    return {{all.pixels(part), all.observed(part), all.gsd_m},
+            {imagery_.north_west.east_m + part.x * all.gsd_m, imagery_.north_west.north_m - part.y * all.gsd_m}};
+  }
+
+  const Orthoimage& imagery_;
+  const RoadDetector& detector_;
+  Footprint footprint_;
+  CameraErrors errors_;
+  double cell_m_;
+};
+
+class SimulatedSensor : public Sensor {
+ public:
+  SimulatedSensor(const MapView& map, const Footprint& footprint, const FeatureQuality& quality)
+      : ground_(map.read(GridGeometry::covering(map.extent, map.cell_m))),
+        cols_(static_cast<int>(std::lround(footprint.width_m / map.cell_m))),
+        rows_(static_cast<int>(std::lround(footprint.height_m / map.cell_m))),
+        quality_(quality) {}
+
+  FeatureMap see(const GridPose& pose, bench::Random& random) const override {
+    return simulate_features(ground_, pose, cols_, rows_, quality_, random);
+  }
+
+  bool shows(GridPoint point) const override {
+    const auto at = ground_.geometry.position_of(point);
+    return is_observed(ground_.cells.get(static_cast<int>(std::floor(at.col)), static_cast<int>(std::floor(at.row))));
+  }
+
+ private:
+  RoadGrid ground_;
+  int cols_;
+  int rows_;
+  FeatureQuality quality_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_imaging_sensor(const Orthoimage& imagery, const RoadDetector& detector,
+                                            const Footprint& footprint, const CameraErrors& errors, double cell_m) {
+  return std::make_unique<ImagingSensor>(imagery, detector, footprint, errors, cell_m);
+}
+
+std::unique_ptr<Sensor> make_simulated_sensor(const MapView& map, const Footprint& footprint,
+                                              const FeatureQuality& quality) {
+  return std::make_unique<SimulatedSensor>(map, footprint, quality);
+}
+
+}  // namespace roadfix::fly

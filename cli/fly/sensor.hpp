@@ -1,0 +1,40 @@
+// What the vehicle sees of the ground below it, as a feature map in the body frame.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "cli/bench/random.hpp"
+#include "core/detect/orthoimage.hpp"
+#include "core/detect/road_detector.hpp"
+#include "core/grid/feature_map.hpp"
+#include "core/locate/map_view.hpp"
+#include "core/locate/simulate.hpp"
+
+namespace roadfix::fly {
+
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /// Safe to call from several threads with generators of their own.
+  virtual FeatureMap see(const GridPose& pose, bench::Random& random) const = 0;
+  /// Whether the middle of the frame would show ground.
+  virtual bool shows(GridPoint point) const = 0;
+};
+
+/// How wrong the frame's rectification is, 1 sigma in every frame.
+struct CameraErrors {
+  Angle attitude = Angle::degrees(1.0);  ///< roll and pitch that were not known
+  double altitude = 0.02;                ///< relative
+  double agl_m = 300.0;                  ///< by which attitude becomes a shift on the ground
+};
+
+/// Frames cut out of imagery and given to the detector. Both must outlive the sensor.
+std::unique_ptr<Sensor> make_imaging_sensor(const Orthoimage& imagery, const RoadDetector& detector,
+                                            const Footprint& footprint, const CameraErrors& errors, double cell_m);
+
+/// Feature maps of stated quality cut out of the map itself.
+std::unique_ptr<Sensor> make_simulated_sensor(const MapView& map, const Footprint& footprint,
+                                              const FeatureQuality& quality);
+
+}  // namespace roadfix::fly

@@ -1,0 +1,40 @@
+// The vehicle's true motion, by equation (4), and what its odometry says of it.
+#pragma once
+
+#include "cli/bench/random.hpp"
+#include "cli/fly/pilot.hpp"
+#include "core/filter/motion.hpp"
+
+namespace roadfix::fly {
+
+/// 1 sigma each. The errors of the first two are drawn in every step, the others once for the flight.
+struct OdometryErrors {
+  double share = 0.03;                      ///< of the distance, per axis
+  Angle turn = Angle::degrees(0.3);         ///< of a step's turn
+  double scale = 0.02;                      ///< of all distances: altitude or calibration is off
+  Angle turn_drift = Angle::degrees(0.05);  ///< per second
+};
+
+class Vehicle {
+ public:
+  Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random);
+
+  const GridPose& pose() const { return pose_; }
+  /// Somewhere else without its odometry noticing.
+  void jump_to(const GridPose& pose) { pose_ = pose; }
+
+  /// Follows an arc with this turn for one step; returns what the odometry says.
+  Odometry move(Angle turn, bench::Random& random);
+
+ private:
+  GridPose pose_;
+  Handling handling_;
+  OdometryErrors errors_;
+  double scale_ = 1.0;
+  Angle turn_drift_;
+};
+
+/// Standard normal, the same on every platform.
+double normal(bench::Random& random);
+
+}  // namespace roadfix::fly

@@ -1,0 +1,117 @@
+// Flights over an invented town, followed by the library, with pictures and a film.
+#include "cli/fly/campaign.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+
+#include "cli/fly/screening.hpp"
+#include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
+#include "tests/support/map_view.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using testing::code_of;
+
+class Campaigns : public ::testing::Test {
+ protected:
+  Campaigns() {
+    campaign.plan.steps = 12;
+    campaign.box = {{600'450.0, 6'399'450.0}, {600'750.0, 6'399'850.0}};
+    campaign.pilot = [this] { return make_random_pilot(campaign.box, campaign.plan.handling); };
+    campaign.sensor = sensor.get();
+    campaign.localizer = library_localizers(map, 500, 1, {}, {});
+    campaign.filters = {"default", "paper"};
+    campaign.runs = 2;
+    campaign.watch = [](const std::string&, const Record&, const Localizer&) {};
+    campaign.progress = [](std::int64_t, std::int64_t) {};
+  }
+
+  RoadGrid town = testing::street_map(41, {2.0, {300'100, -3'200'050}, 400, 400});
+  MapView map = testing::view_of(town);
+  std::unique_ptr<Sensor> sensor = make_simulated_sensor(map, {300.0, 300.0}, {0.1, 0.1, 0.0, 1.0, 0.0, 0.0});
+  Campaign campaign;
+};
+
+TEST_F(Campaigns, GiveTheSameFlightsToAllFiltersWhateverTheNumberOfJobs) {
+  const auto results = run(campaign, map.zone);
+  campaign.jobs = 3;
+  const auto again = run(campaign, map.zone);
+  ASSERT_EQ(results.size(), 2u);
+  for (std::size_t f = 0; f < 2; ++f) {
+    EXPECT_EQ(results[f].filter, campaign.filters[f]);
+    ASSERT_EQ(results[f].runs.size(), 2u);
+    for (std::size_t r = 0; r < 2; ++r) {
+      ASSERT_EQ(results[f].runs[r].records.size(), 12u);
+      for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(results[f].runs[r].records[i].truth.position, results[0].runs[r].records[i].truth.position);
+        EXPECT_EQ(results[f].runs[r].records[i].error_m, again[f].runs[r].records[i].error_m);
+      }
+    }
+  }
+}
+
+TEST_F(Campaigns, TheDefaultFilterFollowsAVehicleOverGoodFeatureMaps) {
+  campaign.filters = {"default"};
+  const auto results = run(campaign, map.zone);
+  for (const fly::Run& flight : results[0].runs) EXPECT_LT(flight.records.back().error_m, 25.0);
+}
+
+TEST_F(Campaigns, StopWhenTheyAreAskedTo) {
+  std::stop_source stop;
+  campaign.stop = stop.get_token();
+  stop.request_stop();
+  EXPECT_EQ(code_of([&] { run(campaign, map.zone); }), "flight-stopped");
+}
+
+TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
+  const testing::TemporaryFolder folder;
+  ScreeningOptions options;
+  options.folder = (folder / "pictures").string();
+  options.film = (folder / "film.gif").string();
+  options.steps = {0, 5};
+  options.longest_px = 200;
+  Screening screening(map, nullptr, {300.0, 300.0}, options);
+  campaign.runs = 1;
+  campaign.watch = [&](const std::string& filter, const Record& record, const Localizer& localizer) {
+    screening.show(filter, record, localizer);
+  };
+  run(campaign, map.zone);
+  screening.finish();
+  const cv::Mat first = cv::imread((folder / "pictures/paper-0000.png").string());
+  const cv::Mat last = cv::imread((folder / "pictures/default-0011.png").string());
+  ASSERT_EQ(first.cols, 200);
+  EXPECT_EQ(first.size(), last.size());
+  EXPECT_GT(cv::norm(first, last, cv::NORM_INF), 100.0) << "the vehicle has moved";
+  std::ifstream in(folder / "film.gif", std::ios::binary);
+  const std::string film{std::istreambuf_iterator<char>(in), {}};
+  ASSERT_GT(film.size(), 1000u);
+  EXPECT_EQ(film.substr(0, 6), "GIF89a");
+  EXPECT_EQ(static_cast<unsigned char>(film[6]) + 256 * static_cast<unsigned char>(film[7]), 400) << "side by side";
+  EXPECT_EQ(film.back(), ';');
+}
+
+TEST(FilterNames, RunFromThePapersFilterToTheDefaultAndOthersAreRefused) {
+  EXPECT_EQ(filter_named("paper", 700).evidence.kind, EvidenceKind::kEquation7);
+  EXPECT_EQ(filter_named("likelihood", 700).start, TrackStart::kUniform);
+  EXPECT_EQ(filter_named("likelihood", 700).filter.injection, Injection::kFixedShare);
+  EXPECT_EQ(filter_named("injection", 700).filter.injection, Injection::kLikelihoodAverages);
+  EXPECT_EQ(filter_named("search", 700).filter.adapts_count, false);
+  EXPECT_EQ(filter_named("default", 700).filter.max_particles, 700);
+  EXPECT_EQ(code_of([] { filter_named("papr", 700); }), "filter-unknown");
+}
+
+TEST(Films, ThatCannotBeWrittenSaySo) {
+  Film film;
+  film.add(cv::Mat(20, 20, CV_8UC3, cv::Scalar(10, 200, 30)));
+  EXPECT_EQ(code_of([&] { film.write("/nowhere/at/all.gif", 8); }), "film-unwritable");
+}
+
+}  // namespace
+}  // namespace roadfix::fly

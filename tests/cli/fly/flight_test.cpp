@@ -1,0 +1,160 @@
+#include "cli/fly/flight.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "cli/fly/area.hpp"
+#include "tests/support/code_of.hpp"
+#include "tests/support/map_view.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using testing::code_of;
+
+const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
+
+/// Shows everything, sees one cell.
+class Window : public Sensor {
+ public:
+  FeatureMap see(const GridPose&, bench::Random& random) const override {
+    return FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0);
+  }
+  bool shows(GridPoint) const override { return true; }
+};
+
+class Flights : public ::testing::Test {
+ protected:
+  Flight flown(std::uint64_t seed = 1) const {
+    const auto pilot = make_random_pilot(kBox, plan.handling);
+    return fly(plan, kBox, *pilot, sensor, seed, [] {});
+  }
+  static int frames(const Flight& flight) {
+    return static_cast<int>(
+        std::ranges::count_if(flight, [](const Moment& m) { return m.input.features.has_value(); }));
+  }
+
+  FlightPlan plan;
+  Window sensor;
+};
+
+TEST_F(Flights, AreTheSameForTheSameSeedAndOthersForAnother) {
+  const Flight flight = flown(7);
+  const Flight again = flown(7);
+  ASSERT_EQ(flight.size(), 100u);
+  for (std::size_t i = 0; i < flight.size(); ++i) {
+    EXPECT_EQ(flight[i].truth.position, again[i].truth.position);
+    EXPECT_EQ(flight[i].input.features->cells, again[i].input.features->cells);
+  }
+  EXPECT_NE(flown(8)[50].truth.position, flight[50].truth.position);
+}
+
+TEST_F(Flights, StepsCountUpInTimeAndOdometryWithoutErrorsLeadsFromPoseToPose) {
+  plan.odometry = {0.0, Angle(), 0.0, Angle()};
+  plan.handling.step_s = 0.5;
+  const Flight flight = flown();
+  EXPECT_FALSE(flight[0].input.odometry);
+  for (std::size_t i = 1; i < flight.size(); ++i) {
+    EXPECT_EQ(flight[i].input.sequence, static_cast<std::int64_t>(i));
+    EXPECT_EQ(flight[i].input.time_us - flight[i - 1].input.time_us, 500'000);
+    const GridPose& from = flight[i - 1].truth;
+    const Odometry& told = flight[i].input.odometry.value();
+    EXPECT_NEAR(flight[i].truth.position.east_m,
+                from.position.east_m + told.forward_m * sin(from.heading) + told.right_m * cos(from.heading), 1e-6);
+    EXPECT_NEAR(flight[i].truth.position.north_m,
+                from.position.north_m + told.forward_m * cos(from.heading) - told.right_m * sin(from.heading), 1e-6);
+    EXPECT_NEAR(angular_distance(flight[i].truth.heading, from.heading + told.turn).radians(), 0.0, 1e-9);
+    EXPECT_LE(std::abs(told.turn.degrees()), 5.0 + 1e-9);
+  }
+}
+
+TEST_F(Flights, OdometryErrorsHaveTheSizeThatWasAskedFor) {
+  plan.steps = 2000;
+  plan.odometry = {0.1, Angle(), 0.0, Angle()};
+  double sum2 = 0.0;
+  const Flight flight = flown();
+  for (std::size_t i = 1; i < flight.size(); ++i) {
+    const double angle = flight[i].input.odometry->turn.radians();
+    const double exact = std::abs(angle) < 1e-9 ? 15.0 : 15.0 / angle * std::sin(angle);
+    sum2 += std::pow(flight[i].input.odometry->forward_m - exact, 2.0);
+  }
+  // Of 1999 draws the standard deviation is known to 1.6 %; five times that is allowed.
+  EXPECT_NEAR(std::sqrt(sum2 / 1999.0), 1.5, 0.12);
+}
+
+TEST_F(Flights, FramesAreMissingDuringAnOutageAtRandomAndBetween) {
+  plan.outage = StepRange{20, 40};
+  EXPECT_EQ(frames(flown()), 80);
+  plan.outage.reset();
+  plan.frame_every = 4;
+  EXPECT_EQ(frames(flown()), 25);
+  plan.frame_every = 1;
+  plan.missing_share = 0.3;
+  plan.steps = 1000;
+  EXPECT_NEAR(frames(flown()), 700, 5 * 14.5);  // five standard deviations of the binomial
+}
+
+TEST_F(Flights, AKidnappedVehicleIsElsewhereAndItsOdometryDoesNotTell) {
+  plan.kidnapping = Kidnapping{10, 500.0};
+  const Flight flight = flown();
+  EXPECT_NEAR(distance_m(flight[9].truth.position, flight[10].truth.position), 500.0, 15.1);
+  EXPECT_LT(std::hypot(flight[10].input.odometry->forward_m, flight[10].input.odometry->right_m), 20.0);
+  EXPECT_TRUE(kBox.contains(flight[10].truth.position));
+  plan.kidnapping->distance_m = 5000.0;
+  EXPECT_EQ(code_of([&] { flown(); }), "kidnapping-too-far");
+}
+
+TEST_F(Flights, OfWaypointsPassCloseToEachAndEndAtTheLast) {
+  const std::vector<GridPoint> points{{600'600, 6'399'100}, {601'000, 6'399'100}, {601'000, 6'399'700}};
+  plan.steps = 1000;
+  const auto pilot = make_waypoint_pilot(points, plan.handling);
+  const Flight flight = fly(plan, kBox, *pilot, sensor, 1, [] {});
+  EXPECT_LT(flight.size(), 120u);
+  for (const GridPoint& point : points) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Moment& moment : flight) nearest = std::min(nearest, distance_m(moment.truth.position, point));
+    EXPECT_LT(nearest, 100.0);  // the turning circle at 15 m/s and 10 deg/s has 86 m
+  }
+}
+
+TEST(Pilots, SurveyLanesCoverTheBoxBackAndForth) {
+  const auto lanes = survey_lanes(kBox, 400.0);
+  ASSERT_EQ(lanes.size(), 6u);
+  EXPECT_EQ(lanes[0], kBox.min);
+  EXPECT_EQ(lanes[2].east_m, kBox.max.east_m);
+  EXPECT_EQ(lanes[4].north_m, kBox.min.north_m + 800.0);
+}
+
+TEST(Pilots, WaypointsComeFromALineOfGeoJsonAndBadFilesAreRefused) {
+  const testing::TemporaryFolder folder;
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder / "w.geojson") << text;
+    return read_waypoints(folder / "w.geojson", zone);
+  };
+  const auto points =
+      read(R"({"features":[{"geometry":{"type":"LineString","coordinates":[[21,57.5],[21.01,57.5]]}}]})");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(points[0].east_m, 500'000.0, 1e-3);
+  EXPECT_EQ(code_of([&] { read("not json"); }), "waypoints-unreadable");
+  EXPECT_EQ(code_of([&] { read(R"({"features":[]})"); }), "waypoints-unreadable");
+  EXPECT_EQ(code_of([&] { read(R"({"features":[{"geometry":{"type":"Point","coordinates":[21]}}]})"); }),
+            "waypoints-unreadable");
+  EXPECT_EQ(code_of([&] { read_waypoints(folder / "none", zone); }), "waypoints-missing");
+}
+
+TEST(Area, KeepsTheMiddleOfAMapAndLeavesTheRestUnobserved) {
+  const RoadGrid town = testing::street_map(3, {2.0, {300'100, -3'200'050}, 200, 200});
+  const MapView part = middle_of(testing::view_of(town), 100.0);
+  EXPECT_DOUBLE_EQ(part.extent.width_m(), 100.0);
+  const RoadGrid grid = part.read(town.geometry);
+  EXPECT_EQ(grid.cells.observed_count(), 50u * 50u);
+  EXPECT_EQ(grid.cells.at(100, 100), town.cells.at(100, 100));
+}
+
+}  // namespace
+}  // namespace roadfix::fly

@@ -1,0 +1,86 @@
+// roadfix fly as a script meets it: a rendered town is mapped before and flown over after its earthquake.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::ProgramResult;
+using testing::run_program;
+using testing::text_of;
+
+class FlyCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new testing::TemporaryFolder;
+    const std::string town = (*folder_ / "town").string();
+    ASSERT_EQ(roadfix("world " + town + " --size-km 0.7x0.7 --frames 0").code, 0);
+    ASSERT_EQ(roadfix("ingest " + town + "/pre.tif --detector tree --map " + map()).code, 0);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  static std::string map() { return (*folder_ / "town.gpkg").string(); }
+  static std::string after() { return (*folder_ / "town").string() + "/post.tif"; }
+  static std::string file(const std::string& name) { return (*folder_ / name).string(); }
+  static ProgramResult roadfix(const std::string& arguments) { return run_program(folder_->path(), arguments); }
+
+ private:
+  static testing::TemporaryFolder* folder_;
+};
+
+testing::TemporaryFolder* FlyCommand::folder_ = nullptr;
+
+TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
+  const ProgramResult flown = roadfix(
+      "fly " + map() + " --over " + after() +
+      " --detector tree --tree-roots 500 --footprint-m 300 --steps 6 --particles 500 --filter paper,default --json " +
+      file("out.json") + " --csv " + file("out.csv") + " --geojson " + file("out.geojson") + " --film " +
+      file("film.gif") + " --pictures " + file("pictures") + " --picture-steps 2 --picture-px 200");
+  ASSERT_EQ(flown.code, 0) << flown.err;
+  EXPECT_THAT(flown.out, HasSubstr("default"));
+  const auto document = nlohmann::json::parse(text_of(file("out.json")));
+  EXPECT_EQ(document["filters"]["paper"]["runs"], 1);
+  EXPECT_EQ(document["filters"]["default"]["flights"][0]["steps"], 6);
+  const std::string table = text_of(file("out.csv"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 13);
+  EXPECT_EQ(nlohmann::json::parse(text_of(file("out.geojson")))["type"], "FeatureCollection");
+  EXPECT_TRUE(std::filesystem::exists(file("pictures/paper-0002.png")));
+  EXPECT_GT(std::filesystem::file_size(file("film.gif")), 1000u);
+}
+
+TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {
+  const std::string flight = "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --csv ";
+  ASSERT_EQ(roadfix(flight + file("a.csv")).code, 0);
+  ASSERT_EQ(roadfix(flight + file("b.csv")).code, 0);
+  const auto without_times = [](std::string text) {
+    std::string kept;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = text.find('\n', at);
+      kept += text.substr(at, text.rfind(',', end) - at) + '\n';
+      at = end + 1;
+    }
+    return kept;
+  };
+  EXPECT_EQ(without_times(text_of(file("a.csv"))), without_times(text_of(file("b.csv"))));
+}
+
+TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
+  const ProgramResult large = roadfix("fly " + map() + " --footprint-m 3000");
+  EXPECT_EQ(large.code, 1);
+  EXPECT_THAT(large.err, HasSubstr("no-place-to-fly"));
+  EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
+  EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,11 +1,13 @@
 // Answers that several handlers give.
 #pragma once
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "server/http/message.hpp"
+#include "server/http/server.hpp"
 
 namespace roadfix::server {
 
@@ -18,6 +20,9 @@ std::string base_url(const http::Request& request);
 std::string entity_tag(const std::string& version, const std::string& variation);
 /// Whether If-None-Match names the tag (RFC 9110 13.1.2).
 bool is_known_to_client(const http::Request& request, const std::string& tag);
+
+/// Since the request was read.
+std::chrono::microseconds time_spent(const http::Request& request, const http::ServerSettings& settings);
 
 /// The query and the JSON members that a route takes.
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);

@@ -2,25 +2,44 @@
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/flight_request.hpp"
+#include "server/api/position_answer.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
 namespace roadfix::server {
 namespace {
 
-std::vector<std::string> query_fields() { return joined(api::feature_fields(), api::prior_fields()); }
+/// Integers up to here are exact as JSON numbers.
+constexpr double kMostExact = 9007199254740992.0;
+
+std::vector<std::string> query_fields() {
+  return joined(joined(api::feature_fields(), api::prior_fields()), joined(api::position_fields(), {"time_us"}));
+}
+
+/// The frame was captured at time_us, or when the request came.
+api::PositionTime time_of(const Service& service, const http::Request& request, const api::Fields& fields) {
+  const auto spent = time_spent(request, service.http);
+  if (const auto time_us = fields.optional_number("time_us", {0.0, kMostExact})) {
+    return {static_cast<std::int64_t>(*time_us), spent};
+  }
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return {std::chrono::duration_cast<std::chrono::microseconds>(now - spent).count(), spent};
+}
 
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
       api::read_content(request, joined(query_fields(), api::picture_members()), service.limits);
+  const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
   options.calibration = service.calibration;
   options.threads = service.search_threads;
   api::shorten(options, request.deadline);
-  return json_response(api::to_json(locate(map->view, features.map, prior, options), features.detect_time));
+  const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
+  if (format.is_json()) return json_response(answer);
+  return api::position_response(answer, format, time_of(service, request, content.fields));
 }
 
 }  // namespace

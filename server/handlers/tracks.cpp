@@ -7,6 +7,7 @@
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
+#include "server/api/position_answer.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/api/track_json.hpp"
 #include "server/api/track_request.hpp"
@@ -24,16 +25,20 @@ constexpr int kMostParticlesShown = 10'000;
 
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
 
-std::vector<std::string> step_query() { return joined(api::step_fields(), api::feature_fields()); }
+std::vector<std::string> step_query() {
+  return joined(joined(api::step_fields(), api::feature_fields()), api::position_fields());
+}
 
-/// Of the whole request, to tell a repeated step from another one (FNV-1a).
+/// Of all that the step says, to tell a repeated step from another one (FNV-1a).
 std::int64_t digest_of(const http::Request& request) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   const auto add = [&](std::string_view text) {
     for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
     hash *= 0x100000001b3ULL;
   };
+  const std::vector<std::string>& presentation = api::position_fields();
   for (const auto& [name, value] : request.query) {
+    if (std::ranges::find(presentation, name) != presentation.end()) continue;
     add(name);
     add(value);
   }
@@ -67,13 +72,24 @@ http::Response post_track(const Service& service, const http::Request& request) 
   return response;
 }
 
+http::Response step_response(const Service& service, const http::Request& request, const api::PositionFormat& format,
+                             const StepInput& input, std::string answer) {
+  if (format.is_json()) return {200, "application/json", std::move(answer)};
+  api::PositionFormat numbered = format;
+  numbered.sender.sequence = static_cast<std::uint8_t>(input.sequence & 0xff);
+  return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request, service.http)});
+}
+
 http::Response post_step(const Service& service, const http::Request& request) {
   const StoredTrack track = service.tracks.find(id_of(request));
   const api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
+  const api::PositionFormat format = api::parse_position_format(request, content.fields);
   StepInput input = api::parse_step(content.fields);
   const std::int64_t digest = digest_of(request);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
-    return {200, "application/json", std::move(*answer), {{"Roadfix-Repeated", "true"}}};
+    http::Response repeated = step_response(service, request, format, input, std::move(*answer));
+    repeated.headers.emplace_back("Roadfix-Repeated", "true");
+    return repeated;
   }
   if (!content.image.empty() || content.fields.has("cells")) {
     const auto map = service.maps.find(track.map);
@@ -84,7 +100,7 @@ http::Response post_step(const Service& service, const http::Request& request) {
   limits.threads = service.search_threads;
   limits.search_time = api::time_left(request.deadline);
   limits.stop = limit.token();
-  return {200, "application/json", service.tracks.step(track.id, input, digest, limits)};
+  return step_response(service, request, format, input, service.tracks.step(track.id, input, digest, limits));
 }
 
 http::Response list_tracks(const Service& service, const http::Request& request) {

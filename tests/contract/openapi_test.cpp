@@ -9,6 +9,7 @@
 #include "schema/schema.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/position_answer.hpp"
 #include "server/api/track_request.hpp"
 #include "server/service.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -127,6 +128,8 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   fix.insert(api::picture_members().begin(), api::picture_members().end());
   std::set<std::string> match = fix;
   fix.insert(api::prior_fields().begin(), api::prior_fields().end());
+  fix.insert(api::position_fields().begin(), api::position_fields().end());
+  fix.insert("time_us");
   match.insert({"heading_step_deg", "poses"});
   std::set<std::string> detect(api::frame_fields().begin(), api::frame_fields().end());
   detect.insert({"image", "format"});
@@ -137,6 +140,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   std::set<std::string> step(api::feature_fields().begin(), api::feature_fields().end());
   step.insert(api::picture_members().begin(), api::picture_members().end());
   step.insert(api::step_fields().begin(), api::step_fields().end());
+  step.insert(api::position_fields().begin(), api::position_fields().end());
   EXPECT_EQ(members("StepRequest"), step);
 }
 

@@ -112,6 +112,22 @@ TEST_F(Service, FixesAFeatureMapFromEveryKindOfBody) {
   }
 }
 
+TEST_F(Service, GivesAFixInTheWordsOfAutopilots) {
+  const std::string seen = town->seen();
+  const std::string url = "/v1/maps/town/fix?cell_m=2&time_us=5000000" + place() + "&format=";
+  const json input = testing::json_of(client_.Post(url + "mavproxy", seen, "image/png"));
+  EXPECT_EQ(input["fix_type"], 2);
+  EXPECT_NEAR(1e-7 * input["lat"].get<double>(), town->place.lat_deg, 1e-4);
+  EXPECT_EQ(input["time_usec"], 5'000'000);
+  EXPECT_EQ(client_.Post(url + "global_position_sensor", seen, "image/png")->body.substr(7, 3),
+            std::string("\x28\x01\x00", 3))
+      << "message 296";
+  const std::string empty = testing::text_of(encode_feature_map(CellArray(128, 128, kNoRoad)));
+  const auto none = client_.Post(url + "command_int", empty, "image/png");
+  EXPECT_EQ(none->status, 204);
+  EXPECT_EQ(none->get_header_value("Roadfix-Status"), "no_fix");
+}
+
 TEST_F(Service, LaysFramesOfAFlightTogether) {
   const auto base64 = [](const std::string& bytes) {
     return api::base64_encoded({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});

@@ -309,6 +309,36 @@ TEST_F(Tracks, EndEventsInOrderWhenTheServiceStopsAndLimitTheirNumber) {
   EXPECT_THAT(text, Not(HasSubstr("event: end"))) << "the track goes on with the next service";
 }
 
+TEST_F(Tracks, AnswerInTheWordsOfAutopilots) {
+  const auto running = service();
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(8);
+  const auto as = [&](std::size_t step, const std::string& how, const httplib::Headers& headers = {}) {
+    const std::string path = "/v1/tracks/" + id + "/steps" + steps[step].query + how;
+    return client.Post(path.c_str(), headers, steps[step].picture, "image/png");
+  };
+  const auto nothing = as(0, "&format=global_position_sensor");
+  EXPECT_EQ(nothing->status, 204) << "not yet converged";
+  EXPECT_EQ(nothing->get_header_value("Roadfix-Status"), "searching");
+  EXPECT_EQ(testing::json_of(as(0, "&format=mavproxy"))["fix_type"], 1);
+  EXPECT_EQ(testing::refusal(as(1, "&format=morse")), "400 bad-parameter format");
+  EXPECT_EQ(testing::refusal(as(1, "", {{"Accept", "text/html"}})), "406 not-acceptable");
+  for (std::size_t i = 1; i < steps.size(); ++i) send(client, id, steps[i]);
+  const json pose = testing::json_of(send(client, id, steps[7]))["pose"];
+  const auto told = as(7, "&alt_m=512", {{"Accept", "application/x-mavproxy-gps-input+json"}});
+  EXPECT_EQ(told->get_header_value("Roadfix-Repeated"), "true") << "the words do not make it another step";
+  const json input = testing::json_of(told);
+  EXPECT_NEAR(1e-7 * input["lat"].get<double>(), pose["lat"].get<double>(), 1e-7);
+  EXPECT_NEAR(1e-7 * input["lon"].get<double>(), pose["lon"].get<double>(), 1e-7);
+  EXPECT_EQ(input["fix_type"], 3);
+  EXPECT_EQ(input["time_usec"], 8'000'000);
+  const std::string packet = as(7, "&format=gps_input&system=7")->body;
+  EXPECT_EQ(packet.substr(0, 1), "\xfd");
+  EXPECT_EQ(packet.substr(4, 3), std::string("\x07\x07\xc5")) << "sequence, system, component";
+  EXPECT_THAT(as(7, "&format=nmea")->body, ::testing::StartsWith("$GPGGA,,"));
+}
+
 TEST_F(Tracks, EndWhenNothingComes) {
   const auto running = service({"--track-idle", "0.2"});
   httplib::Client client = client_of(*running);

@@ -1,0 +1,72 @@
+#include "server/api/position_answer.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "server/api/media.hpp"
+#include "server/autopilot/gps_input.hpp"
+#include "server/autopilot/mavlink_messages.hpp"
+#include "server/autopilot/nmea.hpp"
+
+namespace roadfix::api {
+namespace {
+
+constexpr std::array<Media, 6> kFormats{{{"json", "application/json"},
+                                         {"global_position_sensor", "application/x-mavlink-global-position-sensor"},
+                                         {"command_int", "application/x-mavlink-command-int"},
+                                         {"gps_input", "application/x-mavlink-gps-input"},
+                                         {"mavproxy", "application/x-mavproxy-gps-input+json"},
+                                         {"nmea", "application/x-nmea-0183"}}};
+
+const Media& media_of(const http::Request& request, const Fields& fields) {
+  if (!fields.has("format")) return negotiated(request.header("accept"), kFormats);
+  std::array<std::string_view, kFormats.size()> names;
+  std::ranges::transform(kFormats, names.begin(), &Media::name);
+  return *std::ranges::find(kFormats, fields.word("format", names), &Media::name);
+}
+
+std::optional<autopilot::Position> position_of(const nlohmann::json& answer) {
+  if (!answer.contains("pose")) return std::nullopt;
+  const nlohmann::json& pose = answer.at("pose");
+  const std::array<double, 2> sigma_m = answer.at("sigma_m");
+  return autopilot::Position{
+      {pose.at("lat"), pose.at("lon")}, Angle::degrees(pose.at("heading_deg")), std::max(sigma_m[0], sigma_m[1])};
+}
+
+/// nullopt where there is nothing to be said.
+std::optional<std::string> encoded(const autopilot::PositionReport& report, const PositionFormat& format) {
+  if (format.name == "global_position_sensor") return autopilot::global_position_sensor(report, format.sender);
+  if (format.name == "command_int") return autopilot::external_position_estimate(report, format.sender);
+  if (format.name == "nmea") return autopilot::nmea_sentences(report, format.satellites);
+  const autopilot::GpsInput input = autopilot::gps_input(report, format.satellites);
+  return format.name == "mavproxy" ? autopilot::to_json(input).dump() : autopilot::to_packet(input, format.sender);
+}
+
+}  // namespace
+
+const std::vector<std::string>& position_fields() {
+  static const std::vector<std::string> kFields{"format", "alt_m", "satellites", "system", "component"};
+  return kFields;
+}
+
+PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
+  const Media& media = media_of(request, fields);
+  PositionFormat format{media.name, media.type, fields.optional_number("alt_m", {-1000.0, 50'000.0}), 0, {}};
+  format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
+  format.sender.system = static_cast<std::uint8_t>(fields.optional_integer("system", 1, 255).value_or(1));
+  if (const auto component = fields.optional_integer("component", 1, 255)) {
+    format.sender.component = static_cast<std::uint8_t>(*component);
+  }
+  return format;
+}
+
+http::Response position_response(const nlohmann::json& answer, const PositionFormat& format, const PositionTime& time) {
+  const autopilot::PositionReport report{position_of(answer), format.altitude_msl_m, time.captured_us, time.processing};
+  http::Response response{204, {}, {}};
+  if (auto message = encoded(report, format)) response = {200, std::string(format.type), std::move(*message)};
+  response.headers.emplace_back("Roadfix-Status", answer.at("status"));
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+}  // namespace roadfix::api

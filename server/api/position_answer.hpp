@@ -1,0 +1,43 @@
+// The position of a fix or of a step of a track in the form that the client asked for: JSON, or what autopilots read.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/api/fields.hpp"
+#include "server/autopilot/mavlink_frame.hpp"
+#include "server/http/message.hpp"
+
+namespace roadfix::api {
+
+/// Names that say how an answer is given; they change nothing of what is found.
+const std::vector<std::string>& position_fields();
+
+struct PositionFormat {
+  std::string_view name;  ///< as in format=
+  std::string_view type;  ///< "application/json", ...
+  std::optional<double> altitude_msl_m;
+  int satellites = 0;
+  autopilot::MavlinkSender sender;
+
+  bool is_json() const { return name == "json"; }
+};
+
+/// By "format", else by Accept. Throws InvalidField, InvalidInput ("not-acceptable").
+PositionFormat parse_position_format(const http::Request& request, const Fields& fields);
+
+struct PositionTime {
+  std::int64_t captured_us = 0;
+  std::chrono::microseconds processing{0};
+};
+
+/// `answer` is that of to_json for a fix or an estimate of a track: only where it has a "pose" at its top there is a
+/// position. 204 where the format has no word for that there is none. Not for is_json().
+http::Response position_response(const nlohmann::json& answer, const PositionFormat& format, const PositionTime& time);
+
+}  // namespace roadfix::api

@@ -214,7 +214,8 @@ class Tracker::Step {
     state_.accepted_time_us = input_.time_us;
   }
 
-  /// nullopt where the area is beyond the limit.
+  /// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it
+  /// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
   std::optional<Fix> searched(const Prior& prior) {
     FixOptions options;
     options.max_search_km2 = settings_.max_search_km2;
@@ -224,9 +225,10 @@ class Tracker::Step {
     state_.last_search = state_.measured;
     try {
       Fix fix = locate(tracker_.map_, *features_, prior, options);
-      // Where the time ended a search depends on the machine, and a track must come out the same.
-      if (!fix.complete) throw Interrupted("search-time-limit", fix.explanation);
-      return fix;
+      if (fix.complete) return fix;
+      // What it has depends on the machine, and a track must come out the same.
+      if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);
+      return std::nullopt;
     } catch (const LimitExceeded&) {
       return std::nullopt;
     }

@@ -113,7 +113,7 @@ struct StepResult {
 
 struct StepLimits {
   int threads = 1;
-  std::chrono::milliseconds search_time{0};  ///< 0 = unlimited
+  std::chrono::milliseconds search_time{0};  ///< of one search; a step has two at most; 0 = unlimited
   std::stop_token stop;
 };
 
@@ -123,7 +123,7 @@ class Tracker {
   Tracker(MapView map, TrackSettings settings);
 
   /// Throws InvalidInput: "step-late" for a sequence number not above the last, "time-backwards", those of
-  /// OdometryMotion and of unusable feature maps; Interrupted by the limits.
+  /// OdometryMotion and of unusable feature maps; Interrupted by `stop`, and by `search_time` at the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
   /// Thinned to at most `count` poses, every k-th particle.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;

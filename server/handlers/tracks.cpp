@@ -98,7 +98,8 @@ http::Response post_step(const Service& service, const http::Request& request) {
   const api::TimeLimit limit(request.deadline);
   StepLimits limits;
   limits.threads = service.search_threads;
-  limits.search_time = api::time_left(request.deadline);
+  // Two searches, and the rest of the step.
+  limits.search_time = std::max(api::time_left(request.deadline) / 3, std::chrono::milliseconds(1));
   limits.stop = limit.token();
   return step_response(service, request, format, input, service.tracks.step(track.id, input, digest, limits));
 }

@@ -113,6 +113,20 @@ TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
   EXPECT_GT(blind.clusters[0].sigma_m[0], 2.0 * seeing.clusters[0].sigma_m[0]);
 }
 
+TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  TrackerState state;
+  for (int i = 0; i < 3; ++i) state = tracker.advance(state, flight.step()).state;
+  StepInput late = flight.step();
+  late.time_us += 700'000'000;  // the belief is thrown away, and a search shall find it anew
+  StepLimits limits;
+  limits.search_time = std::chrono::milliseconds(1);
+  ASSERT_NO_THROW(state = tracker.advance(state, late, limits).state);
+  EXPECT_EQ(state.last_search, state.measured) << "it was tried";
+  EXPECT_EQ(state.sequence, late.sequence);
+}
+
 TEST_F(Track, NoticesAKidnappingAndRecovers) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);

@@ -27,6 +27,7 @@ struct ServeOptions {
   server::Configuration service;
   std::size_t body_mib = service.http.body_bytes / kMiB;
   std::size_t map_cache_mib = service.map_cache_bytes / kMiB;
+  std::size_t search_cache_mib = service.search_cache_bytes / kMiB;
   std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
   double request_time_s = 30.0;
   double idle_time_s = 15.0;
@@ -49,6 +50,7 @@ server::Configuration configuration(const ServeOptions& options) {
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
   result.http.body_bytes = options.body_mib * kMiB;
   result.map_cache_bytes = options.map_cache_mib * kMiB;
+  result.search_cache_bytes = options.search_cache_mib * kMiB;
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
   result.http.request_time = milliseconds(options.request_time_s);
   result.http.idle_time = milliseconds(options.idle_time_s);
@@ -110,6 +112,7 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--search-threads", o.service.search_threads, "Threads of one search");
   add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept");
   add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB");
+  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB");
   add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB");
   add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
   add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");

@@ -32,7 +32,7 @@ http::Response error_response(std::exception_ptr thrown) {
 struct Application::Parts {
   explicit Parts(Configuration c)
       : configuration(std::move(c)),
-        maps(configuration.maps, configuration.map_cache_bytes),
+        maps(configuration.maps, configuration.map_cache_bytes, configuration.search_cache_bytes),
         detector(make_detector(configuration.detector)),
         pictures(configuration.picture_cache_bytes),
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
@@ -45,6 +45,8 @@ struct Application::Parts {
                   [this] { return static_cast<double>(maps.unreadable().size()); });
     metrics.gauge("roadfix_map_cache_bytes", "Decoded tiles in memory.",
                   [this] { return static_cast<double>(maps.cached_bytes()); });
+    metrics.gauge("roadfix_search_cache_bytes", "What searches built of maps, kept for the next ones.",
+                  [this] { return static_cast<double>(maps.search_cached_bytes()); });
     metrics.gauge("roadfix_picture_cache_bytes", "Rendered tiles in memory.",
                   [this] { return static_cast<double>(pictures.bytes()); });
   }

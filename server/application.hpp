@@ -17,7 +17,8 @@ namespace roadfix::server {
 struct Configuration {
   std::filesystem::path maps;
   std::chrono::milliseconds watch_interval{1000};
-  std::size_t map_cache_bytes = std::size_t{256} << 20;  ///< decoded tiles, for each map
+  std::size_t map_cache_bytes = std::size_t{256} << 20;     ///< decoded tiles, for each map
+  std::size_t search_cache_bytes = std::size_t{512} << 20;  ///< what searches build, for each map
   std::size_t picture_cache_bytes = std::size_t{64} << 20;
   int search_threads = 1;                          ///< of one search
   std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped

@@ -105,6 +105,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   SearchOptions search_options;
   search_options.max_modes = options.max_modes;
   search_options.scale_range = options.scale_range;
+  search_options.cache = map.searches;
   search_options.threads = options.threads;
   search_options.stop = options.stop;
   search_options.proof_time = options.proof_time;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "core/geodesy/utm.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/match/search_cache.hpp"
 
 namespace roadfix {
 
@@ -20,6 +22,8 @@ struct MapView {
   /// Cells of the geometry, unobserved where the map has none. `geometry.cell_m` is cell_m * 2^k.
   /// Safe to call from several threads.
   std::function<RoadGrid(const GridGeometry& geometry)> read;
+  /// What searches build of this version of the map, for the next ones; nullptr = nothing is kept.
+  std::shared_ptr<SearchCache> searches = nullptr;
 };
 
 }  // namespace roadfix

@@ -76,6 +76,12 @@ BoundMap::BoundMap(const RoadGrid& grid)
   fill_sums(grid.cells);
 }
 
+std::size_t BoundMap::bytes() const {
+  std::size_t bytes = exact_.bytes() + pooled2_.bytes() + pooled4_.bytes();
+  for (const auto& plane : planes_) bytes += plane.size();
+  return bytes + (cells_.size() + value_.size() + square_.size()) * sizeof(std::uint32_t);
+}
+
 void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece) {
   const int cols = above.cols();
   const int rows = above.rows();

@@ -62,6 +62,7 @@ class BoundMap {
   const MapPlane& pooled(int side) const { return side == 2 ? pooled2_ : pooled4_; }
 
   bool all_observed() const { return all_observed_; }
+  std::size_t bytes() const;
 
  private:
   void fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece);

@@ -4,82 +4,33 @@
 #include <cassert>
 #include <cmath>
 #include <mutex>
-#include <optional>
 #include <span>
 
 #include "core/grid/resample.hpp"
 #include "core/match/correlator.hpp"
+#include "core/match/scan_planes.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
 namespace {
 
-/// Observed cells as three planes: 1 where observed, the value less `mean`, and its square.
-struct Planes {
-  FloatPlane observed, value, square;
-};
-
-double mean_of(const CellArray& cells) {
-  double sum = 0.0;
-  std::int64_t count = 0;
-  for (const Cell cell : cells.cells()) {
-    if (!is_observed(cell)) continue;
-    sum += probability(cell);
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-Planes planes_of(const CellArray& cells, double mean) {
-  const FloatPlane empty(cells.cols(), cells.rows());
-  Planes planes{empty, empty, empty};
-  for (int row = 0; row < cells.rows(); ++row) {
-    for (int col = 0; col < cells.cols(); ++col) {
-      const Cell cell = cells.at(col, row);
-      if (!is_observed(cell)) continue;
-      const auto value = static_cast<float>(probability(cell) - mean);
-      planes.observed.at(col, row) = 1.0F;
-      planes.value.at(col, row) = value;
-      planes.square.at(col, row) = value * value;
-    }
-  }
-  return planes;
-}
-
-/// Sum over blocks of q x q cells, the first block starting `lead` cells before the first cell.
-FloatPlane block_sums(const FloatPlane& plane, int q, int lead) {
-  const auto blocks = [&](int cells) { return (cells + lead + q - 1) / q; };
-  FloatPlane sums(blocks(plane.cols), blocks(plane.rows));
-  for (int row = 0; row < plane.rows; ++row) {
-    for (int col = 0; col < plane.cols; ++col) sums.at((col + lead) / q, (row + lead) / q) += plane.at(col, row);
-  }
-  return sums;
-}
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
-
 class Scan {
  public:
-  Scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request, const Deadline& deadline)
+  Scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request, const Deadline& deadline)
       : features_(features),
         request_(request),
         deadline_(deadline),
-        reach_(footprint_reach(features)),
-        lead_col_(request.positions.origin.col - map.geometry.origin.col),
-        lead_row_(request.positions.origin.row - map.geometry.origin.row),
+        map_(map),
+        reach_(map.reach()),
+        q_(map.block()),
+        lead_col_(request.positions.origin.col - map.geometry().origin.col),
+        lead_row_(request.positions.origin.row - map.geometry().origin.row),
         full_cells_(static_cast<double>(features.cells.observed_count())),
         feature_mean_(mean_of(features.cells)),
-        q_(std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, 4)) {
-    assert(lead_col_ >= reach_ && lead_row_ >= reach_);
-    const Planes planes = planes_of(map.cells, mean_of(map.cells));
-    cross_.emplace(planes.value, FloatPlane(), 2 * reach_ + 1);
-    const int block_patch = (2 * reach_ + 1 + q_ - 1) / q_ + 1;
-    observed_.emplace(block_sums(planes.observed, q_, 0), FloatPlane(), block_patch);
-    values_.emplace(block_sums(planes.value, q_, 0), block_sums(planes.square, q_, 0), block_patch);
-    eligible_.reserve(static_cast<std::size_t>(request.positions.cols) *
-                      static_cast<std::size_t>(request.positions.rows));
-    for (int row = 0; row < request.positions.rows; ++row) {
-      for (int col = 0; col < request.positions.cols; ++col) eligible_.push_back(request.eligible(col, row));
+        eligible_(request.positions.cols, request.positions.rows) {
+    assert(lead_col_ >= reach_ && lead_row_ >= reach_ && footprint_reach(features) <= reach_);
+    for (int row = 0; row < eligible_.rows; ++row) {
+      for (int col = 0; col < eligible_.cols; ++col) eligible_.at(col, row) = request.eligible(col, row) ? 1.0F : 0.0F;
     }
   }
 
@@ -110,9 +61,9 @@ class Scan {
 
   void scan_pairs(std::span<const int> bases) {
     if (deadline_.over()) return;
-    const Planes first = patch_at(bases.front());
-    const Planes last = bases.size() > 1 ? patch_at(bases.back()) : Planes{};
-    const ComplexPlane cross = cross_->spectrum_of(first.value, last.value);
+    const ScanPlanes first = patch_at(bases.front());
+    const ScanPlanes last = bases.size() > 1 ? patch_at(bases.back()) : ScanPlanes{};
+    const ComplexPlane cross = map_.values().spectrum_of(first.value, last.value);
     const MeanSpectra means = means_of(first);
     for (const bool half_turn : {false, true}) {
       const int turn = half_turn ? request_.bins.count() / 2 : 0;
@@ -120,7 +71,7 @@ class Scan {
       if (std::ranges::none_of(bases, wanted)) continue;
       if (deadline_.over()) return;
       const Blocks blocks = blocks_of(means, half_turn);
-      const FloatPlanes sums = cross_->correlate(cross, half_turn);
+      const FloatPlanes sums = map_.values().correlate(cross, half_turn);
       if (wanted(bases.front())) collect(scores(sums.first, blocks, half_turn), bases.front() + turn);
       if (bases.size() > 1 && wanted(bases.back())) {
         collect(scores(sums.second, blocks, half_turn), bases.back() + turn);
@@ -129,7 +80,7 @@ class Scan {
   }
 
   /// Planes of the footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
-  Planes patch_at(int bin) const {
+  ScanPlanes patch_at(int bin) const {
     const FeatureMap turned = rotated(features_, request_.bins.heading(bin));
     CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
     paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
@@ -141,15 +92,15 @@ class Scan {
     ComplexPlane observed_and_value, square, observed;
   };
 
-  MeanSpectra means_of(const Planes& planes) const {
+  MeanSpectra means_of(const ScanPlanes& planes) const {
     const auto means = [&](const FloatPlane& plane) {
       FloatPlane sums = block_sums(plane, q_, block_lead());
       for (float& sum : sums.values) sum /= static_cast<float>(q_ * q_);
       return sums;
     };
     const FloatPlane observed = means(planes.observed);
-    return {observed_->spectrum_of(observed, means(planes.value)), observed_->spectrum_of(means(planes.square), {}),
-            values_->spectrum_of(observed, {})};
+    return {map_.block_observed().spectrum_of(observed, means(planes.value)),
+            map_.block_observed().spectrum_of(means(planes.square), {}), map_.block_values().spectrum_of(observed, {})};
   }
 
   /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
@@ -164,9 +115,9 @@ class Scan {
   };
 
   Blocks blocks_of(const MeanSpectra& patch, bool half_turn) const {
-    const auto [n, l] = observed_->correlate(patch.observed_and_value, half_turn);
-    const FloatPlane ll = observed_->correlate(patch.square, half_turn).first;
-    const auto [m, mm] = values_->correlate(patch.observed, half_turn);
+    const auto [n, l] = map_.block_observed().correlate(patch.observed_and_value, half_turn);
+    const FloatPlane ll = map_.block_observed().correlate(patch.square, half_turn).first;
+    const auto [m, mm] = map_.block_values().correlate(patch.observed, half_turn);
     Blocks blocks{FloatPlane(n.cols, n.rows), FloatPlane(n.cols, n.rows), half_turn ? -nadir_block() : nadir_block()};
     const double least = std::max(1.0, request_.min_observed_share * full_cells_);
     for (int row = 0; row < n.rows; ++row) {
@@ -193,47 +144,23 @@ class Scan {
     // A block result with its nadir block at B stands for the nadir at B * q + half_block, turned around at
     // B * q + q - 1 - half_block.
     const int centre = half_turn ? q_ - 1 - half_block() : half_block();
-    const std::vector<Mix> rows = mixes(positions.rows, lead_row_ - centre, blocks.first, blocks.gain.rows);
-    const std::vector<Mix> cols = mixes(positions.cols, lead_col_ - centre, blocks.first, blocks.gain.cols);
-    std::vector<float> correction(static_cast<std::size_t>(blocks.gain.cols));
-    std::vector<float> gain(correction.size());
+    const int offset = Correlator::kLead - blocks.first;
+    const std::vector<BlockMix> rows = mixes(positions.rows, lead_row_ - centre, q_, offset, blocks.gain.rows);
+    const std::vector<BlockMix> cols = mixes(positions.cols, lead_col_ - centre, q_, offset, blocks.gain.cols);
+    const FloatPlane correction = widened(blocks.correction, cols);
+    const FloatPlane gain = widened(blocks.gain, cols);
     for (int row = 0; row < positions.rows; ++row) {
-      const Mix down = rows[static_cast<std::size_t>(row)];
-      for (std::size_t i = 0; i < gain.size(); ++i) {
-        const int col = static_cast<int>(i);
-        correction[i] = down.of(blocks.correction.at(col, down.first), blocks.correction.at(col, down.second));
-        gain[i] = down.of(blocks.gain.at(col, down.first), blocks.gain.at(col, down.second));
-      }
+      const BlockMix down = rows[static_cast<std::size_t>(row)];
+      const float *correction0 = correction.row(down.first), *correction1 = correction.row(down.second);
+      const float *gain0 = gain.row(down.first), *gain1 = gain.row(down.second);
       const float* sums =
           cross.row(row + lead_row_ + shift + Correlator::kLead) + lead_col_ + shift + Correlator::kLead;
+      const float* eligible = eligible_.row(row);
+      float* out = result.row(row);
       for (int col = 0; col < positions.cols; ++col) {
-        if (!eligible_[index(col, row)]) continue;
-        const Mix right = cols[static_cast<std::size_t>(col)];
-        const auto left = static_cast<std::size_t>(right.first);
-        const auto next = static_cast<std::size_t>(right.second);
-        result.at(col, row) =
-            (sums[col] - right.of(correction[left], correction[next])) * right.of(gain[left], gain[next]);
+        out[col] =
+            eligible[col] * (sums[col] - down.of(correction0[col], correction1[col])) * down.of(gain0[col], gain1[col]);
       }
-    }
-    return result;
-  }
-
-  /// Linear interpolation between two blocks.
-  struct Mix {
-    int first = 0;
-    int second = 0;
-    float share = 0.0F;  ///< of the second
-    float of(float a, float b) const { return a + share * (b - a); }
-  };
-
-  /// For cells start, start + 1, ...: between which blocks they lie.
-  std::vector<Mix> mixes(int count, int start, int first_block, int blocks) const {
-    std::vector<Mix> result;
-    for (int cell = start; cell < start + count; ++cell) {
-      const int block = floor_div(cell, q_);
-      const auto place = [&](int i) { return std::clamp(i - first_block + Correlator::kLead, 0, blocks - 1); };
-      result.push_back(
-          {place(block), place(block + 1), static_cast<float>(cell - block * q_) / static_cast<float>(q_)});
     }
     return result;
   }
@@ -245,12 +172,12 @@ class Scan {
     std::int64_t poses = 0;
     const float floor = current_floor();
     for (int row = 0; row < scores.rows; ++row) {
+      const std::span<const float> line(scores.row(row), static_cast<std::size_t>(scores.cols));
+      squares += square_sum(line);
+      poses += std::ssize(line) - std::ranges::count(line, 0.0F);  // not eligible, or not enough observed
       for (int col = 0; col < scores.cols; ++col) {
-        const float score = scores.at(col, row);
-        if (score == 0.0F) continue;  // not eligible, or not enough observed
-        squares += static_cast<double>(score) * static_cast<double>(score);
-        ++poses;
-        if (score > floor && is_peak(scores, row, col)) found.push_back({col, row, bin, score});
+        const float score = line[static_cast<std::size_t>(col)];
+        if (score > floor && is_peak(scores, col, row)) found.push_back({col, row, bin, score});
       }
     }
     const std::lock_guard lock(mutex_);
@@ -265,20 +192,6 @@ class Scan {
     result_.maxima.erase(cut, result_.maxima.end());
   }
 
-  std::size_t index(int col, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(request_.positions.cols) +
-           static_cast<std::size_t>(col);
-  }
-
-  static bool is_peak(const FloatPlane& scores, int row, int col) {
-    for (int r = std::max(0, row - 1); r <= std::min(scores.rows - 1, row + 1); ++r) {
-      for (int c = std::max(0, col - 1); c <= std::min(scores.cols - 1, col + 1); ++c) {
-        if (scores.at(c, r) > scores.at(col, row)) return false;
-      }
-    }
-    return true;
-  }
-
   float current_floor() {
     const std::lock_guard lock(mutex_);
     return floor_;
@@ -287,14 +200,14 @@ class Scan {
   const FeatureMap& features_;
   const ScanRequest& request_;
   const Deadline& deadline_;
+  const ScanMap& map_;
   int reach_;
+  int q_;         ///< cells per block, an edge
   int lead_col_;  ///< of the positions within the map
   int lead_row_;
   double full_cells_;
   double feature_mean_;
-  int q_;                                                ///< cells per block, an edge
-  std::optional<Correlator> cross_, observed_, values_;  ///< values_: the map's values, and their squares
-  std::vector<bool> eligible_;
+  FloatPlane eligible_;  ///< 1 or 0
   std::mutex mutex_;
   float floor_ = 0.0F;
   std::size_t scanned_ = 0;  ///< headings
@@ -313,7 +226,7 @@ int footprint_reach(const FeatureMap& features) {
   return static_cast<int>(std::ceil(reach)) + 1;
 }
 
-ScanResult coarse_scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request,
+ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline) {
   return Scan(map, features, request, deadline).run();
 }

@@ -8,6 +8,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
 #include "core/match/heading_bins.hpp"
+#include "core/match/scan_map.hpp"
 #include "core/match/work.hpp"
 
 namespace roadfix {
@@ -37,10 +38,11 @@ struct ScanResult {
   double share = 1.0;  ///< of the headings scanned before the deadline
 };
 
-/// `map` covers the positions with the footprint's reach on every side (unobserved where nothing is known). Scores are
+/// `map` covers the positions with its reach on every side (unobserved where nothing is known), which is at least the
+/// footprint's. Scores are
 /// accurate to some percent: means and spreads under the footprint come from a coarser grid. At the deadline it stops
 /// and says what it has; throws Interrupted if asked to stop.
-ScanResult coarse_scan(const RoadGrid& map, const FeatureMap& features, const ScanRequest& request,
+ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);
 
 /// Cells that a footprint reaches from its nadir at any heading.

@@ -62,6 +62,12 @@ Correlator::Correlator(const FloatPlane& first, const FloatPlane& second, int pa
   }
 }
 
+std::size_t Correlator::bytes() const {
+  std::size_t bytes = 0;
+  for (const Tile& tile : tiles_) bytes += tile.spectrum.bytes();
+  return bytes;
+}
+
 ComplexPlane Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
   assert(first.cols <= patch_ && first.rows <= patch_);
   assert(second.values.empty() || !pair_);

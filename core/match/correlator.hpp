@@ -46,6 +46,8 @@ class Correlator {
   /// patch's last cell, counted in the turned patch.
   FloatPlanes correlate(const ComplexPlane& patch_spectrum, bool half_turn) const;
 
+  std::size_t bytes() const;
+
  private:
   struct Tile {
     int col = 0;  ///< of the plane, of its first cell

@@ -25,6 +25,8 @@ class ComplexPlane {
   const float* re(int row) const { return re() + row * stride_; }
   const float* im(int row) const { return im() + row * stride_; }
 
+  std::size_t bytes() const { return (re_.size() + im_.size()) * sizeof(Block); }
+
  private:
   static constexpr int kAlignedFloats = 16;
   struct alignas(kAlignedFloats * sizeof(float)) Block {

@@ -18,6 +18,7 @@ class MapPlane {
   int cols() const { return cols_; }
   int rows() const { return rows_; }
   int margin() const { return margin_; }
+  std::size_t bytes() const { return bytes_.size(); }
   std::ptrdiff_t stride() const { return stride_; }
   /// Cell (col, row); readable from -margin to size + margin, and kOverread bytes to the right of that.
   const std::uint8_t* at(int col, int row) const { return bytes_.data() + (row + margin_) * stride_ + (col + margin_); }

@@ -152,7 +152,8 @@ class Search {
                               {positions.origin.col - reach, positions.origin.row - reach},
                               positions.cols + 2 * reach,
                               positions.rows + 2 * reach};
-    const RoadGrid map = read_(window);
+    const int block = scan_block(coarse().features.map);
+    const auto map = cached<ScanMap>(window, {reach, block}, [&] { return ScanMap(read_(window), reach, block); });
     const Deadline end = deadline_.after(kScanTimeShare);
     std::vector<LatticePose> inside;
     std::vector<LatticePose> outside;
@@ -160,7 +161,7 @@ class Search {
     result.scales = 2 * largest + 1;
     double shares = 0.0;
     for (int scale = -largest; scale <= largest; ++scale) {
-      const ScanResult found = coarse_scan(map, coarse().at_scale(scale).map, request, end);
+      const ScanResult found = coarse_scan(*map, coarse().at_scale(scale).map, request, end);
       shares += found.share;
       result.background.poses += found.poses;
       squares += found.score_square_sum;
@@ -181,6 +182,12 @@ class Search {
     const std::vector<LatticePose> others = distinct(outside, coarse(), 2.5 * cell_m, 2, kCandidates);
     candidates.insert(candidates.end(), others.begin(), others.end());
     return candidates;
+  }
+
+  template <typename T, typename Build>
+  std::shared_ptr<const T> cached(const GridGeometry& window, std::array<int, 2> parameters, Build build) const {
+    if (!options_.cache) return std::make_shared<const T>(build());
+    return options_.cache->get<T>(window, parameters, build);
   }
 
   int proof_level() const {
@@ -212,11 +219,12 @@ class Search {
     const int largest = level.scales.reach();
     const int reach = level.reach(largest) + BoundMap::kFrame;
     const GridGeometry& positions = bounded.positions;
-    const BoundMap map(level.read({level.cell_m(),
-                                   {positions.origin.col - reach, positions.origin.row - reach},
-                                   positions.cols + 2 * reach,
-                                   positions.rows + 2 * reach}));
-    bounded.map = &map;
+    const GridGeometry window{level.cell_m(),
+                              {positions.origin.col - reach, positions.origin.row - reach},
+                              positions.cols + 2 * reach,
+                              positions.rows + 2 * reach};
+    const auto map = cached<BoundMap>(window, {}, [&] { return BoundMap(level.read(window)); });
+    bounded.map = map.get();
     // What follows the best pose to the finest cells needs the rest of the time.
     const auto now = std::chrono::steady_clock::now();
     auto end = now + options_.proof_time;

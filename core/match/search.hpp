@@ -13,12 +13,14 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/match/search_cache.hpp"
 
 namespace roadfix {
 
@@ -50,6 +52,7 @@ struct SearchOptions {
   double scale_range = 0.0;
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;
+  std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
   std::stop_token stop;
   std::optional<std::chrono::steady_clock::time_point> deadline;
   /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.

@@ -30,8 +30,8 @@ std::map<std::string, fs::path> map_files(const fs::path& folder) {
 
 }  // namespace
 
-MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes)
-    : folder_(std::move(folder)), cache_bytes_(cache_bytes) {
+MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes)
+    : folder_(std::move(folder)), cache_bytes_(cache_bytes), search_cache_bytes_(search_cache_bytes) {
   if (!fs::is_directory(folder_)) {
     throw NotFound("maps-folder-not-found",
                    fmt::format("--maps {} is no folder; name the one that holds the maps", folder_.string()));
@@ -83,7 +83,8 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
   const std::string name = path.stem();
   try {
     const auto reader = std::make_shared<const MapReader>(path, cache_bytes_);
-    auto map = std::make_shared<const ServedMap>(ServedMap{name, path, reader, view_of(reader, name)});
+    auto map =
+        std::make_shared<const ServedMap>(ServedMap{name, path, reader, view_of(reader, name, search_cache_bytes_)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     return {stamp, std::move(map), {}};
   } catch (const Error& error) {
@@ -168,6 +169,12 @@ std::shared_ptr<const ServedMap> MapRegistry::find(const std::string& name) cons
 std::size_t MapRegistry::cached_bytes() const {
   std::size_t bytes = 0;
   for (const auto& map : maps()) bytes += map->reader->cached_bytes();
+  return bytes;
+}
+
+std::size_t MapRegistry::search_cached_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& map : maps()) bytes += map->view.searches ? map->view.searches->bytes() : 0;
   return bytes;
 }
 

@@ -34,8 +34,9 @@ struct UnreadableMap {
 
 class MapRegistry {
  public:
-  /// `cache_bytes` bounds the decoded tiles of each map. Throws NotFound ("maps-folder-not-found").
-  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes);
+  /// `cache_bytes` bounds the decoded tiles of each map, `search_cache_bytes` what its searches build. Throws NotFound
+  /// ("maps-folder-not-found").
+  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes = 0);
   ~MapRegistry();
   MapRegistry(const MapRegistry&) = delete;
   MapRegistry& operator=(const MapRegistry&) = delete;
@@ -52,6 +53,7 @@ class MapRegistry {
   /// reason.
   std::shared_ptr<const ServedMap> find(const std::string& name) const;
   std::size_t cached_bytes() const;
+  std::size_t search_cached_bytes() const;
 
  private:
   /// What tells that a file may have changed.
@@ -75,6 +77,7 @@ class MapRegistry {
 
   const std::filesystem::path folder_;
   const std::size_t cache_bytes_;
+  const std::size_t search_cache_bytes_;
   std::mutex refresh_mutex_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;

@@ -5,7 +5,7 @@
 
 namespace roadfix {
 
-MapView view_of(std::shared_ptr<const MapReader> reader, std::string name) {
+MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::size_t search_cache_bytes) {
   const MapInfo& info = reader->info();
   double registration_sigma_m = 0.0;
   for (const SourceStatus& source : info.sources) {
@@ -17,7 +17,8 @@ MapView view_of(std::shared_ptr<const MapReader> reader, std::string name) {
           info.settings.cell_m,
           info.extent,
           registration_sigma_m,
-          [reader](const GridGeometry& geometry) { return reader->read(geometry); }};
+          [reader = std::move(reader)](const GridGeometry& geometry) { return reader->read(geometry); },
+          search_cache_bytes > 0 ? std::make_shared<SearchCache>(search_cache_bytes) : nullptr};
 }
 
 }  // namespace roadfix

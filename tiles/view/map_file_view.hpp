@@ -10,7 +10,7 @@
 namespace roadfix {
 
 /// `name` is what the map is called in answers. The view keeps the reader alive; its registration error is the largest
-/// of the sources in force.
-MapView view_of(std::shared_ptr<const MapReader> reader, std::string name);
+/// of the sources in force. It keeps up to `search_cache_bytes` of what searches build.
+MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::size_t search_cache_bytes = 0);
 
 }  // namespace roadfix

@@ -187,6 +187,27 @@ TEST(Search, ManyThreadsGiveWhatOneGives) {
   EXPECT_EQ(one.background.poses, four.background.poses);
 }
 
+TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
+  const RoadGrid map = street_map(20, town(900, 800));
+  std::mt19937_64 random(21);
+  SearchRegion region;
+  region.box = map.geometry.box();
+  const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 130, 130, 2.0);
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult plain = search(reader_of(map), 2.0, window, region, options);
+  options.cache = std::make_shared<SearchCache>(std::size_t{1} << 30);
+  search(reader_of(map), 2.0, window, region, options);
+  const std::size_t kept = options.cache->bytes();
+  EXPECT_GT(kept, 0U);
+  const SearchResult warm = search(reader_of(map), 2.0, window, region, options);
+  EXPECT_EQ(options.cache->bytes(), kept);
+  ASSERT_EQ(warm.modes.size(), plain.modes.size());
+  EXPECT_EQ(warm.modes[0].score, plain.modes[0].score);
+  EXPECT_EQ(warm.background.sd, plain.background.sd);
+  EXPECT_EQ(warm.proof->bound, plain.proof->bound);
+}
+
 TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const RoadGrid map = street_map(7, town(800, 800));
   std::mt19937_64 random(9);

@@ -1,0 +1,58 @@
+// What a search builds of a part of a map before it can begin, kept for the next search of the same part.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <typeinfo>
+
+#include "core/grid/geometry.hpp"
+
+namespace roadfix {
+
+/// Belongs to one version of one map. Holds at most so many bytes, and gives up first what was not asked for the
+/// longest. Thread-safe: what several searches want at once is built once.
+class SearchCache {
+ public:
+  explicit SearchCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
+  template <typename T, typename Build>
+  std::shared_ptr<const T> get(const GridGeometry& window, std::array<int, 2> parameters, Build build) {
+    const auto built = entry(key_of(typeid(T).hash_code(), window, parameters), [&] {
+      auto value = std::make_shared<const T>(build());
+      return Value{value, value->bytes()};
+    });
+    return std::static_pointer_cast<const T>(built);
+  }
+
+  std::size_t bytes() const;
+
+ private:
+  using Key = std::array<std::int64_t, 8>;
+  struct Value {
+    std::shared_ptr<const void> value;
+    std::size_t bytes = 0;
+  };
+  struct Entry {
+    std::shared_future<Value> value;
+    std::size_t bytes = 0;  ///< 0 while it is being built
+    std::uint64_t asked = 0;
+  };
+
+  static Key key_of(std::size_t kind, const GridGeometry& window, std::array<int, 2> parameters);
+  std::shared_ptr<const void> entry(const Key& key, const std::function<Value()>& build);
+  void keep(const Key& key, std::size_t bytes);
+
+  const std::size_t most_bytes_;
+  mutable std::mutex mutex_;
+  std::map<Key, Entry> entries_;
+  std::size_t bytes_ = 0;
+  std::uint64_t asked_ = 0;
+};
+
+}  // namespace roadfix

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <thread>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
@@ -41,6 +42,21 @@ class HttpServer : public ::testing::Test {
                    return Response{200, "text/plain", "waited"};
                  }});
     router_.add({"GET", "/throw", {}, false, [](const Request&) -> Response { throw std::logic_error("a mistake"); }});
+    router_.add({"GET", "/stream", {}, false, [](const Request&) {
+                   Response response{200, "text/plain", {}};
+                   response.stream = [pieces = 0]() mutable -> std::optional<std::string> {
+                     return pieces++ < 3 ? std::optional<std::string>("piece ") : std::nullopt;
+                   };
+                   return response;
+                 }});
+    router_.add({"GET", "/broken-stream", {}, false, [](const Request&) {
+                   Response response{200, "text/plain", {}};
+                   response.stream = [first = true]() mutable -> std::optional<std::string> {
+                     if (!std::exchange(first, false)) throw std::runtime_error("the source has gone");
+                     return "piece ";
+                   };
+                   return response;
+                 }});
     settings_.port = 0;
     settings_.threads = 8;
   }
@@ -110,6 +126,13 @@ TEST_F(HttpServer, FinishesWhatHasBegunWhenItStops) {
 TEST_F(HttpServer, TurnsWhatAHandlerThrowsIntoAnAnswer) {
   const auto server = started();
   EXPECT_EQ(client().Get("/throw")->status, 500);
+}
+
+TEST_F(HttpServer, StreamsPiecesAndCutsOffAStreamThatFails) {
+  const auto server = started();
+  EXPECT_EQ(client().Get("/stream")->body, "piece piece piece ");
+  EXPECT_FALSE(client().Get("/broken-stream")) << "not taken for whole";
+  EXPECT_EQ(client().Get("/echo?text=alive")->body, "alive");
 }
 
 TEST_F(HttpServer, EndsAHeadThatComesTooSlowly) {

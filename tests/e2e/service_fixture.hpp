@@ -36,7 +36,7 @@ inline httplib::Client client_of(const ServiceProcess& service) {
   httplib::Client client("127.0.0.1", service.port());
   client.set_tcp_nodelay(true);
   client.set_keep_alive(true);
-  client.set_read_timeout(60);
+  client.set_read_timeout(600);
   return client;
 }
 

@@ -87,7 +87,8 @@ TEST(ServiceLife, IsAsSureAsTheCalibrationItIsGiven) {
               {"highest", 0.9},
               {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}},
               {"terms", {{"surprise", term(0.0)}, {"lead", term(0.0)}, {"gap", term(0.0)}}}};
-  const testing::ServiceProcess service(folder.path(), {"--calibration", (folder / "doubtful.json").string()});
+  const testing::ServiceProcess service(
+      folder.path(), {"--calibration", (folder / "doubtful.json").string(), "--request-time", "600"});
   httplib::Client client = testing::client_of(service);
   const json fix = testing::json_of(client.Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png"));
   EXPECT_EQ(fix["status"], "ambiguous") << fix;

@@ -21,7 +21,7 @@ class Service : public ::testing::Test {
     town = new testing::Town;
     folder = new testing::TemporaryFolder;
     testing::write_map_file(*folder / "town.gpkg", town->roads, 2.0);
-    service = new testing::ServiceProcess(folder->path(), {"--cors-origin", "*"});
+    service = new testing::ServiceProcess(folder->path(), {"--cors-origin", "*", "--request-time", "600"});
   }
   static void TearDownTestSuite() {
     delete service;

@@ -28,8 +28,14 @@ void detect(benchmark::State& state) {
   state.counters["MP/s"] = benchmark::Counter(static_cast<double>(image.pixels.total()) / 1e6,
                                               benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(detect)->Args({512, 1})->Args({512, 4})->Args({2048, 1})->MeasureProcessCPUTime()->UseRealTime()->Unit(
-    benchmark::kMillisecond);
+BENCHMARK(detect)
+    ->Args({512, 1})
+    ->Args({512, 4})
+    ->Args({1024, 1})
+    ->Args({2048, 1})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 void bare_network(benchmark::State& state) {
   const auto model = default_model();
@@ -47,7 +53,13 @@ void bare_network(benchmark::State& state) {
     benchmark::DoNotOptimize(net.forward());
   }
 }
-BENCHMARK(bare_network)->Arg(256)->Arg(1024)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(bare_network)
+    ->Arg(256)
+    ->Arg(512)
+    ->Arg(1024)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace roadfix

@@ -82,7 +82,7 @@ std::optional<double> share_below(const std::vector<double>& values, double limi
   return static_cast<double>(below) / static_cast<double>(values.size());
 }
 
-void condense(Samples samples, Summary& summary) {
+void condense(const Samples& samples, Summary& summary) {
   constexpr double kChiSquare95 = 5.991;  // of 2 degrees of freedom
   summary.updates_median = quantile(samples.updates, 0.5);
   summary.updates_p90 = quantile(samples.updates, 0.9);
@@ -139,7 +139,7 @@ Summary summary_of(std::span<const Run> runs, const Events& events) {
       samples.particles.push_back(static_cast<double>(record.estimate.particles));
     }
   }
-  condense(std::move(samples), summary);
+  condense(samples, summary);
   return summary;
 }
 

@@ -19,26 +19,26 @@ using testing::text_of;
 class FlyCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new testing::TemporaryFolder;
-    const std::string town = (*folder_ / "town").string();
+    shared_folder = new testing::TemporaryFolder;
+    const std::string town = (*shared_folder / "town").string();
     ASSERT_EQ(roadfix("world " + town + " --size-km 0.7x0.7 --frames 0").code, 0);
     ASSERT_EQ(roadfix("ingest " + town + "/pre.tif --detector tree --map " + map()).code, 0);
   }
   static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
+    delete shared_folder;
+    shared_folder = nullptr;
   }
 
-  static std::string map() { return (*folder_ / "town.gpkg").string(); }
-  static std::string after() { return (*folder_ / "town").string() + "/post.tif"; }
-  static std::string file(const std::string& name) { return (*folder_ / name).string(); }
-  static ProgramResult roadfix(const std::string& arguments) { return run_program(folder_->path(), arguments); }
+  static std::string map() { return (*shared_folder / "town.gpkg").string(); }
+  static std::string after() { return (*shared_folder / "town").string() + "/post.tif"; }
+  static std::string file(const std::string& name) { return (*shared_folder / name).string(); }
+  static ProgramResult roadfix(const std::string& arguments) { return run_program(shared_folder->path(), arguments); }
 
  private:
-  static testing::TemporaryFolder* folder_;
+  static testing::TemporaryFolder* shared_folder;
 };
 
-testing::TemporaryFolder* FlyCommand::folder_ = nullptr;
+testing::TemporaryFolder* FlyCommand::shared_folder = nullptr;
 
 TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
   const ProgramResult flown = roadfix(
@@ -62,7 +62,7 @@ TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {
   const std::string flight = "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --csv ";
   ASSERT_EQ(roadfix(flight + file("a.csv")).code, 0);
   ASSERT_EQ(roadfix(flight + file("b.csv")).code, 0);
-  const auto without_times = [](std::string text) {
+  const auto without_times = [](const std::string& text) {
     std::string kept;
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = text.find('\n', at);

@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kSureByExamples = 0.9;  ///< more needs evidence that chance explains nothing
+
 constexpr const char* kFormat = "roadfix-calibration-1";
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
@@ -49,7 +51,10 @@ double Calibration::probability(const SearchEvidence& evidence) const {
   const auto counted = [](const Term& t, double figure) { return t.weight * std::min(figure, t.most); };
   const double sum =
       bias + counted(surprise, evidence.surprise) + counted(lead, evidence.lead) + counted(gap, evidence.gap);
-  return std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
+  const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
+  // By chance exp(-surprise) places fit as well; this is the probability that there is none.
+  const double not_by_chance = std::exp(-std::exp(-evidence.surprise));
+  return std::min(learned, std::max(kSureByExamples, not_by_chance));
 }
 
 Calibration parse_calibration(std::string_view text) {

@@ -30,6 +30,13 @@ TEST(Calibration, IsNeverSurerThanItsExamples) {
   EXPECT_EQ(calibration.probability({1e9, 0.0, 0.0}), calibration.probability({8.0, 0.0, 0.0}));
 }
 
+TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
+  const Calibration& calibration = default_calibration();
+  EXPECT_EQ(calibration.probability({2.6, 100.0, 100.0}), std::exp(-std::exp(-2.6)));
+  EXPECT_EQ(calibration.probability({1.0, 100.0, 100.0}), 0.9);
+  EXPECT_GE(calibration.probability({5.0, 100.0, 100.0}), 0.99);
+}
+
 TEST(Calibration, RisesWithEveryFigure) {
   const Calibration& calibration = default_calibration();
   for (double surprise = -10.0; surprise < 20.0; surprise += 1.0) {

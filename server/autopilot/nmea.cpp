@@ -26,12 +26,12 @@ struct Utc {
 };
 
 Utc utc_of(std::int64_t time_us) {
-  using namespace std::chrono;
+  namespace chrono = std::chrono;
   if (time_us < kYear2000Us) return {};
-  const sys_time<microseconds> time{microseconds(time_us)};
-  const auto day = floor<days>(time);
-  const year_month_day date(day);
-  const auto hundredths = floor<duration<std::int64_t, std::centi>>(time - day).count();
+  const chrono::sys_time<chrono::microseconds> time{chrono::microseconds(time_us)};
+  const auto day = chrono::floor<chrono::days>(time);
+  const chrono::year_month_day date(day);
+  const auto hundredths = chrono::floor<chrono::duration<std::int64_t, std::centi>>(time - day).count();
   return {fmt::format("{:02}{:02}{:02}.{:02}", hundredths / 360'000, hundredths / 6000 % 60, hundredths / 100 % 60,
                       hundredths % 100),
           fmt::format("{:02}{:02}{:02}", static_cast<unsigned>(date.day()), static_cast<unsigned>(date.month()),

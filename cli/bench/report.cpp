@@ -17,11 +17,6 @@ using nlohmann::json;
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
-json pose_json(const GeoPose& pose) {
-  return {
-      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
-}
-
 json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(*value) : json(nullptr);
 }
@@ -34,10 +29,10 @@ json evidence_json(const std::optional<SearchEvidence>& evidence) {
 json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
-          {"truth", outcome.truth ? pose_json(*outcome.truth) : json(nullptr)},
+          {"truth", outcome.truth ? api::pose_json(*outcome.truth) : json(nullptr)},
           {"status", api::to_string(answer.status)},
           {"reason", answer.reason},
-          {"answer", answer.best ? pose_json(*answer.best) : json(nullptr)},
+          {"answer", answer.best ? api::pose_json(*answer.best) : json(nullptr)},
           {"probability", answer.probability},
           {"evidence", evidence_json(answer.evidence)},
           {"error_m", number_or_null(outcome.error_m)},

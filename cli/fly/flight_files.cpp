@@ -13,24 +13,6 @@ using nlohmann::json;
 
 constexpr double kEllipse95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom
 
-const char* word(Measurement measurement) {
-  switch (measurement) {
-    case Measurement::kNone:
-      return "none";
-    case Measurement::kSkipped:
-      return "skipped";
-    case Measurement::kSearched:
-      return "searched";
-    case Measurement::kAccepted:
-      return "accepted";
-    case Measurement::kRejected:
-      return "rejected";
-    case Measurement::kUseless:
-      break;
-  }
-  return "useless";
-}
-
 struct Covariance {
   double ee = 0.0;
   double en = 0.0;
@@ -104,7 +86,7 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
         best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
         r.estimate.converged ? 1 : 0, best.sigma_m[0], best.sigma_m[1], best.ellipse_heading.degrees(),
         best.heading_sigma.degrees(), covariance.ee, covariance.en, covariance.nn, r.estimate.cluster_count,
-        r.estimate.particles, word(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, r.cpu_ms);
+        r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, r.cpu_ms);
   }
   return lines;
 }

@@ -89,6 +89,24 @@ std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry
 
 }  // namespace
 
+const char* to_string(Measurement measurement) {
+  switch (measurement) {
+    case Measurement::kNone:
+      return "none";
+    case Measurement::kSkipped:
+      return "skipped";
+    case Measurement::kSearched:
+      return "searched";
+    case Measurement::kAccepted:
+      return "accepted";
+    case Measurement::kRejected:
+      return "rejected";
+    case Measurement::kUseless:
+      break;
+  }
+  return "useless";
+}
+
 TrackSettings TrackSettings::paper(int particles) {
   TrackSettings settings;
   settings.start = TrackStart::kUniform;

@@ -89,6 +89,8 @@ struct TrackCluster {
 
 /// What became of a step's feature map.
 enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless };
+/// "none", "skipped" ...: the word for it in answers and files.
+const char* to_string(Measurement measurement);
 
 struct TrackEstimate {
   std::int64_t sequence = 0;

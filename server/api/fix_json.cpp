@@ -5,22 +5,16 @@ namespace {
 
 using nlohmann::json;
 
-json pose_json(const GeoPose& pose) {
-  return {
-      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
-}
-
 json mode_json(const FixMode& mode) {
-  const LatLon at = mode.pose.position;
-  return {{"pose", pose_json(mode.pose)},
-          {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}},
-          {"scale", mode.scale},
-          {"weight", mode.weight},
-          {"rho", mode.rho},
-          {"sigma_m", mode.sigma_m},
-          {"ellipse_heading_deg", mode.ellipse_heading.degrees()},
-          {"heading_sigma_deg", mode.heading_sigma.degrees()},
-          {"observed_cells", mode.observed_cells}};
+  json answer = placed_json(mode.pose);
+  answer.update({{"scale", mode.scale},
+                 {"weight", mode.weight},
+                 {"rho", mode.rho},
+                 {"sigma_m", mode.sigma_m},
+                 {"ellipse_heading_deg", mode.ellipse_heading.degrees()},
+                 {"heading_sigma_deg", mode.heading_sigma.degrees()},
+                 {"observed_cells", mode.observed_cells}});
+  return answer;
 }
 
 }  // namespace
@@ -35,6 +29,16 @@ const char* to_string(FixStatus status) {
       break;
   }
   return "no_fix";
+}
+
+json pose_json(const GeoPose& pose) {
+  return {
+      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
+}
+
+json placed_json(const GeoPose& pose) {
+  const LatLon at = pose.position;
+  return {{"pose", pose_json(pose)}, {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}}};
 }
 
 json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time) {

@@ -18,6 +18,11 @@ namespace roadfix::api {
 /// "fix", "ambiguous" or "no_fix".
 const char* to_string(FixStatus status);
 
+/// lat, lon and heading_deg.
+nlohmann::json pose_json(const GeoPose& pose);
+/// An object of `pose` and `geometry`, for more to be added.
+nlohmann::json placed_json(const GeoPose& pose);
+
 /// `detect_time` where the fix began with a frame.
 nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time = {});
 

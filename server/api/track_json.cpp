@@ -4,44 +4,21 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "server/api/fix_json.hpp"
 
 namespace roadfix::api {
 namespace {
 
 using nlohmann::json;
 
-json pose_json(const GeoPose& pose) {
-  return {
-      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
-}
-
 json cluster_json(const TrackCluster& cluster) {
-  const LatLon at = cluster.pose.position;
-  return {{"pose", pose_json(cluster.pose)},
-          {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}},
-          {"weight", cluster.weight},
-          {"sigma_m", cluster.sigma_m},
-          {"ellipse_heading_deg", cluster.ellipse_heading.degrees()},
-          {"heading_sigma_deg", cluster.heading_sigma.degrees()},
-          {"radius95_m", cluster.radius95_m}};
-}
-
-const char* to_string(Measurement measurement) {
-  switch (measurement) {
-    case Measurement::kNone:
-      return "none";
-    case Measurement::kSkipped:
-      return "skipped";
-    case Measurement::kSearched:
-      return "searched";
-    case Measurement::kAccepted:
-      return "accepted";
-    case Measurement::kRejected:
-      return "rejected";
-    case Measurement::kUseless:
-      break;
-  }
-  return "useless";
+  json answer = placed_json(cluster.pose);
+  answer.update({{"weight", cluster.weight},
+                 {"sigma_m", cluster.sigma_m},
+                 {"ellipse_heading_deg", cluster.ellipse_heading.degrees()},
+                 {"heading_sigma_deg", cluster.heading_sigma.degrees()},
+                 {"radius95_m", cluster.radius95_m}});
+  return answer;
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ from . import augment
 from .normalise import network_input
 
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+MAX_TILT_DEG = 15.0  # of a camera that is not gimballed
 FILL = 118  # grey that stands for "not seen", close to the mean that the network subtracts
 
 
@@ -135,17 +136,28 @@ def load_pairs(options, root):
     return training, held_out
 
 
-def warp(level, gsd_m, size, angle, flip, centre):
-    """A square of `size` pixels of `gsd_m` round `centre` (in the level's pixels), turned by `angle`."""
+def oblique(size, tilt, distance):
+    """Homography from the pixels of a camera that looks past the vertical by `tilt`, in radians, to those of one above the
+    same middle. `distance` to the ground in the middle of the view, in pixels; ground is taken as flat."""
+    cos, sin = math.cos(tilt), math.sin(tilt)
+    view = np.array([[distance * cos, 0.0, 0.0], [0.0, distance, 0.0], [0.0, -sin, distance * cos]])
+    middle = np.array([[1.0, 0.0, (size - 1) / 2], [0.0, 1.0, (size - 1) / 2], [0.0, 0.0, 1.0]])
+    return middle @ view @ np.linalg.inv(middle)
+
+
+def warp(level, gsd_m, size, angle, flip, centre, view):
+    """A square of `size` pixels of `gsd_m` round `centre` (in the level's pixels), turned by `angle` and seen through the
+    homography `view` of its pixels."""
     step = gsd_m / level.gsd_m
     cos, sin = math.cos(angle) * step, math.sin(angle) * step
     matrix = np.array([[cos * flip, -sin, 0.0], [sin * flip, cos, 0.0]])
     middle = (size - 1) / 2
     matrix[:, 2] = np.array(centre) - matrix[:, :2] @ np.array([middle, middle])
+    matrix = np.vstack([matrix, [0.0, 0.0, 1.0]]) @ view
     how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    image = cv2.warpAffine(level.image, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
-    label = cv2.warpAffine(level.label, matrix, (size, size), flags=how, borderValue=0)
-    weight = cv2.warpAffine(level.weight, matrix, (size, size), flags=how, borderValue=0)
+    image = cv2.warpPerspective(level.image, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
+    label = cv2.warpPerspective(level.label, matrix, (size, size), flags=how, borderValue=0)
+    weight = cv2.warpPerspective(level.weight, matrix, (size, size), flags=how, borderValue=0)
     return image, label.astype(np.float32) / 255, (weight > 191).astype(np.float32)
 
 
@@ -193,10 +205,12 @@ class Crops:
         level = pair.level_for(gsd_m)
         height, width = level.image.shape[:2]
         reach = 0.5 * size * gsd_m / level.gsd_m
+        tilt = math.radians(rng.uniform(0, MAX_TILT_DEG)) if rng.random() < 0.4 else 0.0
+        view = oblique(size, tilt, size * rng.uniform(0.8, 3.0))
         best = None
         for _ in range(4):
             centre = [rng.uniform(min(reach, s / 2), max(s - reach, s / 2)) for s in (width, height)]
-            crop = warp(level, gsd_m, size, rng.uniform(0, 2 * math.pi), rng.choice([-1, 1]), centre)
+            crop = warp(level, gsd_m, size, rng.uniform(0, 2 * math.pi), rng.choice([-1, 1]), centre, view)
             seen = crop[2].mean()
             if best is None or seen > best[0]:
                 best = (seen, crop)

@@ -82,6 +82,15 @@ class Parts(unittest.TestCase):
         self.assertTrue((weight[26] == 0).all())
         self.assertTrue((weight[20] == 255).all() and (label[20] == 0).all())
 
+    def test_an_oblique_view_is_where_its_rays_meet_the_ground(self):
+        tilt, distance, middle = np.radians(15.0), 200.0, 96.0
+        view = data.oblique(193, tilt, distance)
+        for u, v in ((0, 0), (50, -70), (-96, 96)):
+            ray = np.array([u, v * np.cos(tilt) + distance * np.sin(tilt), distance * np.cos(tilt) - v * np.sin(tilt)])
+            ground = ray[:2] * distance * np.cos(tilt) / ray[2] - [0.0, distance * np.sin(tilt)]
+            seen = view @ [u + middle, v + middle, 1.0]
+            np.testing.assert_allclose(seen[:2] / seen[2] - middle, ground, atol=1e-9)
+
     def test_augmentation_leaves_what_was_not_seen_at_the_fill(self):
         image = np.full((64, 64, 3), 60, np.uint8)
         image[:, :20] = data.FILL

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/grid/bilinear_kernel.hpp"
 #include "core/grid/sampling.hpp"
 
 namespace roadfix {
@@ -97,7 +98,7 @@ FeatureMap rotated(const FeatureMap& map, Angle heading) {
       {map.nadir.col - c * centre.col - s * centre.row, map.nadir.row + s * centre.col - c * centre.row},
       {c, -s},
       {s, c}};
-  return {sampled(map.cells, placement, 2 * reach_cols + 1, 2 * reach_rows + 1), map.cell_m, centre};
+  return {BilinearSource(map.cells).sampled(placement, 2 * reach_cols + 1, 2 * reach_rows + 1), map.cell_m, centre};
 }
 
 FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/grid/resample.hpp"
 
@@ -13,29 +14,46 @@ Footprint::Footprint(const FeatureMap& north_up) {
   assert(cells.cols() <= kMaxCols);
   const int nadir_col = static_cast<int>(std::floor(north_up.nadir.col));
   const int nadir_row = static_cast<int>(std::floor(north_up.nadir.row));
+  const std::size_t blocks_of_row = (static_cast<std::size_t>(cells.cols()) + kAlignment - 1) / kAlignment;
+  values_.reserve(blocks_of_row * static_cast<std::size_t>(cells.rows()));
+  mask_.reserve(values_.capacity());
   for (int r = 0; r < cells.rows(); ++r) {
     const auto row = cells.row(r);
     const auto first = std::ranges::find_if(row, is_observed);
     if (first == row.end()) continue;
     const auto last = std::find_if(row.rbegin(), row.rend(), is_observed).base();
-    const auto length = static_cast<std::size_t>(last - first);
     const int first_col = static_cast<int>(first - row.begin()) - nadir_col;
-    rows_.push_back({first_col, r - nadir_row, static_cast<int>(length), values_.size() * kAlignment});
-    const std::size_t first_block = values_.size();
-    values_.resize(first_block + (length + kAlignment - 1) / kAlignment);
-    mask_.resize(values_.size());
-    for (std::size_t i = 0; i < length; ++i) {
-      const Cell cell = first[static_cast<std::ptrdiff_t>(i)];
-      if (!is_observed(cell)) continue;
-      values_[first_block + i / kAlignment].cells[i % kAlignment] = cell;
-      mask_[first_block + i / kAlignment].cells[i % kAlignment] = 255;
-      ++observed_cells_;
-      sum_ += cell;
-      sum_of_squares_ += std::int64_t{cell} * cell;
-    }
-    const int last_col = first_col + static_cast<int>(length) - 1;
+    const int last_col = first_col + static_cast<int>(last - first) - 1;
+    rows_.push_back({first_col, r - nadir_row, last_col - first_col + 1, values_.size() * kAlignment});
+    add_span({first, last});
     reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
   }
+}
+
+void Footprint::add_span(std::span<const Cell> span) {
+  const std::size_t first_block = values_.size();
+  values_.resize(first_block + (span.size() + kAlignment - 1) / kAlignment);
+  mask_.resize(values_.size());
+  std::uint8_t* values = values_[first_block].cells;
+  std::uint8_t* mask = mask_[first_block].cells;
+  // Loops that compilers turn into vectors.
+  for (std::size_t i = 0; i < span.size(); ++i) {
+    mask[i] = is_observed(span[i]) ? 255 : 0;
+    values[i] = span[i] & mask[i];
+  }
+  std::uint32_t observed = 0;
+  std::uint32_t sum = 0;
+  std::uint32_t squares = 0;
+  static_assert(std::uint64_t{kMaxCols} * kRoad * kRoad <= std::numeric_limits<std::uint32_t>::max());
+  for (std::size_t i = 0; i < span.size(); ++i) {
+    const std::uint32_t value = values[i];
+    observed += mask[i] & 1U;
+    sum += value;
+    squares += value * value;
+  }
+  observed_cells_ += observed;
+  sum_ += sum;
+  sum_of_squares_ += squares;
 }
 
 Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset) {

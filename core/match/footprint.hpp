@@ -45,6 +45,9 @@ class Footprint {
     std::uint8_t cells[kAlignment] = {};
   };
 
+  /// The cells of a row from the first to the last observed one.
+  void add_span(std::span<const Cell> span);
+
   std::vector<Row> rows_;
   std::vector<Block> values_;
   std::vector<Block> mask_;

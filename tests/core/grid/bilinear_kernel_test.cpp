@@ -1,0 +1,60 @@
+#include "core/grid/bilinear_kernel.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "tests/support/random_cells.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::random_cells;
+using testing::uniform;
+
+CellArray one_by_one(const CellArray& source, const Placement& placement, int cols, int rows) {
+  CellArray result(cols, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      result.at(col, row) = bilinear(source, placement.source_of(col + 0.5, row + 0.5));
+    }
+  }
+  return result;
+}
+
+/// Each instruction set that this processor has, in turn.
+class BilinearOnEachTarget : public ::testing::TestWithParam<std::int64_t> {
+ protected:
+  BilinearOnEachTarget() { hwy::SetSupportedTargetsForTest(GetParam()); }
+  ~BilinearOnEachTarget() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+TEST_P(BilinearOnEachTarget, ReadsEveryCellAsBilinearDoesToTheLastBit) {
+  std::mt19937_64 random(5);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  for (int round = 0; round < 300; ++round) {
+    const double holes = round % 3 == 0 ? 0.0 : 0.15 * (round % 6);
+    const CellArray source = random_cells(random, 1 + below(70), 1 + below(50), holes);
+    // Quarter turns put positions exactly on cells and between them, where rounding shows.
+    const double turn = round % 4 == 0 ? std::numbers::pi / 2 * below(4) : uniform(random, -4.0, 4.0);
+    const double stretch = round % 5 == 0 ? uniform(random, 0.4, 1.6) : 1.0;
+    const Placement placement{{uniform(random, -20, 60), uniform(random, -20, 60)},
+                              {stretch * std::cos(turn), stretch * std::sin(turn)},
+                              {-stretch * std::sin(turn), stretch * std::cos(turn)}};
+    const int cols = 1 + below(90);
+    const int rows = 1 + below(60);
+    ASSERT_EQ(BilinearSource(source).sampled(placement, cols, rows), one_by_one(source, placement, cols, rows))
+        << "round " << round;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, BilinearOnEachTarget, ::testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
+                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+
+}  // namespace
+}  // namespace roadfix

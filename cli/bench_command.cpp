@@ -183,6 +183,9 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
   command->add_option("--curves", a->curves,
                       "Draw reliability and answered share, over footprint and quality, as SVG into this folder");
+  command->add_option(
+      "--pictures", a->options.pictures,
+      "Draw every query into this folder: keypoint matches, roads before and after and their agreement");
   command->add_option("--calibrate", a->calibrate_file,
                       "Learn from the answers how sure they may be, and write it to this file");
   add_calibration_option(*command, a->calibration_file);

@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <span>
 
+#include "cli/bench/match_picture.hpp"
+
 namespace roadfix::bench {
 namespace {
 
@@ -49,7 +51,7 @@ cv::Ptr<cv::DescriptorMatcher> make_matcher(FeatureKind kind) {
 class FeatureMethod : public Method {
  public:
   FeatureMethod(FeatureKind kind, const std::vector<Orthoimage>& imagery, const UtmZone& zone)
-      : kind_(kind), zone_(zone), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
+      : kind_(kind), zone_(zone), imagery_(imagery), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
     const std::span all(imagery);
     for (std::size_t i = 0; i < all.size(); ++i) add(all[i], all.first(i));
     if (map_.descriptors.rows < 2) return;
@@ -70,6 +72,16 @@ class FeatureMethod : public Method {
     return result;
   }
 
+  cv::Mat drawn(const Query& query, const Answer&) const override {
+    if (!query.picture) return {};
+    std::optional<GridPose> truth;
+    if (query.truth) {
+      const GridPoint at = zone_.project(query.truth->position);
+      truth = GridPose{at, zone_.grid_from_true(query.truth->heading, at)};
+    }
+    return match_picture(imagery_, *query.picture, matches_of(*query.picture), truth);
+  }
+
  private:
   /// Where images overlap the first one counts, as in a map: a point known twice would fail the ratio test.
   void add(const Orthoimage& ortho, std::span<const Orthoimage> before) {
@@ -83,6 +95,16 @@ class FeatureMethod : public Method {
                                static_cast<float>(origin_.north_m - place.north_m));
       map_.descriptors.push_back(found.descriptors.row(i));
     }
+  }
+
+  PointMatches matches_of(const GroundImage& picture) const {
+    const Keypoints frame = detect(kind_, picture);
+    PointMatches matches;
+    for (const cv::DMatch& match : good_matches(frame)) {
+      matches.frame_px.push_back(frame.points[static_cast<std::size_t>(match.queryIdx)]);
+      matches.map_m.push_back(map_.points[static_cast<std::size_t>(match.trainIdx)]);
+    }
+    return matches;
   }
 
   std::vector<cv::DMatch> good_matches(const Keypoints& frame) const {
@@ -100,13 +122,7 @@ class FeatureMethod : public Method {
   }
 
   void place(const GroundImage& picture, Answer& result) const {
-    const Keypoints frame = detect(kind_, picture);
-    std::vector<cv::Point2f> from;
-    std::vector<cv::Point2f> to;
-    for (const cv::DMatch& match : good_matches(frame)) {
-      from.push_back(frame.points[static_cast<std::size_t>(match.queryIdx)]);
-      to.push_back(map_.points[static_cast<std::size_t>(match.trainIdx)]);
-    }
+    const auto& [from, to] = matches_of(picture);
     result.reason = "too-few-matches";
     if (from.size() < 3) return;
     cv::Mat inliers;
@@ -138,6 +154,7 @@ class FeatureMethod : public Method {
 
   FeatureKind kind_;
   UtmZone zone_;
+  std::vector<Orthoimage> imagery_;
   GridPoint origin_;
   Keypoints map_;
   cv::Ptr<cv::DescriptorMatcher> matcher_;

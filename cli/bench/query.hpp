@@ -1,6 +1,7 @@
 // One question with its truth, and one method's answer to it.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,8 @@ class Method {
  public:
   virtual ~Method() = default;
   virtual Answer answer(const Query& query) const = 0;
+  /// What led to the answer, beside the truth, for the eye (CV_8UC3). May be called from several threads.
+  virtual cv::Mat drawn(const Query& query, const Answer& answer) const = 0;
 };
 
 }  // namespace roadfix::bench

@@ -1,7 +1,9 @@
 #include "cli/bench/roads_method.hpp"
 
 #include <chrono>
+#include <utility>
 
+#include "cli/bench/agreement_picture.hpp"
 #include "core/detect/frame.hpp"
 
 namespace roadfix::bench {
@@ -9,8 +11,8 @@ namespace {
 
 class RoadsMethod : public Method {
  public:
-  RoadsMethod(const MapView& map, const RoadDetector& detector, const RoadsOptions& options)
-      : map_(map), detector_(detector), options_(options) {}
+  RoadsMethod(const MapView& map, const RoadDetector& detector, RoadsOptions options)
+      : map_(map), detector_(detector), options_(std::move(options)) {}
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
@@ -26,6 +28,10 @@ class RoadsMethod : public Method {
     }
     answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return answer;
+  }
+
+  cv::Mat drawn(const Query& query, const Answer& answer) const override {
+    return agreement_picture(map_, options_.imagery, query, features_of(query), answer);
   }
 
  private:
@@ -49,9 +55,8 @@ class RoadsMethod : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector,
-                                          const RoadsOptions& options) {
-  return std::make_unique<RoadsMethod>(map, detector, options);
+std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector, RoadsOptions options) {
+  return std::make_unique<RoadsMethod>(map, detector, std::move(options));
 }
 
 }  // namespace roadfix::bench

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 
 #include "cli/bench/feature_method.hpp"
 #include "cli/bench/queries.hpp"
@@ -23,22 +24,35 @@ void stop_if_asked(const BenchOptions& options) {
 
 std::unique_ptr<Method> make_method(const std::string& name, const ManifestMap& manifest_map, const MapView& map,
                                     const BenchOptions& options) {
-  if (name == "roads")
-    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix});
-  const auto imagery = read_imagery(manifest_map, map.zone);
+  const bool roads = name == "roads";
+  const auto imagery =
+      roads && options.pictures.empty() ? std::vector<Orthoimage>{} : read_imagery(manifest_map, map.zone);
+  if (roads)
+    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix, imagery});
   if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
   return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
 }
 
+void draw(const Method& method, const Query& query, const Answer& answer, const std::filesystem::path& file) {
+  const cv::Mat picture = method.drawn(query, answer);
+  if (picture.empty()) return;  // nothing to see, say of keypoints in a feature map
+  std::error_code failed;
+  std::filesystem::create_directories(file.parent_path(), failed);
+  if (failed || !cv::imwrite(file.string(), picture))
+    throw IoFailure("picture-unwritable", fmt::format("{} cannot be written", file.string()));
+}
+
 std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries, const UtmZone& zone,
-                         const std::string& task, const BenchOptions& options) {
+                         const std::string& task, const std::filesystem::path& pictures, const BenchOptions& options) {
   std::vector<Outcome> outcomes(queries.size());
   std::atomic<std::int64_t> done = 0;
   tbb::task_arena arena(options.jobs);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
       stop_if_asked(options);
-      outcomes[i] = judged(queries[i].id, queries[i].truth, method.answer(queries[i]), zone);
+      const Answer answer = method.answer(queries[i]);
+      if (!pictures.empty()) draw(method, queries[i], answer, pictures / (queries[i].id + ".jpg"));
+      outcomes[i] = judged(queries[i].id, queries[i].truth, answer, zone);
       options.progress(task, ++done, static_cast<std::int64_t>(queries.size()));
     });
   });
@@ -69,9 +83,11 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));
-        results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, options),
-                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere,
-                           common_quality(set)});
+        const auto pictures =
+            options.pictures.empty() ? options.pictures : options.pictures / fmt::format("{}-{}", i + 1, name);
+        results.push_back(
+            {name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, pictures, options),
+             std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere, common_quality(set)});
       }
     }
   }

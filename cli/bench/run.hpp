@@ -1,6 +1,7 @@
 // The whole bench: maps, queries, methods, in the order of the manifest.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include "cli/bench/map_builder.hpp"
@@ -15,10 +16,11 @@ struct BenchOptions {
   int jobs = 1;   ///< queries answered at a time; times of one query then include waiting for processors
   MapBuilding maps;
   FixOptions fix;
+  std::filesystem::path pictures;  ///< folder for a picture of every query and method; empty = none
   std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;
 };
 
-/// Throws Interrupted "bench-stopped" when maps.stop is requested.
+/// Throws IoFailure "picture-unwritable", Interrupted "bench-stopped" when maps.stop is requested.
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options);
 
 }  // namespace roadfix::bench

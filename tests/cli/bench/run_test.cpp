@@ -100,6 +100,24 @@ TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
   }
 }
 
+TEST_F(BenchRun, DrawsEveryQueryWhereAFolderIsNamed) {
+  options.pictures = folder / "pictures";
+  options.limit = 1;
+  run(kImageQueries, R"("roads", "sift")");
+  for (const char* file : {"1-roads/town/0000.jpg", "1-sift/town/0000.jpg"}) {
+    const cv::Mat picture = cv::imread(options.pictures / file);
+    ASSERT_FALSE(picture.empty()) << file;
+    EXPECT_GT(picture.cols, picture.rows) << file;
+  }
+}
+
+TEST_F(BenchRun, SaysThatAPictureCannotBeWritten) {
+  std::ofstream(folder / "pictures") << "a file";
+  options.pictures = folder / "pictures";
+  options.limit = 1;
+  EXPECT_THAT([&] { run(kImageQueries, R"("roads")"); }, ThrowsMessage<IoFailure>(HasSubstr("pictures")));
+}
+
 TEST_F(BenchRun, PlacesSimulatedFeatureMapsAndRealFrames) {
   const auto results = run(R"({"map": "town", "image": null, "count": 3, "footprint_m": [300, 300],
                                "noise": {"erase": 0.1, "invent": 0.1}, "prior": {"radius_m": 300}},

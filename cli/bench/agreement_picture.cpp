@@ -1,0 +1,105 @@
+#include "cli/bench/agreement_picture.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "cli/bench/panels.hpp"
+#include "core/grid/resample.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+constexpr int kPanelPx = 320;
+
+/// The probability that is drawn brightest: networks are seldom sure in places they have not seen.
+double brightest_of(const CellArray& cells) {
+  constexpr double kShare = 0.98;
+  std::vector<Cell> seen;
+  std::ranges::copy_if(cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
+  if (seen.empty()) return 1.0;
+  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
+  std::ranges::nth_element(seen, at);
+  return probability(*at);
+}
+
+cv::Vec3b colour_of(double before, double after) {
+  const auto level = [](double p) { return cv::saturate_cast<uchar>(255.0 * std::min(1.0, p)); };
+  return {level(before), level(std::min(before, after)), level(after)};
+}
+
+/// The point of the plane above which the middle of the feature map lies when its nadir is at the pose.
+GridPose centre_of(const FeatureMap& features, const GridPose& pose) {
+  const double right = (features.cells.cols() / 2.0 - features.nadir.col) * features.cell_m;
+  const double forward = (features.nadir.row - features.cells.rows() / 2.0) * features.cell_m;
+  return {{pose.position.east_m + right * cos(pose.heading) + forward * sin(pose.heading),
+           pose.position.north_m - right * sin(pose.heading) + forward * cos(pose.heading)},
+          pose.heading};
+}
+
+cv::Mat ground_before(std::span<const Orthoimage> imagery, const FeatureMap& features, const GridPose& pose) {
+  const GridPose centre = centre_of(features, pose);
+  const Footprint footprint{features.cells.cols() * features.cell_m, features.cells.rows() * features.cell_m};
+  for (const Orthoimage& ortho : imagery) {
+    if (sees(ortho, centre.position)) return cut_out(ortho, centre, footprint, ortho.image.gsd_m).pixels;
+  }
+  return {};
+}
+
+}  // namespace
+
+cv::Mat agreement(const CellArray& before, const CellArray& after) {
+  assert(before.cols() == after.cols() && before.rows() == after.rows());
+  const double most_before = brightest_of(before);
+  const double most_after = brightest_of(after);
+  cv::Mat picture(after.rows(), after.cols(), CV_8UC3, cv::Scalar::all(90));
+  for (int row = 0; row < picture.rows; ++row) {
+    for (int col = 0; col < picture.cols; ++col) {
+      const Cell then = before.at(col, row);
+      const Cell now = after.at(col, row);
+      if (!is_observed(then) || !is_observed(now)) continue;
+      picture.at<cv::Vec3b>(row, col) = colour_of(probability(then) / most_before, probability(now) / most_after);
+    }
+  }
+  return picture;
+}
+
+CellArray map_under(const MapView& map, const FeatureMap& features, const GridPose& pose) {
+  const GridPose centre = centre_of(features, pose);
+  const double reach_m =
+      0.5 * std::hypot(features.cells.cols(), features.cells.rows()) * features.cell_m + 2.0 * map.cell_m;
+  const GridPoint at = centre.position;
+  const GridBox box{{at.east_m - reach_m, at.north_m - reach_m}, {at.east_m + reach_m, at.north_m + reach_m}};
+  const RoadGrid grid = map.read(GridGeometry::covering(box, map.cell_m));
+  return cut_out(grid, centre, features.cells.cols(), features.cells.rows(), features.cell_m).cells;
+}
+
+cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imagery, const Query& query,
+                          const FeatureMap& features, const Answer& answer) {
+  const CellArray nothing(features.cells.cols(), features.cells.rows(), kNoRoad);
+  std::vector<Panel> panels;
+  const auto pose_of = [&](const GeoPose& pose) {
+    const GridPoint at = map.zone.project(pose.position);
+    return GridPose{at, map.zone.grid_from_true(pose.heading, at)};
+  };
+  if (query.truth) {
+    const cv::Mat before = ground_before(imagery, features, pose_of(*query.truth));
+    if (!before.empty()) panels.push_back({"before", before});
+  }
+  if (query.picture) panels.push_back({"after", query.picture->pixels});
+  CellArray there;
+  if (query.truth) {
+    there = map_under(map, features, pose_of(*query.truth));
+    panels.push_back({"roads before", agreement(there, nothing)});
+  }
+  panels.push_back({"roads after", agreement(nothing, features.cells)});
+  if (query.truth) panels.push_back({"both, true place", agreement(there, features.cells)});
+  if (answer.best) {
+    panels.push_back({"both, best guess", agreement(map_under(map, features, pose_of(*answer.best)), features.cells)});
+  }
+  return side_by_side(panels, kPanelPx);
+}
+
+}  // namespace roadfix::bench

@@ -1,0 +1,102 @@
+#include "cli/bench/match_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <ranges>
+
+#include "cli/bench/panels.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+constexpr double kToleranceM = 10.0;
+constexpr int kHeightPx = 700;
+const cv::Scalar kRight(60, 200, 60);
+const cv::Scalar kWrong(60, 60, 230);
+
+GridBox common_box(std::span<const Orthoimage> imagery) {
+  GridBox box = imagery.front().box();
+  for (const Orthoimage& ortho : imagery) {
+    const GridBox other = ortho.box();
+    box.min = {std::min(box.min.east_m, other.min.east_m), std::min(box.min.north_m, other.min.north_m)};
+    box.max = {std::max(box.max.east_m, other.max.east_m), std::max(box.max.north_m, other.max.north_m)};
+  }
+  return box;
+}
+
+cv::Mat coloured(const cv::Mat& pixels) {
+  if (pixels.channels() == 3) return pixels;
+  cv::Mat colour;
+  cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+/// All imagery in one picture, north up; where some overlap the first one shows.
+cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m_per_px) {
+  const auto px = [&](double metres) { return static_cast<int>(std::lround(metres / m_per_px)); };
+  cv::Mat canvas(std::max(1, px(box.height_m())), std::max(1, px(box.width_m())), CV_8UC3, cv::Scalar::all(90));
+  const cv::Rect all({}, canvas.size());
+  for (const Orthoimage& ortho : imagery | std::views::reverse) {
+    const GridBox own = ortho.box();
+    const cv::Rect place = cv::Rect(px(own.min.east_m - box.min.east_m), px(box.max.north_m - own.max.north_m),
+                                    px(own.width_m()), px(own.height_m())) &
+                           all;
+    if (place.empty()) continue;
+    cv::Mat shown;
+    cv::resize(coloured(ortho.image.pixels), shown, place.size(), 0, 0, cv::INTER_AREA);
+    shown.copyTo(canvas(place));
+  }
+  return canvas;
+}
+
+}  // namespace
+
+std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, const GroundImage& frame,
+                                const GridPose& truth, double tolerance_m) {
+  std::vector<bool> right;
+  for (std::size_t i = 0; i < matches.frame_px.size(); ++i) {
+    const cv::Point2d seen = matches.frame_px[i];
+    const cv::Point2d known = matches.map_m[i];
+    const double across = (seen.x + 0.5 - frame.pixels.cols / 2.0) * frame.gsd_m;
+    const double ahead = (frame.pixels.rows / 2.0 - 0.5 - seen.y) * frame.gsd_m;
+    const double east = truth.position.east_m + across * cos(truth.heading) + ahead * sin(truth.heading);
+    const double north = truth.position.north_m - across * sin(truth.heading) + ahead * cos(truth.heading);
+    const GridPoint found{origin.east_m + known.x, origin.north_m - known.y};
+    right.push_back(distance_m(found, {east, north}) <= tolerance_m);
+  }
+  return right;
+}
+
+cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundImage& frame, const PointMatches& matches,
+                      const std::optional<GridPose>& truth) {
+  const GridBox box = common_box(imagery);
+  const GridPoint origin = imagery.front().north_west;
+  const double m_per_px = box.height_m() / kHeightPx;
+  const double frame_scale = static_cast<double>(kHeightPx) / frame.pixels.rows;
+  cv::Mat before = mosaic(imagery, box, m_per_px);
+  cv::Mat after;
+  cv::resize(coloured(frame.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
+  cv::resize(before, before, {before.cols, after.rows});
+  std::vector<bool> right(matches.map_m.size(), false);
+  if (truth) right = right_matches(matches, origin, frame, *truth, kToleranceM);
+
+  cv::Mat both;
+  cv::hconcat(before, after, both);
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    const cv::Point2d seen = matches.frame_px[i];
+    const cv::Point2d known = matches.map_m[i];
+    const cv::Point2d from((origin.east_m + known.x - box.min.east_m) / m_per_px,
+                           (box.max.north_m - origin.north_m + known.y) / m_per_px);
+    const cv::Point2d to(before.cols + seen.x * frame_scale, seen.y * frame_scale);
+    cv::line(both, from, to, right[i] ? kRight : kWrong, 1, cv::LINE_AA);
+  }
+  return side_by_side({{fmt::format("{} matches, {} of them right within {} m", right.size(),
+                                    std::ranges::count(right, true), kToleranceM),
+                        both}},
+                      both.rows);
+}
+
+}  // namespace roadfix::bench

@@ -1,0 +1,37 @@
+#include "cli/bench/panels.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace roadfix::bench {
+namespace {
+
+constexpr int kTitlePx = 22;
+constexpr int kGapPx = 6;
+
+cv::Mat framed(const Panel& panel, int height_px) {
+  cv::Mat colour = panel.pixels;
+  if (colour.channels() == 1) cv::cvtColor(colour, colour, cv::COLOR_GRAY2BGR);
+  const double scale = static_cast<double>(height_px) / colour.rows;
+  const cv::Size size(std::max(1, static_cast<int>(colour.cols * scale)), height_px);
+  cv::Mat scaled;
+  cv::resize(colour, scaled, size, 0, 0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_NEAREST);
+  cv::Mat result;
+  cv::copyMakeBorder(scaled, result, kTitlePx, 0, 0, kGapPx, cv::BORDER_CONSTANT, cv::Scalar::all(255));
+  cv::putText(result, panel.title, {2, kTitlePx - 7}, cv::FONT_HERSHEY_SIMPLEX, 0.42, cv::Scalar::all(0), 1,
+              cv::LINE_AA);
+  return result;
+}
+
+}  // namespace
+
+cv::Mat side_by_side(const std::vector<Panel>& panels, int height_px) {
+  std::vector<cv::Mat> columns;
+  columns.reserve(panels.size());
+  for (const Panel& panel : panels) columns.push_back(framed(panel, height_px));
+  cv::Mat result;
+  cv::hconcat(columns, result);
+  return result;
+}
+
+}  // namespace roadfix::bench

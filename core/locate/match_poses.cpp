@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
+#include <numbers>
+#include <utility>
 
+#include "core/geodesy/local_projection.hpp"
+#include "core/locate/binned_matches.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
@@ -14,8 +16,7 @@
 namespace roadfix {
 namespace {
 
-constexpr int kBlockCells = 1024;  // poses whose nadirs share such a block share one read of the map
-
+/// A pose on the map's lattice.
 struct GridQuery {
   std::size_t index = 0;  ///< in the list of poses
   LatticeIndex cell;
@@ -23,102 +24,78 @@ struct GridQuery {
   Angle heading;
 };
 
-using BlockKey = std::tuple<int, int>;
-
-class Matcher {
- public:
-  Matcher(const MapView& map, const FeatureMap& features, const MatchOptions& options)
-      : map_(map), options_(options), features_(in_cells_of(map, features)), reach_(footprint_reach(features_)) {}
-
-  std::vector<MatchScore> run(std::span<const GeoPose> poses) {
-    std::vector<MatchScore> scores(poses.size());
-    for (const auto& [block, queries] : blocks_of(poses)) score_block(block, queries, scores);
-    return scores;
+/// Where the poses lie; those off the map are left out, since nothing is observed there.
+std::vector<GridQuery> queries_of(const MapView& map, std::span<const GeoPose> poses, double cell_m, double reach_m) {
+  const GridBox wide{{map.extent.min.east_m - reach_m, map.extent.min.north_m - reach_m},
+                     {map.extent.max.east_m + reach_m, map.extent.max.north_m + reach_m}};
+  PointProjector project(map.zone);
+  std::vector<GridQuery> queries;
+  queries.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto projected = project(poses[i].position);
+    if (!projected || !wide.contains(projected->point)) continue;
+    const GridPoint at = projected->point;
+    const double col = std::floor(at.east_m / cell_m);
+    const double row = std::floor(-at.north_m / cell_m);
+    queries.push_back({i,
+                       {static_cast<int>(col), static_cast<int>(row)},
+                       {at.east_m / cell_m - col - 0.5, -at.north_m / cell_m - row - 0.5},
+                       poses[i].heading - projected->convergence});
   }
+  return queries;
+}
 
- private:
-  /// Poses off the map are in no block: nothing is observed there.
-  std::map<BlockKey, std::vector<GridQuery>> blocks_of(std::span<const GeoPose> poses) const {
-    const double cell_m = features_.cell_m;
-    const double reach_m = reach_ * cell_m;
-    const GridBox wide{{map_.extent.min.east_m - reach_m, map_.extent.min.north_m - reach_m},
-                       {map_.extent.max.east_m + reach_m, map_.extent.max.north_m + reach_m}};
-    std::map<BlockKey, std::vector<GridQuery>> blocks;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const auto projected = map_.zone.project_if_defined(poses[i].position);
-      if (!projected || !wide.contains(*projected)) continue;
-      const GridPoint at = *projected;
-      const double col = std::floor(at.east_m / cell_m);
-      const double row = std::floor(-at.north_m / cell_m);
-      GridQuery query{i, {static_cast<int>(col), static_cast<int>(row)}, {}, {}};
-      query.offset = {at.east_m / cell_m - col - 0.5, -at.north_m / cell_m - row - 0.5};
-      query.heading = map_.zone.grid_from_true(poses[i].heading, at);
-      const auto block = [](double cell) { return static_cast<int>(std::floor(cell / kBlockCells)); };
-      blocks[{block(col), block(row)}].push_back(query);
-    }
-    return blocks;
+MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridQuery& query, int reach) {
+  const int size = 2 * reach + 1;
+  const GridGeometry window{features.cell_m, {query.cell.col - reach, query.cell.row - reach}, size, size};
+  const MapPlane plane(map.read(window).cells, 0);
+  const PlaneCell middle{reach, reach};
+  MatchSums sums;
+  match_sums(plane, footprint_at(features, query.heading, query.offset), std::span(&middle, 1), std::span(&sums, 1));
+  return sums;
+}
+
+void match_exactly(const MapView& map, const FeatureMap& features, std::span<const GridQuery> queries,
+                   const MatchOptions& options, std::span<MatchSums> sums) {
+  const int reach = footprint_reach(features) + 1;  // a nadir off its cell's centre may need one more
+  const Deadline deadline(options.stop, {});
+  parallel_for(static_cast<int>(queries.size()), options.threads, [&](int i) {
+    deadline.check();
+    const GridQuery& query = queries[static_cast<std::size_t>(i)];
+    sums[query.index] = sums_at(map, features, query, reach);
+  });
+}
+
+void match_in_bins(const MapView& map, const FeatureMap& features, std::span<const GridQuery> queries,
+                   const MatchOptions& options, std::span<MatchSums> sums) {
+  constexpr double kMostBins = 1e6;
+  const double wanted = std::ceil(2.0 * std::numbers::pi / options.heading_step.radians());
+  const HeadingBins bins(static_cast<int>(std::min(wanted, kMostBins)));
+  std::vector<BinnedPose> binned;
+  binned.reserve(queries.size());
+  for (const GridQuery& query : queries) {
+    const double turned = query.heading.compass_degrees() / 360.0 * bins.count();
+    binned.push_back({query.cell, bins.wrapped(static_cast<int>(std::round(turned))), query.index});
   }
-
-  void score_block(const BlockKey& block, const std::vector<GridQuery>& queries,
-                   std::vector<MatchScore>& scores) const {
-    const auto [block_col, block_row] = block;
-    const LatticeIndex first{block_col * kBlockCells - reach_, block_row * kBlockCells - reach_};
-    const int size = kBlockCells + 2 * reach_;
-    const MapPlane plane(map_.read({features_.cell_m, first, size, size}).cells, 0);
-    const auto place = [&](const GridQuery& query) {
-      return PlaneCell{query.cell.col - first.col, query.cell.row - first.row};
-    };
-    if (options_.heading_step.radians() > 0.0) {
-      score_by_bins(plane, queries, place, scores);
-      return;
-    }
-    const Deadline deadline(options_.stop, {});
-    parallel_for(static_cast<int>(queries.size()), options_.threads, [&](int i) {
-      deadline.check();
-      const GridQuery& query = queries[static_cast<std::size_t>(i)];
-      const Footprint footprint = footprint_at(features_, query.heading, query.offset);
-      const PlaneCell at = place(query);
-      MatchSums sums;
-      match_sums(plane, footprint, std::span(&at, 1), std::span(&sums, 1));
-      scores[query.index] = {rho(sums), sums.n};
-    });
-  }
-
-  template <typename Place>
-  void score_by_bins(const MapPlane& plane, const std::vector<GridQuery>& queries, Place place,
-                     std::vector<MatchScore>& scores) const {
-    const double turn = 2.0 * std::numbers::pi;
-    const double bins = std::max(1.0, std::ceil(turn / options_.heading_step.radians()));
-    std::map<int, std::vector<const GridQuery*>> members;
-    for (const GridQuery& query : queries) {
-      const double turned = query.heading.compass_degrees() / 360.0 * bins;
-      members[static_cast<int>(std::fmod(std::round(turned), bins))].push_back(&query);
-    }
-    std::vector<std::pair<int, std::vector<const GridQuery*>>> tasks(members.begin(), members.end());
-    const Deadline deadline(options_.stop, {});
-    parallel_for(static_cast<int>(tasks.size()), options_.threads, [&](int t) {
-      deadline.check();
-      const auto& [bin, poses] = tasks[static_cast<std::size_t>(t)];
-      const Footprint footprint = footprint_at(features_, Angle::radians(turn * bin / bins));
-      std::vector<PlaneCell> places;
-      for (const GridQuery* query : poses) places.push_back(place(*query));
-      std::vector<MatchSums> sums(places.size());
-      match_sums(plane, footprint, places, sums);
-      for (std::size_t i = 0; i < poses.size(); ++i) scores[poses[i]->index] = {rho(sums[i]), sums[i].n};
-    });
-  }
-
-  const MapView& map_;
-  const MatchOptions& options_;
-  FeatureMap features_;
-  int reach_;
-};
+  match_binned(map, features, bins, std::move(binned), options.threads, options.stop, sums);
+}
 
 }  // namespace
 
 std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                               const MatchOptions& options) {
-  return Matcher(map, features, options).run(poses);
+  const FeatureMap cells = in_cells_of(map, features);
+  const std::vector<GridQuery> queries = queries_of(map, poses, cells.cell_m, footprint_reach(cells) * cells.cell_m);
+  std::vector<MatchSums> sums(poses.size());
+  if (options.heading_step.radians() > 0.0) {
+    match_in_bins(map, cells, queries, options, sums);
+  } else {
+    match_exactly(map, cells, queries, options, sums);
+  }
+  std::vector<MatchScore> scores;
+  scores.reserve(sums.size());
+  for (const MatchSums& s : sums) scores.push_back({rho(s), s.n});
+  return scores;
 }
 
 }  // namespace roadfix

@@ -7,8 +7,11 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "core/filter/filter.hpp"
+#include "core/locate/evidence.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/match_poses.hpp"
+#include "core/locate/particle_matches.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "tests/support/map_view.hpp"
@@ -104,7 +107,7 @@ void equation5_opencv(benchmark::State& state) {
 BENCHMARK(equation5_opencv)->Arg(64)->Arg(200)->Unit(benchmark::kMillisecond);
 
 /// 10,000 particles anywhere with any heading, from latitude and longitude to rho, turning of the feature map included.
-void match_particles(benchmark::State& state) {
+void match_poses(benchmark::State& state) {
   const auto side = static_cast<int>(state.range(0));
   const MapView view = testing::view_of(small_map());
   const FeatureMap window = window_of(small_map(), side);
@@ -120,7 +123,31 @@ void match_particles(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(match(view, window, poses, options));
   count_cells(state, side);
 }
-BENCHMARK(match_particles)->Arg(64)->Unit(benchmark::kMillisecond);
+BENCHMARK(match_poses)->Arg(64)->Unit(benchmark::kMillisecond);
+
+/// Predict by odometry, weight by equation (5) and resample, as the steps of a track do, particles all over the map.
+void filter_step(benchmark::State& state) {
+  const MapView view = testing::view_of(small_map());
+  const FeatureMap window = window_of(small_map(), static_cast<int>(state.range(0)));
+  FilterOptions options = FilterOptions::paper(kPoses);
+  AcceptanceRegion region;
+  region.box = view.extent;
+  Filter filter(options, region, 5);
+  filter.start_uniformly(region);
+  OdometryCovariance covariance{};
+  for (std::size_t i = 0; i < 3; ++i) covariance[i][i] = 1e-4;
+  const OdometryMotion motion({5.0, 0.0, Angle::degrees(3.0)}, covariance, 1.0, 0.1);
+  const EvidenceModel evidence;
+  std::vector<double> log_likelihoods(kPoses);
+  for (auto _ : state) {
+    filter.predict(motion);
+    const std::vector<MatchSums> sums = match_particles(view, window, filter.particles());
+    for (std::size_t i = 0; i < sums.size(); ++i) log_likelihoods[i] = 0.01 * evidence.log_likelihood(sums[i], 2.0);
+    benchmark::DoNotOptimize(filter.correct(log_likelihoods));
+  }
+  count_cells(state, static_cast<int>(state.range(0)));
+}
+BENCHMARK(filter_step)->Arg(64)->Unit(benchmark::kMillisecond);
 
 const RoadGrid& town() {
   static const RoadGrid map = testing::street_map(1, {2.0, {300'000, -3'200'000}, 3250, 1900});

@@ -30,8 +30,8 @@ CellArray one_by_one(const CellArray& source, const Placement& placement, int co
 /// Each instruction set that this processor has, in turn.
 class BilinearOnEachTarget : public ::testing::TestWithParam<std::int64_t> {
  protected:
-  BilinearOnEachTarget() { hwy::SetSupportedTargetsForTest(GetParam()); }
-  ~BilinearOnEachTarget() override { hwy::SetSupportedTargetsForTest(0); }
+  void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
 TEST_P(BilinearOnEachTarget, ReadsEveryCellAsBilinearDoesToTheLastBit) {

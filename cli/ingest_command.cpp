@@ -2,6 +2,7 @@
 #include "cli/detector_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -131,6 +132,7 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
     json["features"] = summary.features;
     json["left_out"] = summary.left_out;
   }
+  if (!summary.notes.empty()) json["notes"] = summary.notes;
   return json;
 }
 
@@ -169,10 +171,20 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
              lines ? "features" : "MP", report.fusing_s);
 }
 
+/// On stderr, so that --json stays clean.
+void print_notes(const SourceFiles& files, const SourceSummary& summary) {
+  for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
+  if (files.left_out.empty()) return;
+  fmt::print(stderr,
+             "note: a folder is one source, {} one of images; left out are {}: ingest vectors by their own paths\n",
+             files.location, fmt::join(files.left_out, ", "));
+}
+
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
   const std::unique_ptr<CellSource> source = open_source(request, settings, detector);
   const SourceSummary summary = source->summary();
+  print_notes(request.files, summary);
   const SourceRecord record = record_of(arguments, request, summary);
   const auto blocks = static_cast<std::int64_t>(plan_blocks(*source, settings).size());
   const nlohmann::json json = summary_json(record, summary, blocks, settings);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
@@ -20,6 +21,7 @@ struct SourceSummary {
   std::int64_t features = 0;  ///< lines drawn, for vectors
   std::int64_t left_out = 0;  ///< features that the rules leave out
   double registration_sigma_m = 0.0;
+  std::vector<std::string> notes = {};  ///< what was assumed of it, for the user to read
 };
 
 class CellSource {

@@ -90,18 +90,66 @@ struct LayerReader {
   bool has_lines = false;
 };
 
-/// The attribute that the user named, or the one of OpenStreetMap or of Geofabrik's extracts.
+bool has_attribute(OGRLayer& layer, const std::string& name) {
+  return layer.GetLayerDefn()->GetFieldIndex(name.c_str()) >= 0;
+}
+
+/// Whether at least half of the first values of the attribute are classes of the rules.
+bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
+  constexpr int kSample = 200;
+  int values = 0;
+  int known = 0;
+  layer.ResetReading();
+  for (int i = 0; i < kSample; ++i) {
+    const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
+    if (!feature) break;
+    const std::string value = feature->GetFieldAsString(attribute.c_str());
+    if (value.empty()) continue;
+    ++values;
+    known += rules.knows(value) ? 1 : 0;
+  }
+  layer.ResetReading();
+  return values > 0 && 2 * known >= values;
+}
+
+/// The attribute that the user named or that of OpenStreetMap, else one that other road data keep the same classes in.
+std::string class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
+  const std::string& wanted = rules.class_attribute();
+  if (has_attribute(layer, wanted) || wanted != RoadRules().class_attribute()) return wanted;
+  for (const char* usual : {"fclass", "type", "class", "road_class"}) {
+    if (has_attribute(layer, usual) && holds_classes(layer, usual, rules)) return usual;
+  }
+  return wanted;
+}
+
 LayerReader reader_of(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules) {
   LayerReader reader{std::move(to_plane), rules, false, false};
-  const auto has = [&layer](const std::string& attribute) {
-    return layer.GetLayerDefn()->GetFieldIndex(attribute.c_str()) >= 0;
-  };
-  constexpr const char* kGeofabrik = "fclass";
-  if (!has(rules.class_attribute()) && rules.class_attribute() == RoadRules().class_attribute() && has(kGeofabrik)) {
-    reader.rules.set_class_attribute(kGeofabrik);
-  }
-  reader.classified = has(reader.rules.class_attribute());
+  reader.rules.set_class_attribute(class_attribute_of(layer, rules));
+  reader.classified = has_attribute(layer, reader.rules.class_attribute());
   return reader;
+}
+
+/// Tells how the lines of a layer were told apart where that was not what the rules say.
+void note_classes(OGRLayer& layer, const LayerReader& reader, const RoadRules& rules, const std::string& path,
+                  RoadNetwork& network) {
+  if (!reader.has_lines || (reader.classified && reader.rules.class_attribute() == rules.class_attribute())) return;
+  const std::string about = fmt::format("layer '{}' of ", layer.GetName());
+  if (std::ranges::any_of(network.notes, [&](const auto& note) { return note.starts_with(about); })) return;
+  if (reader.classified) {
+    network.notes.push_back(fmt::format("{}{}: the classes of its roads are taken from the attribute '{}'", about, path,
+                                        reader.rules.class_attribute()));
+    if (network.class_attribute.empty()) network.class_attribute = reader.rules.class_attribute();
+    return;
+  }
+  std::string names;
+  const OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  for (int i = 0; i < definition.GetFieldCount(); ++i) {
+    names += fmt::format("{}{}", i == 0 ? "" : ", ", definition.GetFieldDefn(i)->GetNameRef());
+  }
+  network.notes.push_back(
+      fmt::format("{}{}: no attribute '{}', so every line is drawn as a road; it has {}. --class-attribute and "
+                  "--width-attribute tell roads apart",
+                  about, path, rules.class_attribute(), names.empty() ? "no attributes" : "the attributes " + names));
 }
 
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
@@ -124,6 +172,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     const std::optional<double> width = reader.rules.width_of(std::ref(tags), reader.classified);
     if (!width || !add_geometry(*geometry, *reader.to_plane, *width, network)) ++network.left_out;
   });
+  for (OGRLayer* layer : file.layers()) note_classes(*layer, readers.at(layer), rules, path, network);
   if (!options.extent.empty()) return;
   for (OGRLayer* layer : file.layers()) {
     const LayerReader& reader = readers.at(layer);

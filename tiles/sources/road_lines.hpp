@@ -34,8 +34,12 @@ struct RoadNetwork {
   std::vector<PlanePolygon> covered;
   std::int64_t left_out = 0;  ///< features that the rules leave out or that have no place in the zone
   std::string crs;
+  std::string class_attribute;     ///< of the first layer that has one where the rules do not name it; else empty
+  std::vector<std::string> notes;  ///< what was assumed, for the user to read: one for each layer name
 };
 
+/// The class attribute is that of the rules; where a layer lacks it and the user named none, the first of fclass, type,
+/// class and road_class whose values are mostly classes of the rules. A layer without any is all roads.
 /// OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound,
 /// InvalidInput ("source-unreadable", "roads-without-georeference", "source-without-roads", "crs-not-transformable",
 /// "extent-unreadable") or CorruptData ("roads-unreadable").

@@ -49,6 +49,8 @@ class RoadRules {
   /// then a feature without class is no road; otherwise every line is one.
   std::optional<double> width_of(const TagLookup& tags, bool classified) const;
   const std::string& class_attribute() const { return class_attribute_; }
+  /// Whether the table has a line for the class, drawn or not.
+  bool knows(std::string_view road_class) const { return find(road_class) != nullptr; }
   /// All of it in one line, for provenance and fingerprint.
   std::string describe() const;
 

@@ -64,8 +64,11 @@ SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
   if (result.paths.empty()) {
     result.kind = SourceKind::kRoadVectors;
     result.paths = std::move(vectors);
+  } else {
+    result.left_out = std::move(vectors);
   }
   std::ranges::sort(result.paths);
+  std::ranges::sort(result.left_out);
   return result;
 }
 

@@ -18,7 +18,8 @@ struct SourceFiles {
   std::string name;  ///< stem of the file or name of the folder
   std::string location;
   SourceKind kind = SourceKind::kImagery;
-  std::vector<std::string> paths;  ///< of a folder all images or vector files in it and below, sorted
+  std::vector<std::string> paths;          ///< of a folder all images or vector files in it and below, sorted
+  std::vector<std::string> left_out = {};  ///< vector files of a folder whose images are the source, sorted
 };
 
 /// Throws NotFound "source-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").

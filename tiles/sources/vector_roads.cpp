@@ -77,6 +77,7 @@ class RoadVectors final : public CellSource {
     const Certainty certainty;
     summary_.method =
         fmt::format("drawn roads {} elsewhere {}; {}", certainty.on_road, certainty.elsewhere, rules.describe());
+    if (!class_attribute_.empty()) summary_.method += fmt::format("; classes in {}", class_attribute_);
     if (!options.extent.empty()) summary_.method += fmt::format("; extent {}", options.extent);
     if (!options.layer.empty()) summary_.method += fmt::format("; layer {}", options.layer);
     if (!options.crs.empty()) summary_.method += fmt::format("; crs {}", options.crs);
@@ -109,7 +110,8 @@ class RoadVectors final : public CellSource {
   }
 
  private:
-  RoadVectors(RoadNetwork network, double cell_m) : index_(network), covered_(std::move(network.covered)) {
+  RoadVectors(RoadNetwork network, double cell_m)
+      : index_(network), covered_(std::move(network.covered)), class_attribute_(std::move(network.class_attribute)) {
     extent_ = covered_.front().box();
     for (const PlanePolygon& polygon : covered_) {
       const GridBox& box = polygon.box();
@@ -122,10 +124,12 @@ class RoadVectors final : public CellSource {
     summary_.features = static_cast<std::int64_t>(network.lines.size());
     summary_.left_out = network.left_out;
     summary_.registration_sigma_m = kVectorSigmaM;
+    summary_.notes = std::move(network.notes);
   }
 
   SegmentIndex index_;
   std::vector<PlanePolygon> covered_;
+  std::string class_attribute_;
   GridBox extent_;
   SourceSummary summary_;
 };

@@ -52,6 +52,15 @@ TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
   EXPECT_EQ(files.kind, SourceKind::kRoadRaster);
 }
 
+TEST_F(SourceFilesTest, VectorsBesideTheImagesOfAFolderAreLeftOutAndNamed) {
+  const std::string a = image("a.tif");
+  const std::string lines = (folder / "lines.geojson").string();
+  std::ofstream(lines) << kLine;
+  const SourceFiles files = find_source(folder.path().string(), SourceMeaning::kAuto);
+  EXPECT_THAT(files.paths, ElementsAre(a));
+  EXPECT_THAT(files.left_out, ElementsAre(lines));
+}
+
 TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
   EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "source-not-found");
   EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");

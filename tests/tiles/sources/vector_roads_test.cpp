@@ -15,7 +15,11 @@
 namespace roadfix {
 namespace {
 
+using ::testing::AllOf;
 using testing::code_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const UtmZone kZone = *UtmZone::from_epsg(32637);
 constexpr GridPoint kCentre{400000.0, 4200000.0};
@@ -133,6 +137,27 @@ TEST_F(VectorRoads, ClassesOfGeofabriksExtractsAreKnown) {
   const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
   ASSERT_EQ(network.lines.size(), 1U);
   EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+}
+
+TEST_F(VectorRoads, AnotherAttributeIsTakenForTheClassWhereItHoldsClassesAndSaidSo) {
+  const std::string path = geojson({feature(R"("TYPE":"primary")", at(-150, 40), at(150, 40)),
+                                    feature(R"("TYPE":"footway")", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 1U);
+  EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+  EXPECT_EQ(network.class_attribute, "type");
+  EXPECT_THAT(network.notes, ElementsAre(HasSubstr("'type'")));
+  EXPECT_THAT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->summary().method, HasSubstr("classes in type"));
+}
+
+TEST_F(VectorRoads, LinesWithoutClassesAreAllRoadsAndSaidSo) {
+  const std::string path = geojson({feature(R"("type":"A","lanes":4)", at(-150, 40), at(150, 40)),
+                                    feature(R"("type":"primary","lanes":2)", at(-150, -40), at(150, -40)),
+                                    feature(R"("type":"B","lanes":2)", at(-150, -90), at(150, -90))});
+  const RoadNetwork network = read_road_network({path, path}, {}, RoadRules(), kZone);
+  EXPECT_EQ(network.lines.size(), 6U);
+  EXPECT_THAT(network.class_attribute, IsEmpty());
+  EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("type, lanes"), HasSubstr("--class-attribute"))));
 }
 
 TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {

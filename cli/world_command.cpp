@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,18 @@ struct Options {
   std::vector<double> center;
 };
 
+/// So that the frames can be asked about at once, by every method.
+void write_bench(const std::filesystem::path& folder) {
+  const nlohmann::ordered_json manifest{
+      {"maps", {{{"name", "before"}, {"sources", {{{"path", "pre.tif"}, {"as", "imagery"}}}}}}},
+      {"queries", {{{"map", "before"}, {"frames", "frames/frames.csv"}}}},
+      {"methods", {"roads", "sift", "orb"}}};
+  const std::filesystem::path path = folder / "bench.json";
+  std::ofstream out(path);
+  out << manifest.dump(2) << '\n';
+  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path.string()));
+}
+
 void render(const Options& options) {
   world::WorldSettings settings = options.settings;
   settings.width_m = options.size_km[0] * 1000.0;
@@ -30,6 +45,7 @@ void render(const Options& options) {
     return world::render_world(
         settings, options.folder, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
   }();
+  if (report.frames > 0) write_bench(options.folder);
   fmt::print(
       "{}: pre.tif and post.tif, {} x {} pixels of {:g} m in EPSG:{}\n"
       "{:.1f} km of roads, {} buildings of which {} collapsed, {} frames (seed {})\n",
@@ -45,7 +61,8 @@ void add_world_command(CLI::App& app) {
   command->footer(
       "Examples: roadfix world town\n"
       "          roadfix world goteborg --roads highways.geojson --center 57.70,11.97 --size-km 2x1.5\n"
-      "Writes pre.tif, post.tif, roads.geojson, world.json and frames/ with frames.csv.");
+      "Writes pre.tif, post.tif, roads.geojson, world.json, frames/ with frames.csv, and bench.json for roadfix "
+      "bench.");
   const auto options = std::make_shared<Options>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder,--out", options->folder, "Folder to write, made where it is missing")->required();

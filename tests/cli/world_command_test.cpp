@@ -1,0 +1,30 @@
+// roadfix world as a script meets it.
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::ProgramResult;
+using testing::run_program;
+
+TEST(WorldCommand, LeavesAManifestThatBenchRunsAsItIs) {
+  const testing::TemporaryFolder folder;
+  const std::string town = (folder / "town").string();
+  const ProgramResult world = run_program(folder.path(), "world " + town + " --size-km 0.6x0.6 --frames 1");
+  ASSERT_EQ(world.code, 0) << world.err;
+  const ProgramResult bench = run_program(
+      folder.path(), "bench " + town + "/bench.json --detector tree --map-cache " + (folder / "cache").string());
+  EXPECT_EQ(bench.code, 0) << bench.err;
+  for (const char* method : {"roads  before", "sift   before", "orb    before"}) {
+    EXPECT_THAT(bench.out, HasSubstr(method));
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

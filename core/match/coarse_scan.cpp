@@ -1,18 +1,44 @@
 #include "core/match/coarse_scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <span>
 
 #include "core/grid/resample.hpp"
 #include "core/match/correlator.hpp"
+#include "core/match/scan_kernel.hpp"
+#include "core/match/scan_means.hpp"
 #include "core/match/scan_planes.hpp"
-#include "core/match/score.hpp"
 
 namespace roadfix {
 namespace {
+
+/// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them, and
+/// a transform.
+constexpr int kSharing = 2;
+
+int widened_for_vectors(int cols) { return cols + kRowOverrun; }
+
+/// Planes that a thread uses again and again.
+struct ScanBuffers {
+  ComplexPlane cross, sums, scratch;
+  FloatPlane correction, gain, scores;
+  std::vector<int> peaks;
+
+  explicit ScanBuffers(int side) : cross(side), sums(side), scratch(side), scores(widened_for_vectors(side), side) {}
+};
+
+/// What scans of some headings found.
+struct Found {
+  std::vector<ScanPose> maxima;
+  double squares = 0.0;
+  std::int64_t poses = 0;
+  std::size_t headings = 0;
+};
 
 class Scan {
  public:
@@ -22,15 +48,17 @@ class Scan {
         deadline_(deadline),
         map_(map),
         reach_(map.reach()),
-        q_(map.block()),
         lead_col_(request.positions.origin.col - map.geometry().origin.col),
         lead_row_(request.positions.origin.row - map.geometry().origin.row),
         full_cells_(static_cast<double>(features.cells.observed_count())),
         feature_mean_(mean_of(features.cells)),
-        eligible_(request.positions.cols, request.positions.rows) {
+        means_grid_(map, {request.positions.cols, request.positions.rows, lead_col_, lead_row_}),
+        eligible_(widened_for_vectors(request.positions.cols + 2), request.positions.rows + 2) {
     assert(lead_col_ >= reach_ && lead_row_ >= reach_ && footprint_reach(features) <= reach_);
-    for (int row = 0; row < eligible_.rows; ++row) {
-      for (int col = 0; col < eligible_.cols; ++col) eligible_.at(col, row) = request.eligible(col, row) ? 1.0F : 0.0F;
+    for (int row = 0; row < request.positions.rows; ++row) {
+      for (int col = 0; col < request.positions.cols; ++col) {
+        eligible_.at(col + 1, row + 1) = request.eligible(col, row) ? 1.0F : 0.0F;
+      }
     }
   }
 
@@ -55,28 +83,42 @@ class Scan {
   }
 
  private:
-  /// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them,
-  /// and a transform.
-  static constexpr int kSharing = 2;
+  /// One of the directions of a pair of headings; -1 where a heading is not asked for.
+  struct Direction {
+    bool half_turn = false;
+    std::array<int, kSharing> bins{-1, -1};
+    ScanMeans means;
+  };
 
   void scan_pairs(std::span<const int> bases) {
     if (deadline_.over()) return;
     const ScanPlanes first = patch_at(bases.front());
     const ScanPlanes last = bases.size() > 1 ? patch_at(bases.back()) : ScanPlanes{};
-    const ComplexPlane cross = map_.values().spectrum_of(first.value, last.value);
-    const MeanSpectra means = means_of(first);
+    const ScanMeansPatch means(map_, means_grid_, first);
+    std::vector<Direction> directions;
     for (const bool half_turn : {false, true}) {
-      const int turn = half_turn ? request_.bins.count() / 2 : 0;
-      const auto wanted = [&](int base) { return std::ranges::binary_search(request_.headings, base + turn); };
-      if (std::ranges::none_of(bases, wanted)) continue;
-      if (deadline_.over()) return;
-      const Blocks blocks = blocks_of(means, half_turn);
-      const FloatPlanes sums = map_.values().correlate(cross, half_turn);
-      if (wanted(bases.front())) collect(scores(sums.first, blocks, half_turn), bases.front() + turn);
-      if (bases.size() > 1 && wanted(bases.back())) {
-        collect(scores(sums.second, blocks, half_turn), bases.back() + turn);
+      Direction direction;
+      direction.half_turn = half_turn;
+      for (std::size_t i = 0; i < bases.size(); ++i) {
+        const int bin = bases[i] + (half_turn ? request_.bins.count() / 2 : 0);
+        if (std::ranges::binary_search(request_.headings, bin)) direction.bins[i] = bin;
       }
+      if (std::ranges::all_of(direction.bins, [](int bin) { return bin < 0; })) continue;
+      direction.means = means.at(half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_));
+      directions.push_back(std::move(direction));
     }
+    std::unique_ptr<ScanBuffers> buffers = taken_buffers();
+    map_.values().spectrum_of(first.value, last.value, buffers->cross, buffers->scratch);
+    Found found;
+    const float floor = current_floor();
+    for (const Direction& direction : directions) {
+      found.headings += static_cast<std::size_t>(std::ranges::count_if(direction.bins, [](int b) { return b >= 0; }));
+    }
+    for (std::size_t tile = 0; tile < map_.values().tiles(); ++tile) {
+      if (deadline_.over()) return;
+      for (const Direction& direction : directions) scan_tile(tile, direction, floor, *buffers, found);
+    }
+    add(std::move(found), std::move(buffers));
   }
 
   /// Planes of the footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
@@ -88,103 +130,107 @@ class Scan {
     return planes_of(square, feature_mean_);
   }
 
-  struct MeanSpectra {
-    ComplexPlane observed_and_value, square, observed;
+  /// Positions of a tile: from -1 to cols or rows, so that every position of the request is within some tile's inner
+  /// part.
+  struct Range {
+    int first = 0;
+    int last = 0;  ///< behind the last one
+    int count() const { return last - first; }
   };
 
-  MeanSpectra means_of(const ScanPlanes& planes) const {
-    const auto means = [&](const FloatPlane& plane) {
-      FloatPlane sums = block_sums(plane, q_, block_lead());
-      for (float& sum : sums.values) sum /= static_cast<float>(q_ * q_);
-      return sums;
-    };
-    const FloatPlane observed = means(planes.observed);
-    return {map_.block_observed().spectrum_of(observed, means(planes.value)),
-            map_.block_observed().spectrum_of(means(planes.square), {}), map_.block_values().spectrum_of(observed, {})};
-  }
-
-  /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
-  int block_lead() const { return ((half_block() - reach_) % q_ + q_) % q_; }
-  int half_block() const { return (q_ - 1) / 2; }
-  int nadir_block() const { return (reach_ + block_lead()) / q_; }
-
-  /// Score = (cross - correction) * gain; both vary slowly and are known per block of positions.
-  struct Blocks {
-    FloatPlane correction, gain;
-    int first = 0;  ///< block whose result lies in the first row and column
-  };
-
-  Blocks blocks_of(const MeanSpectra& patch, bool half_turn) const {
-    const auto [n, l] = map_.block_observed().correlate(patch.observed_and_value, half_turn);
-    const FloatPlane ll = map_.block_observed().correlate(patch.square, half_turn).first;
-    const auto [m, mm] = map_.block_values().correlate(patch.observed, half_turn);
-    Blocks blocks{FloatPlane(n.cols, n.rows), FloatPlane(n.cols, n.rows), half_turn ? -nadir_block() : nadir_block()};
-    const double least = std::max(1.0, request_.min_observed_share * full_cells_);
-    for (int row = 0; row < n.rows; ++row) {
-      for (int col = 0; col < n.cols; ++col) {
-        const auto cells = static_cast<double>(n.at(col, row));
-        if (cells < least) continue;
-        const auto m_sum = static_cast<double>(m.at(col, row));
-        const auto l_sum = static_cast<double>(l.at(col, row));
-        const double map_spread = static_cast<double>(mm.at(col, row)) - m_sum * m_sum / cells;
-        const double feature_spread = static_cast<double>(ll.at(col, row)) - l_sum * l_sum / cells;
-        if (map_spread < kLeastSpread * cells || feature_spread < kLeastSpread * cells) continue;
-        blocks.correction.at(col, row) = static_cast<float>(m_sum * l_sum / cells);
-        blocks.gain.at(col, row) = static_cast<float>(std::sqrt(cells / full_cells_ / (map_spread * feature_spread)));
-      }
-    }
-    return blocks;
-  }
-
-  FloatPlane scores(const FloatPlane& cross, const Blocks& blocks, bool half_turn) const {
-    const GridGeometry& positions = request_.positions;
-    FloatPlane result(positions.cols, positions.rows);
+  void scan_tile(std::size_t tile, const Direction& direction, float floor, ScanBuffers& buffers, Found& found) const {
+    const Correlator::TileSums sums =
+        map_.values().correlate_tile(tile, buffers.cross, direction.half_turn, buffers.sums, buffers.scratch);
     // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
-    const int shift = half_turn ? reach_ : -reach_;
-    // A block result with its nadir block at B stands for the nadir at B * q + half_block, turned around at
-    // B * q + q - 1 - half_block.
-    const int centre = half_turn ? q_ - 1 - half_block() : half_block();
-    const int offset = Correlator::kLead - blocks.first;
-    const std::vector<BlockMix> rows = mixes(positions.rows, lead_row_ - centre, q_, offset, blocks.gain.rows);
-    const std::vector<BlockMix> cols = mixes(positions.cols, lead_col_ - centre, q_, offset, blocks.gain.cols);
-    const FloatPlane correction = widened(blocks.correction, cols);
-    const FloatPlane gain = widened(blocks.gain, cols);
-    for (int row = 0; row < positions.rows; ++row) {
-      const BlockMix down = rows[static_cast<std::size_t>(row)];
-      const float *correction0 = correction.row(down.first), *correction1 = correction.row(down.second);
-      const float *gain0 = gain.row(down.first), *gain1 = gain.row(down.second);
-      const float* sums =
-          cross.row(row + lead_row_ + shift + Correlator::kLead) + lead_col_ + shift + Correlator::kLead;
-      const float* eligible = eligible_.row(row);
-      float* out = result.row(row);
-      for (int col = 0; col < positions.cols; ++col) {
-        out[col] =
-            eligible[col] * (sums[col] - down.of(correction0[col], correction1[col])) * down.of(gain0[col], gain1[col]);
-      }
+    const int shift = (direction.half_turn ? reach_ : -reach_) + Correlator::kLead;
+    const auto positions = [&](int place, int count, int lead, int size) {
+      const int first = place - lead - shift;
+      return Range{std::max(first, -1), std::min(first + count, size + 1)};
+    };
+    const Range cols = positions(sums.col, sums.cols, lead_col_, request_.positions.cols);
+    const Range rows = positions(sums.row, sums.rows, lead_row_, request_.positions.rows);
+    if (cols.count() < 3 || rows.count() < 3) return;
+    widen_means(direction, cols, rows, buffers);
+    const std::ptrdiff_t start =
+        (rows.first + lead_row_ + shift - sums.row) * sums.stride + cols.first + lead_col_ + shift - sums.col;
+    for (std::size_t i = 0; i < direction.bins.size(); ++i) {
+      if (direction.bins[i] < 0) continue;
+      const float* from = (i == 0 ? sums.first : sums.second) + start;
+      const float scale = i == 0 ? sums.first_scale : sums.second_scale;
+      score(direction, cols, rows, {from, sums.stride, scale}, buffers);
+      collect(direction.bins[i], cols, rows, floor, buffers, found);
     }
-    return result;
+  }
+
+  /// The means at the columns of a tile, for the rows of blocks that its rows lie between.
+  void widen_means(const Direction& direction, Range cols, Range rows, ScanBuffers& buffers) const {
+    const auto& of_cols = means_grid_.cols(direction.half_turn);
+    const auto& of_rows = means_grid_.rows(direction.half_turn);
+    const auto mix_cols =
+        std::span(of_cols).subspan(static_cast<std::size_t>(cols.first + 1), static_cast<std::size_t>(cols.count()));
+    const Range blocks{of_rows[static_cast<std::size_t>(rows.first + 1)].first,
+                       of_rows[static_cast<std::size_t>(rows.last)].second + 1};
+    widen(direction.means.correction, mix_cols, blocks, buffers.correction);
+    widen(direction.means.gain, mix_cols, blocks, buffers.gain);
+  }
+
+  static void widen(const FloatPlane& blocks, std::span<const BlockMix> cols, Range rows, FloatPlane& out) {
+    out.cols = widened_for_vectors(static_cast<int>(cols.size()));
+    out.rows = rows.count();
+    out.values.resize(static_cast<std::size_t>(out.cols) * static_cast<std::size_t>(out.rows));
+    for (int row = 0; row < out.rows; ++row) {
+      const float* in = blocks.row(rows.first + row);
+      float* to = out.row(row);
+      for (std::size_t i = 0; i < cols.size(); ++i) to[i] = cols[i].of(in[cols[i].first], in[cols[i].second]);
+    }
+  }
+
+  struct Cross {
+    const float* sums;
+    std::ptrdiff_t stride;
+    float scale;
+  };
+
+  void score(const Direction& direction, Range cols, Range rows, const Cross& cross, ScanBuffers& buffers) const {
+    const auto& of_rows = means_grid_.rows(direction.half_turn);
+    const int first_block = of_rows[static_cast<std::size_t>(rows.first + 1)].first;
+    for (int row = rows.first; row < rows.last; ++row) {
+      const BlockMix& down = of_rows[static_cast<std::size_t>(row + 1)];
+      const int above = down.first - first_block;
+      const int below = down.second - first_block;
+      ScoreRow scored;
+      scored.sums = cross.sums + (row - rows.first) * cross.stride;
+      scored.scale = cross.scale;
+      scored.correction = {buffers.correction.row(above), buffers.correction.row(below)};
+      scored.gain = {buffers.gain.row(above), buffers.gain.row(below)};
+      scored.share = down.share;
+      scored.eligible = eligible_.row(row + 1) + cols.first + 1;
+      score_row(scored, cols.count(), buffers.scores.row(row - rows.first));
+    }
   }
 
   /// Local maxima among the eight neighbours, and the spread of all scores.
-  void collect(const FloatPlane& scores, int bin) {
-    std::vector<ScanPose> found;
-    double squares = 0.0;
-    std::int64_t poses = 0;
-    const float floor = current_floor();
-    for (int row = 0; row < scores.rows; ++row) {
-      const std::span<const float> line(scores.row(row), static_cast<std::size_t>(scores.cols));
-      squares += square_sum(line);
-      poses += std::ssize(line) - std::ranges::count(line, 0.0F);  // not eligible, or not enough observed
-      for (int col = 0; col < scores.cols; ++col) {
-        const float score = line[static_cast<std::size_t>(col)];
-        if (score > floor && is_peak(scores, col, row)) found.push_back({col, row, bin, score});
+  static void collect(int bin, Range cols, Range rows, float floor, ScanBuffers& buffers, Found& found) {
+    for (int row = 1; row + 1 < rows.count(); ++row) {
+      const float* scores = buffers.scores.row(row);
+      buffers.peaks.clear();
+      const RowTotals totals = summarize_row(buffers.scores.row(row - 1), scores, buffers.scores.row(row + 1), 1,
+                                             cols.count() - 1, floor, buffers.peaks);
+      found.squares += totals.squares;
+      found.poses += totals.poses;
+      for (const int col : buffers.peaks) {
+        found.maxima.push_back({cols.first + col, rows.first + row, bin, scores[col]});
       }
     }
+  }
+
+  void add(Found found, std::unique_ptr<ScanBuffers> buffers) {
     const std::lock_guard lock(mutex_);
-    result_.score_square_sum += squares;
-    result_.poses += poses;
-    ++scanned_;
-    result_.maxima.insert(result_.maxima.end(), found.begin(), found.end());
+    idle_.push_back(std::move(buffers));
+    result_.score_square_sum += found.squares;
+    result_.poses += found.poses;
+    scanned_ += found.headings;
+    result_.maxima.insert(result_.maxima.end(), found.maxima.begin(), found.maxima.end());
     if (result_.maxima.size() < 4 * request_.keep) return;
     const auto cut = result_.maxima.begin() + static_cast<std::ptrdiff_t>(request_.keep);
     std::ranges::nth_element(result_.maxima, cut, std::ranges::greater{}, &ScanPose::score);
@@ -197,18 +243,27 @@ class Scan {
     return floor_;
   }
 
+  std::unique_ptr<ScanBuffers> taken_buffers() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<ScanBuffers>(map_.values().side());
+    std::unique_ptr<ScanBuffers> buffers = std::move(idle_.back());
+    idle_.pop_back();
+    return buffers;
+  }
+
   const FeatureMap& features_;
   const ScanRequest& request_;
   const Deadline& deadline_;
   const ScanMap& map_;
   int reach_;
-  int q_;         ///< cells per block, an edge
   int lead_col_;  ///< of the positions within the map
   int lead_row_;
   double full_cells_;
   double feature_mean_;
-  FloatPlane eligible_;  ///< 1 or 0
+  ScanMeansGrid means_grid_;
+  FloatPlane eligible_;  ///< 1 or 0; from position (-1, -1) on
   std::mutex mutex_;
+  std::vector<std::unique_ptr<ScanBuffers>> idle_;
   float floor_ = 0.0F;
   std::size_t scanned_ = 0;  ///< headings
   ScanResult result_;

@@ -7,20 +7,21 @@
 namespace roadfix {
 namespace {
 
-int tiles_along(int cells, int patch, int side) {
-  const int places = std::max(1, cells + 2 * Correlator::kLead - patch + 1);
-  const int step = side - patch + 1;
+int tiles_along(int cells, int patch, int overlap, int side) {
+  const int places = std::max(1, cells + 2 * Correlator::kLead - patch + 1 - overlap);
+  const int step = side - patch + 1 - overlap;
   return (places + step - 1) / step;
 }
 
 /// The side of the tiles that take the least work.
-int best_side(const FloatPlane& plane, int patch) {
+int best_side(const FloatPlane& plane, int patch, int overlap) {
   constexpr int kBeyondCache = 512;  // its transforms wait for memory
   int best = 0;
   double least = 0.0;
   for (int side = FourierTransform::kLeastSide; best == 0 || side <= kBeyondCache; side *= 2) {
-    if (side < patch) continue;
-    const double tiles = double{1} * tiles_along(plane.cols, patch, side) * tiles_along(plane.rows, patch, side);
+    if (side < patch + overlap) continue;
+    const double tiles =
+        double{1} * tiles_along(plane.cols, patch, overlap, side) * tiles_along(plane.rows, patch, overlap, side);
     const double work = tiles * side * side * (2.0 + std::log2(side)) * (side >= kBeyondCache ? 1.5 : 1.0);
     if (best != 0 && work >= least) continue;
     best = side;
@@ -39,74 +40,119 @@ void fill(const FloatPlane& plane, int col, int row, int side, float* out, std::
   }
 }
 
+/// What all cells of the square around (col, row) are, beyond the plane 0; nullopt where they differ.
+std::optional<float> only_value(const FloatPlane& plane, int col, int row, int side) {
+  if (plane.values.empty()) return 0.0F;
+  const bool inside = col >= 0 && row >= 0 && col + side <= plane.cols && row + side <= plane.rows;
+  const float value = inside ? plane.at(col, row) : 0.0F;
+  for (int r = std::max(0, row); r < std::min(plane.rows, row + side); ++r) {
+    const float* cells = plane.row(r);
+    const auto differs = [value](float cell) { return cell != value; };
+    if (std::any_of(cells + std::max(0, col), cells + std::min(plane.cols, col + side), differs)) return std::nullopt;
+  }
+  return value;
+}
+
 }  // namespace
 
-Correlator::Correlator(const FloatPlane& first, const FloatPlane& second, int patch)
+Correlator::Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap)
     : cols_(first.cols),
       rows_(first.rows),
       patch_(patch),
       pair_(!second.values.empty()),
-      fourier_(best_side(first, patch)) {
+      fourier_(best_side(first, patch, overlap)) {
   assert(!pair_ || (second.cols == cols_ && second.rows == rows_));
   const int side = fourier_.side();
+  const int step = side - patch + 1 - overlap;
   ComplexPlane scratch(side);
-  for (int i = 0; i < tiles_along(rows_, patch, side); ++i) {
-    for (int k = 0; k < tiles_along(cols_, patch, side); ++k) {
-      const int step = side - patch + 1;
-      Tile tile{k * step - kLead, i * step - kLead, ComplexPlane(side)};
-      fill(first, tile.col, tile.row, side, tile.spectrum.re(), tile.spectrum.stride());
-      if (pair_) fill(second, tile.col, tile.row, side, tile.spectrum.im(), tile.spectrum.stride());
-      fourier_.forward(tile.spectrum, scratch);
-      tiles_.push_back(std::move(tile));
+  for (int i = 0; i < tiles_along(rows_, patch, overlap, side); ++i) {
+    for (int k = 0; k < tiles_along(cols_, patch, overlap, side); ++k) {
+      tiles_.push_back(tile_at(first, second, k * step - kLead, i * step - kLead, scratch));
     }
   }
 }
 
+Correlator::Tile Correlator::tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row,
+                                     ComplexPlane& scratch) const {
+  const int side = fourier_.side();
+  const auto only_first = only_value(first, col, row, side);
+  const auto only_second = only_value(second, col, row, side);
+  if (only_first && only_second) return {col, row, std::nullopt, *only_first, *only_second};
+  Tile tile{col, row, ComplexPlane(side), 0.0F, 0.0F};
+  fill(first, col, row, side, tile.spectrum->re(), tile.spectrum->stride());
+  if (pair_) fill(second, col, row, side, tile.spectrum->im(), tile.spectrum->stride());
+  fourier_.forward(*tile.spectrum, scratch);
+  return tile;
+}
+
 std::size_t Correlator::bytes() const {
   std::size_t bytes = 0;
-  for (const Tile& tile : tiles_) bytes += tile.spectrum.bytes();
+  for (const Tile& tile : tiles_) bytes += tile.spectrum ? tile.spectrum->bytes() : sizeof(Tile);
   return bytes;
 }
 
 ComplexPlane Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
-  assert(first.cols <= patch_ && first.rows <= patch_);
-  assert(second.values.empty() || !pair_);
   ComplexPlane spectrum(fourier_.side());
-  fill(first, 0, 0, fourier_.side(), spectrum.re(), spectrum.stride());
-  if (!second.values.empty()) fill(second, 0, 0, fourier_.side(), spectrum.im(), spectrum.stride());
   ComplexPlane scratch(fourier_.side());
-  fourier_.forward(spectrum, scratch);
+  spectrum_of(first, second, spectrum, scratch);
   return spectrum;
 }
 
-FloatPlanes Correlator::correlate(const ComplexPlane& patch_spectrum, bool half_turn) const {
-  const int cols = cols_ + 2 * kLead;
-  const int rows = rows_ + 2 * kLead;
-  FloatPlanes result{FloatPlane(cols, rows), FloatPlane(cols, rows)};
+void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& spectrum,
+                             ComplexPlane& scratch) const {
+  assert(first.cols <= patch_ && first.rows <= patch_);
+  assert(second.values.empty() || !pair_);
+  spectrum.clear();
+  fill(first, 0, 0, fourier_.side(), spectrum.re(), spectrum.stride());
+  if (!second.values.empty()) fill(second, 0, 0, fourier_.side(), spectrum.im(), spectrum.stride());
+  fourier_.forward(spectrum, scratch);
+}
+
+Correlator::TileSums Correlator::correlate_tile(std::size_t index, const ComplexPlane& patch_spectrum, bool half_turn,
+                                                ComplexPlane& sums, ComplexPlane& scratch) const {
+  const Tile& tile = tiles_[index];
   const int side = fourier_.side();
-  ComplexPlane sums(side);
-  ComplexPlane scratch(side);
   // Where a tile's cyclic sums do not wrap around.
   const int inset = half_turn ? patch_ - 1 : 0;
-  const int step = side - patch_ + 1;
-  const auto scale = 1.0F / (static_cast<float>(side) * static_cast<float>(side));
+  const int size = side - patch_ + 1;
+  TileSums result;
+  result.col = tile.col + kLead + inset;
+  result.row = tile.row + kLead + inset;
+  result.cols = std::min(size, sum_cols() - result.col);
+  result.rows = std::min(size, sum_rows() - result.row);
+  if (result.cols <= 0 || result.rows <= 0) return {};
+  result.stride = sums.stride();
+  result.first = sums.re(inset) + inset;
+  result.second = sums.im(inset) + inset;
+  if (!tile.spectrum) {
+    // The patches' own sums are what their spectrum begins with.
+    const float patch_first = patch_spectrum.re()[0];
+    const float patch_second = patch_spectrum.im()[0];
+    sums.fill(tile.first * patch_first, pair_ ? tile.second * patch_first : tile.first * patch_second);
+    return result;
+  }
+  const Columns wanted{inset, inset + result.cols};
+  fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, sums, scratch);
+  result.first = sums.re(inset) + inset;  // the planes have been exchanged
+  result.second = sums.im(inset) + inset;
+  result.first_scale = 1.0F / (static_cast<float>(side) * static_cast<float>(side));
   // The conjugate of a pair of patches is the pair with its second one negative.
-  const float scale2 = pair_ || half_turn ? scale : -scale;
-  for (const Tile& tile : tiles_) {
-    const int first_col = tile.col + kLead + inset;
-    const int first_row = tile.row + kLead + inset;
-    const int count = std::min(step, cols - first_col);
-    if (count <= 0 || first_row >= rows) continue;
-    multiply(tile.spectrum, patch_spectrum, !half_turn, sums);
-    fourier_.backward(sums, scratch);
-    for (int r = 0; r < std::min(step, rows - first_row); ++r) {
-      const float* re = sums.re(inset + r) + inset;
-      const float* im = sums.im(inset + r) + inset;
-      float* first = result.first.row(first_row + r) + first_col;
-      float* second = result.second.row(first_row + r) + first_col;
-      for (int c = 0; c < count; ++c) {
-        first[c] = scale * re[c];
-        second[c] = scale2 * im[c];
+  result.second_scale = pair_ || half_turn ? result.first_scale : -result.first_scale;
+  return result;
+}
+
+FloatPlanes Correlator::correlate(const ComplexPlane& patch_spectrum, bool half_turn) const {
+  FloatPlanes result{FloatPlane(sum_cols(), sum_rows()), FloatPlane(sum_cols(), sum_rows())};
+  ComplexPlane sums(fourier_.side());
+  ComplexPlane scratch(fourier_.side());
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, sums, scratch);
+    for (int r = 0; r < tile.rows; ++r) {
+      float* first = result.first.row(tile.row + r) + tile.col;
+      float* second = result.second.row(tile.row + r) + tile.col;
+      for (int c = 0; c < tile.cols; ++c) {
+        first[c] = tile.first_scale * tile.first[r * tile.stride + c];
+        second[c] = tile.second_scale * tile.second[r * tile.stride + c];
       }
     }
   }

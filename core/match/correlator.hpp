@@ -3,30 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "core/match/float_plane.hpp"
 #include "core/match/fourier.hpp"
 
 namespace roadfix {
-
-/// Numbers in rows.
-struct FloatPlane {
-  int cols = 0;
-  int rows = 0;
-  std::vector<float> values;
-
-  FloatPlane() = default;
-  FloatPlane(int c, int r) : cols(c), rows(r), values(static_cast<std::size_t>(c) * static_cast<std::size_t>(r)) {}
-  float* row(int r) { return values.data() + std::ptrdiff_t{r} * cols; }
-  const float* row(int r) const { return values.data() + std::ptrdiff_t{r} * cols; }
-  float& at(int col, int r) { return row(r)[col]; }
-  float at(int col, int r) const { return row(r)[col]; }
-};
-
-/// Two planes of the same size are transformed at the cost of one.
-struct FloatPlanes {
-  FloatPlane first, second;
-};
 
 /// Thread-safe.
 class Correlator {
@@ -35,16 +18,39 @@ class Correlator {
   static constexpr int kLead = 2;
 
   /// One plane for pairs of patches, or a pair of planes (of the same size) for single patches; `second` is empty for
-  /// one. Patches have at most patch x patch cells.
-  Correlator(const FloatPlane& first, const FloatPlane& second, int patch);
+  /// one. Patches have at most patch x patch cells. The sums of neighbouring tiles share `overlap` rows or columns.
+  Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap = 0);
 
   /// Of a patch, or of two where there is one plane; `second` is empty for one.
   ComplexPlane spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
+  void spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& spectrum,
+                   ComplexPlane& scratch) const;
 
+  /// Size of the planes that correlate() returns.
+  int sum_cols() const { return cols_ + 2 * kLead; }
+  int sum_rows() const { return rows_ + 2 * kLead; }
   /// Sum over each patch (or over the patch in each plane) at each place where it stays within the plane and its lead,
   /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
   /// patch's last cell, counted in the turned patch.
   FloatPlanes correlate(const ComplexPlane& patch_spectrum, bool half_turn) const;
+
+  /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.
+  struct TileSums {
+    int col = 0;
+    int row = 0;
+    int cols = 0;
+    int rows = 0;
+    const float* first = nullptr;
+    const float* second = nullptr;
+    std::ptrdiff_t stride = 0;
+    float first_scale = 1.0F;
+    float second_scale = 1.0F;
+  };
+  int side() const { return fourier_.side(); }
+  std::size_t tiles() const { return tiles_.size(); }
+  /// `sums` and `scratch` are of side(); the result points into them. Without places where the tile has none.
+  TileSums correlate_tile(std::size_t tile, const ComplexPlane& patch_spectrum, bool half_turn, ComplexPlane& sums,
+                          ComplexPlane& scratch) const;
 
   std::size_t bytes() const;
 
@@ -52,8 +58,12 @@ class Correlator {
   struct Tile {
     int col = 0;  ///< of the plane, of its first cell
     int row = 0;
-    ComplexPlane spectrum;
+    std::optional<ComplexPlane> spectrum;  ///< none where all its cells are alike: their sums are known without
+    float first = 0.0F;                    ///< what they are then
+    float second = 0.0F;
   };
+
+  Tile tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row, ComplexPlane& scratch) const;
 
   int cols_;
   int rows_;

@@ -120,27 +120,26 @@ HWY_ATTR void backward_strip(const Strip& strip, int side, const float* turns) {
   }
 }
 
-HWY_ATTR void transform_columns(ComplexPlane& plane, const float* turns, bool forward) {
-  for (int col = 0; col < plane.side(); col += static_cast<int>(hn::Lanes(kFloats))) {
-    const Strip strip{plane.re() + col, plane.im() + col, plane.stride()};
-    if (forward) {
-      forward_strip(strip, plane.side(), turns);
-    } else {
-      backward_strip(strip, plane.side(), turns);
-    }
+HWY_ATTR void transform_strip(ComplexPlane& plane, int col, const float* turns, bool forward) {
+  const Strip strip{plane.re() + col, plane.im() + col, plane.stride()};
+  if (forward) {
+    forward_strip(strip, plane.side(), turns);
+  } else {
+    backward_strip(strip, plane.side(), turns);
   }
 }
 
-HWY_ATTR void transpose(const float* in, float* out, int side, std::ptrdiff_t stride) {
+/// Some columns become rows; a multiple of four.
+HWY_ATTR void transpose(const float* in, float* out, int side, std::ptrdiff_t stride, int first_col, int last_col) {
 #if HWY_TARGET == HWY_SCALAR
   for (int row = 0; row < side; ++row) {
-    for (int col = 0; col < side; ++col) out[col * stride + row] = in[row * stride + col];
+    for (int col = first_col; col < last_col; ++col) out[col * stride + row] = in[row * stride + col];
   }
 #else
   constexpr hn::FixedTag<float, 4> kFour;
   constexpr hn::FixedTag<double, 2> kPairs;
-  for (int row = 0; row < side; row += 4) {
-    for (int col = 0; col < side; col += 4) {
+  for (int col = first_col; col < last_col; col += 4) {
+    for (int row = 0; row < side; row += 4) {
       const float* from = in + row * stride + col;
       const auto r0 = hn::Load(kFour, from);
       const auto r1 = hn::Load(kFour, from + stride);
@@ -160,26 +159,45 @@ HWY_ATTR void transpose(const float* in, float* out, int side, std::ptrdiff_t st
 #endif
 }
 
-HWY_ATTR void transform(ComplexPlane& plane, ComplexPlane& scratch, const float* turns, bool forward) {
-  transform_columns(plane, turns, forward);
-  transpose(plane.re(), scratch.re(), plane.side(), plane.stride());
-  transpose(plane.im(), scratch.im(), plane.side(), plane.stride());
-  transform_columns(scratch, turns, forward);
+/// Transforms a strip of columns, and turns it into rows while the cache holds it.
+HWY_ATTR void strip_to_rows(ComplexPlane& plane, ComplexPlane& rows, int col, const float* turns, bool forward) {
+  const int last = col + static_cast<int>(hn::Lanes(kFloats));
+  transform_strip(plane, col, turns, forward);
+  transpose(plane.re(), rows.re(), plane.side(), plane.stride(), col, last);
+  transpose(plane.im(), rows.im(), plane.side(), plane.stride(), col, last);
 }
 
-HWY_ATTR void product(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, ComplexPlane& out) {
-  for (int row = 0; row < a.side(); ++row) {
-    const float *a_re = a.re(row), *a_im = a.im(row), *b_re = b.re(row), *b_im = b.im(row);
-    float* re = out.re(row);
-    float* im = out.im(row);
-    for (int col = 0; col < a.side(); col += static_cast<int>(hn::Lanes(kFloats))) {
-      const Complex x{hn::Load(kFloats, a_re + col), hn::Load(kFloats, a_im + col)};
-      const Complex y{hn::Load(kFloats, b_re + col), hn::Load(kFloats, b_im + col)};
-      const Complex z = conjugate ? times_conjugate(x, y) : times(x, y);
-      hn::Store(z.re, kFloats, re + col);
-      hn::Store(z.im, kFloats, im + col);
-    }
+HWY_ATTR void transform_columns(ComplexPlane& plane, const float* turns, bool forward, Columns wanted) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloats));
+  for (int col = wanted.first / lanes * lanes; col < wanted.last; col += lanes) {
+    transform_strip(plane, col, turns, forward);
   }
+}
+
+HWY_ATTR void transform(ComplexPlane& plane, ComplexPlane& scratch, const float* turns, bool forward) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloats));
+  for (int col = 0; col < plane.side(); col += lanes) strip_to_rows(plane, scratch, col, turns, forward);
+  transform_columns(scratch, turns, forward, {0, plane.side()});
+}
+
+HWY_ATTR void product_strip(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, int col, ComplexPlane& out) {
+  for (int row = 0; row < a.side(); ++row) {
+    const Complex x{hn::Load(kFloats, a.re(row) + col), hn::Load(kFloats, a.im(row) + col)};
+    const Complex y{hn::Load(kFloats, b.re(row) + col), hn::Load(kFloats, b.im(row) + col)};
+    const Complex z = conjugate ? times_conjugate(x, y) : times(x, y);
+    hn::Store(z.re, kFloats, out.re(row) + col);
+    hn::Store(z.im, kFloats, out.im(row) + col);
+  }
+}
+
+HWY_ATTR void backward_of_product(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, const float* turns,
+                                  Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloats));
+  for (int col = 0; col < a.side(); col += lanes) {
+    product_strip(a, b, conjugate, col, sums);
+    strip_to_rows(sums, scratch, col, turns, false);
+  }
+  transform_columns(scratch, turns, false, wanted);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -188,6 +206,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -196,7 +215,7 @@ HWY_AFTER_NAMESPACE();
 namespace roadfix {
 
 HWY_EXPORT(transform);
-HWY_EXPORT(product);
+HWY_EXPORT(backward_of_product);
 
 ComplexPlane::ComplexPlane(int side)
     : side_(side),
@@ -204,6 +223,13 @@ ComplexPlane::ComplexPlane(int side)
       re_(static_cast<std::size_t>(side * (stride_ / kAlignedFloats))),
       im_(re_.size()) {
   assert(side % kAlignedFloats == 0);
+}
+
+void ComplexPlane::clear() { fill(0.0F, 0.0F); }
+
+void ComplexPlane::fill(float real, float imaginary) {
+  std::fill_n(re(), re_.size() * kAlignedFloats, real);
+  std::fill_n(im(), im_.size() * kAlignedFloats, imaginary);
 }
 
 FourierTransform::FourierTransform(int side) : side_(side) {
@@ -231,9 +257,13 @@ void FourierTransform::backward(ComplexPlane& plane, ComplexPlane& scratch) cons
   std::swap(plane, scratch);
 }
 
-void multiply(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, ComplexPlane& product) {
-  assert(a.side() == b.side() && a.side() == product.side());
-  HWY_DYNAMIC_DISPATCH(product)(a, b, conjugate, product);
+void FourierTransform::backward_of_product(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, Columns wanted,
+                                           ComplexPlane& sums, ComplexPlane& scratch) const {
+  assert(a.side() == side_ && b.side() == side_ && sums.side() == side_ && scratch.side() == side_);
+  assert(wanted.first >= 0 && wanted.last <= side_);
+  HWY_DYNAMIC_DISPATCH(backward_of_product)
+  (a, b, conjugate, turns_.data() + turns_.size(), wanted, sums, scratch);
+  std::swap(sums, scratch);
 }
 
 }  // namespace roadfix

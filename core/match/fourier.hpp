@@ -14,6 +14,9 @@ class ComplexPlane {
   explicit ComplexPlane(int side);
 
   int side() const { return side_; }
+  void clear();
+  /// The same number everywhere.
+  void fill(float real, float imaginary);
   /// Floats from one row to the next: not a power of two, which would crowd the cache.
   std::ptrdiff_t stride() const { return stride_; }
   float* re() { return re_.data()->values; }
@@ -38,6 +41,12 @@ class ComplexPlane {
   std::vector<Block> re_, im_;
 };
 
+/// Some columns of a plane: [first, last).
+struct Columns {
+  int first = 0;
+  int last = 0;
+};
+
 /// Thread-safe.
 class FourierTransform {
  public:
@@ -51,13 +60,13 @@ class FourierTransform {
   void forward(ComplexPlane& plane, ComplexPlane& scratch) const;
   /// From the order of forward(): side^2 times the plane that it came from.
   void backward(ComplexPlane& plane, ComplexPlane& scratch) const;
+  /// `sums` = backward() of a * b or a * conj(b); outside of the wanted columns it holds anything.
+  void backward_of_product(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, Columns wanted,
+                           ComplexPlane& sums, ComplexPlane& scratch) const;
 
  private:
   int side_;
   std::vector<float> turns_;  ///< six numbers for each butterfly of a stage, stage by stage
 };
-
-/// product = a * b, or a * conj(b).
-void multiply(const ComplexPlane& a, const ComplexPlane& b, bool conjugate, ComplexPlane& product);
 
 }  // namespace roadfix

@@ -11,7 +11,8 @@ int patch_cells(int reach) { return 2 * reach + 1; }
 int patch_blocks(int reach, int block) { return (patch_cells(reach) + block - 1) / block + 1; }
 
 Correlator values_of(const RoadGrid& map, int reach) {
-  return {planes_of(map.cells, mean_of(map.cells)).value, {}, patch_cells(reach)};
+  constexpr int kNeighbours = 2;  // peaks are told by both sides of a position
+  return {planes_of(map.cells, mean_of(map.cells)).value, {}, patch_cells(reach), kNeighbours};
 }
 Correlator block_observed_of(const RoadGrid& map, int reach, int block) {
   return {block_sums(planes_of(map.cells, 0.0).observed, block, 0), {}, patch_blocks(reach, block)};

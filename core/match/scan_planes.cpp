@@ -1,7 +1,6 @@
 #include "core/match/scan_planes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 namespace roadfix {
@@ -55,37 +54,6 @@ std::vector<BlockMix> mixes(int count, int start, int q, int offset, int blocks)
     result.push_back({place(block), place(block + 1), static_cast<float>(cell - block * q) / static_cast<float>(q)});
   }
   return result;
-}
-
-FloatPlane widened(const FloatPlane& blocks, std::span<const BlockMix> cols) {
-  FloatPlane result(static_cast<int>(cols.size()), blocks.rows);
-  for (int row = 0; row < blocks.rows; ++row) {
-    const float* in = blocks.row(row);
-    float* out = result.row(row);
-    for (std::size_t i = 0; i < cols.size(); ++i) out[i] = cols[i].of(in[cols[i].first], in[cols[i].second]);
-  }
-  return result;
-}
-
-double square_sum(std::span<const float> values) {
-  std::array<float, 8> lanes{};  // which compilers turn into vectors
-  std::size_t i = 0;
-  for (; i + lanes.size() <= values.size(); i += lanes.size()) {
-    for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] += values[i + k] * values[i + k];
-  }
-  double sum = 0.0;
-  for (; i < values.size(); ++i) sum += static_cast<double>(values[i] * values[i]);
-  for (const float lane : lanes) sum += static_cast<double>(lane);
-  return sum;
-}
-
-bool is_peak(const FloatPlane& plane, int col, int row) {
-  for (int r = std::max(0, row - 1); r <= std::min(plane.rows - 1, row + 1); ++r) {
-    for (int c = std::max(0, col - 1); c <= std::min(plane.cols - 1, col + 1); ++c) {
-      if (plane.at(c, r) > plane.at(col, row)) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace roadfix

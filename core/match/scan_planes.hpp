@@ -1,11 +1,10 @@
 // Cells as planes of numbers, for the sums of a scan, and as the coarser blocks in which its means are known.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/grid/cell_array.hpp"
-#include "core/match/correlator.hpp"
+#include "core/match/float_plane.hpp"
 
 namespace roadfix {
 
@@ -32,13 +31,5 @@ struct BlockMix {
 /// For `count` cells from `start` on: between which of the `blocks` they lie. Block b of q cells starts at cell b * q
 /// and has place b + offset.
 std::vector<BlockMix> mixes(int count, int start, int q, int offset, int blocks);
-
-/// The values of blocks at each cell along their rows.
-FloatPlane widened(const FloatPlane& blocks, std::span<const BlockMix> cols);
-
-double square_sum(std::span<const float> values);
-
-/// Not less than any of its eight neighbours.
-bool is_peak(const FloatPlane& plane, int col, int row);
 
 }  // namespace roadfix

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
+#include <vector>
 
 namespace roadfix {
 namespace {
@@ -51,15 +54,39 @@ TEST(Correlator, SumsPairsOfPatchesAndPairsOfPlanesAsPlainLoopsDo) {
     const FloatPlane other = noise(cols, rows, random);
     const FloatPlane patch = noise(side, side, random);
     const FloatPlane second = noise(side, side - 1, random);
-    const Correlator one(plane, {}, side);
-    const Correlator two(plane, other, side);
+    for (const int overlap : {0, 2}) {
+      const Correlator one(plane, {}, side, overlap);
+      const Correlator two(plane, other, side, overlap);
+      for (const bool half_turn : {false, true}) {
+        const FloatPlanes patches = one.correlate(one.spectrum_of(patch, second), half_turn);
+        expect_sums(plane, patch, side, half_turn, patches.first);
+        expect_sums(plane, second, side, half_turn, patches.second);
+        const FloatPlanes planes = two.correlate(two.spectrum_of(patch, {}), half_turn);
+        expect_sums(plane, patch, side, half_turn, planes.first);
+        expect_sums(other, patch, side, half_turn, planes.second);
+      }
+    }
+  }
+}
+
+TEST(Correlator, KnowsTheSumsWhereAllCellsAreAlike) {
+  std::mt19937_64 random(2);
+  for (const bool pair : {false, true}) {
+    FloatPlane plane(90, 80);
+    std::ranges::fill(plane.values, 0.7F);
+    plane.at(3, 2) = -1.0F;  // beside it, and at the plane's edges, transforms are needed
+    FloatPlane other = plane;
+    std::ranges::fill(other.values, -0.2F);
+    const int side = 5;
+    const FloatPlane patch = noise(side, side, random);
+    const FloatPlane second = noise(side, side, random);
+    const Correlator correlator(plane, pair ? other : FloatPlane(), side, 2);
+    EXPECT_LT(correlator.bytes(), correlator.tiles() * ComplexPlane(correlator.side()).bytes());
     for (const bool half_turn : {false, true}) {
-      const FloatPlanes patches = one.correlate(one.spectrum_of(patch, second), half_turn);
-      expect_sums(plane, patch, side, half_turn, patches.first);
-      expect_sums(plane, second, side, half_turn, patches.second);
-      const FloatPlanes planes = two.correlate(two.spectrum_of(patch, {}), half_turn);
-      expect_sums(plane, patch, side, half_turn, planes.first);
-      expect_sums(other, patch, side, half_turn, planes.second);
+      const FloatPlanes sums =
+          correlator.correlate(correlator.spectrum_of(patch, pair ? FloatPlane() : second), half_turn);
+      expect_sums(plane, patch, side, half_turn, sums.first);
+      expect_sums(pair ? other : plane, pair ? patch : second, side, half_turn, sums.second);
     }
   }
 }

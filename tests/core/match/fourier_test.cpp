@@ -95,15 +95,18 @@ TEST(FourierTransform, ProductsOfSpectraAreCyclicSums) {
   fourier.forward(spectrum_a, scratch);
   fourier.forward(spectrum_b, scratch);
   ComplexPlane sums(kSide);
-  multiply(spectrum_a, spectrum_b, false, sums);
-  fourier.backward(sums, scratch);
+  fourier.backward_of_product(spectrum_a, spectrum_b, false, {0, kSide}, sums, scratch);
   ComplexPlane conjugate_b = b;
   for (int row = 0; row < kSide; ++row) {
     for (int col = 0; col < kSide; ++col) conjugate_b.im(row)[col] *= -1.0F;
   }
   ComplexPlane others(kSide);
-  multiply(spectrum_a, spectrum_b, true, others);
-  fourier.backward(others, scratch);
+  fourier.backward_of_product(spectrum_a, spectrum_b, true, {0, kSide}, others, scratch);
+  ComplexPlane some(kSide);
+  fourier.backward_of_product(spectrum_a, spectrum_b, true, {9, 19}, some, scratch);
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 9; col < 19; ++col) EXPECT_EQ(at(some, col, row), at(others, col, row));
+  }
   constexpr double kCells = kSide * kSide;
   for (const int place : {0, 1, 17, 31}) {
     const int other = (place * 7) % kSide;

@@ -1,0 +1,57 @@
+// The part of a scan's scores that varies slowly: means and spreads under the footprint, known per block of cells.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/match/scan_map.hpp"
+#include "core/match/scan_planes.hpp"
+
+namespace roadfix {
+
+/// Score = (sum of products - correction) * gain, of the nadir in the middle of each block; between them it is linear.
+struct ScanMeans {
+  FloatPlane correction, gain;
+};
+
+/// How the positions of a scan lie among the blocks.
+class ScanMeansGrid {
+ public:
+  struct Positions {
+    int cols = 0;  ///< from -1 to cols: with the neighbours of the first and last one
+    int rows = 0;
+    int lead_col = 0;  ///< of the first one within the map
+    int lead_row = 0;
+  };
+  ScanMeansGrid(const ScanMap& map, const Positions& positions);
+
+  /// Position i (from -1 on) lies between these rows or columns of ScanMeans.
+  const std::vector<BlockMix>& cols(bool half_turn) const { return cols_[half_turn ? 1 : 0]; }
+  const std::vector<BlockMix>& rows(bool half_turn) const { return rows_[half_turn ? 1 : 0]; }
+  /// Of the patch's cells (2 reach + 1 of them, the nadir in the middle): means over each block.
+  FloatPlane block_means(const FloatPlane& cells) const;
+
+ private:
+  /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
+  int block_lead() const { return ((half_block() - reach_) % q_ + q_) % q_; }
+  int half_block() const { return (q_ - 1) / 2; }
+  int nadir_block() const { return (reach_ + block_lead()) / q_; }
+
+  int reach_;
+  int q_;  ///< cells per block, an edge
+  std::array<std::vector<BlockMix>, 2> cols_, rows_;
+};
+
+/// A footprint's side of the means, at one heading and its opposite.
+class ScanMeansPatch {
+ public:
+  ScanMeansPatch(const ScanMap& map, const ScanMeansGrid& grid, const ScanPlanes& patch);
+  /// No score where less than `least_cells` of `full_cells` are observed in both, or too little road.
+  ScanMeans at(bool half_turn, double full_cells, double least_cells) const;
+
+ private:
+  const ScanMap& map_;
+  ComplexPlane observed_and_value_, square_, observed_;
+};
+
+}  // namespace roadfix

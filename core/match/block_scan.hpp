@@ -1,0 +1,68 @@
+// The first half of a proof: an upper bound for every block of positions at every heading. Blocks that could hold a
+// better pose than the best known one become nodes, to be looked into.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "core/match/heading_sectors.hpp"
+
+namespace roadfix {
+
+/// A block of positions at a heading that may hold something better.
+struct BoundNode {
+  std::int32_t col = 0;  ///< block of the map
+  std::int32_t row = 0;
+  std::int32_t heading = 0;  ///< index into the headings searched
+  float bound = 0.0F;
+  /// Of the map under the footprint, where all of it is observed; else `whole` is false.
+  std::uint32_t map_least = 0, map_most = 0, square_least = 0, square_most = 0;
+  bool whole = false;
+};
+
+/// Blocks that are bounded together.
+struct BlockTile {
+  int col = 0;
+  int row = 0;
+  int rows = 0;
+};
+
+struct BlockScanResult {
+  std::vector<BoundNode> nodes;
+  std::int64_t blocks = 0;    ///< blocks x headings of which all terms were summed
+  std::int64_t eligible = 0;  ///< blocks x headings with a position that counts
+  bool whole = true;          ///< false if time was over
+};
+
+class BlockScan {
+ public:
+  /// `best`: what a pose has to exceed; may grow while the scan runs.
+  BlockScan(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& best)
+      : problem_(problem), headings_(headings), best_(best) {}
+
+  std::vector<BlockTile> tiles() const;
+  /// Thread-safe.
+  BlockScanResult scan(const BlockTile& tile, const Deadline& deadline) const;
+
+ private:
+  template <typename T>
+  using PerBlock = std::array<T, BoundMap::kRun>;
+  struct Row {
+    SectorRun run;
+    PerBlock<double> needed{};  ///< of the cross sum, for a score above the best
+    PerBlock<bool> eligible{};
+    bool hopeless = true;  ///< in none of the blocks
+  };
+
+  std::vector<Row> rows_of(const BlockTile& tile) const;
+  void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
+  void scan_row(std::size_t heading, int col, int row, const Row& known, std::vector<BoundNode>& nodes) const;
+
+  const BoundProblem& problem_;
+  const HeadingSectors& headings_;
+  const std::atomic<double>& best_;
+};
+
+}  // namespace roadfix

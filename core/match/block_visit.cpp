@@ -1,0 +1,115 @@
+#include "core/match/block_visit.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "core/grid/resample.hpp"
+#include "core/match/kernel.hpp"
+#include "core/match/score.hpp"
+
+namespace roadfix {
+
+std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
+  const FeatureMap turned = rotated(*problem_.search.features, problem_.heading(heading));
+  const Footprint above(above_base(turned, problem_.base));
+  std::vector<Part> parts = parts_of(heading, nodes);
+  parts = surviving(std::move(parts), above, kBlockCells);
+  parts = surviving(halves(parts), above, kBlockCells / 2);
+  return best_of(heading, Footprint(turned), parts);
+}
+
+std::vector<BlockVisit::Part> BlockVisit::parts_of(std::size_t heading, std::span<const BoundNode> nodes) const {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    parts.push_back({i, kBlockCells * nodes[i].col, kBlockCells * nodes[i].row, sums_at(heading, nodes[i])});
+  }
+  return parts;
+}
+
+std::vector<BlockVisit::Part> BlockVisit::halves(std::span<const Part> parts) {
+  std::vector<Part> result;
+  for (const Part& part : parts) {
+    for (int i = 0; i < 4; ++i) {
+      Part half = part;
+      half.col += kBlockCells / 2 * (i % 2);
+      half.row += kBlockCells / 2 * (i / 2);
+      result.push_back(half);
+    }
+  }
+  return result;
+}
+
+std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, const Footprint& above, int side) const {
+  std::vector<PlaneCell> places;
+  for (const Part& part : parts) places.push_back({part.col, part.row});
+  std::vector<MatchSums> sums(places.size());
+  match_sums(problem_.map.pooled(side), above, places, sums);
+  std::vector<Part> result;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Part& part = parts[i];
+    part.sums.cross_most = sums[i].ml * (kRoad * kRoad) + 0.5;  // whole numbers, but for rounding
+    if (score_bound(part.sums, problem_.full_cells, problem_.search.least_cells) > best_) result.push_back(part);
+  }
+  return result;
+}
+
+/// What is known of a block without its cross sum.
+BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const {
+  const Sector& sector = headings_.sector_of(heading);
+  const TurnedFeatures& turned = headings_.turned(heading);
+  if (node.whole) {
+    BlockSums sums = sector.features;
+    sums.map = {static_cast<double>(node.map_least), static_cast<double>(node.map_most)};
+    sums.map_square = {static_cast<double>(node.square_least), static_cast<double>(node.square_most)};
+    sums.cells = {turned.cells, turned.cells};
+    sums.feature = {turned.sum, turned.sum};
+    sums.feature_square_least = turned.square;
+    return sums;
+  }
+  SectorRun run;
+  covered_sums(problem_.map, sector.inner, node.col, node.row, run.inner);
+  covered_sums(problem_.map, sector.outer, node.col, node.row, run.outer);
+  BlockSums sums = HeadingSectors::covered(sector, run, 0).sums;
+  const auto at = [&](const BoundTerms& terms) {
+    RunSums values;
+    term_sums(problem_.map, terms, node.col, node.row, values);
+    return values[0] * terms.unit;
+  };
+  sums.cells.most = std::min(sums.cells.most, turned.cells);
+  sums.feature = {at(turned.sum_least), std::min(turned.sum, at(turned.sum_most))};
+  sums.feature_square_least = at(turned.square_least);
+  return sums;
+}
+
+std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const Footprint& footprint,
+                                             std::span<const Part> parts) const {
+  std::vector<PlaneCell> places;
+  std::vector<std::size_t> owners;
+  for (const Part& part : parts) {
+    for (int i = 0; i < kBlockCells; ++i) {
+      const PlaneCell place{part.col + i % 2, part.row + i / 2};
+      if (!problem_.cell_eligible(place.col, place.row)) continue;
+      places.push_back(place);
+      owners.push_back(part.node);
+    }
+  }
+  std::vector<MatchSums> sums(places.size());
+  match_sums(problem_.map.exact(), footprint, places, sums);
+  const auto full_cells = static_cast<std::int64_t>(problem_.full_cells);
+  const LatticeIndex origin = problem_.map.geometry().origin;
+  std::map<std::size_t, LatticePose> best;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double score = score_of(sums[i], full_cells, problem_.search.least_cells);
+    if (score <= 0.0) continue;
+    LatticePose& pose = best[owners[i]];
+    if (score <= pose.score) continue;
+    pose = {{origin.col + places[i].col, origin.row + places[i].row}, problem_.search.headings[heading], score};
+  }
+  std::vector<LatticePose> poses;
+  for (const auto& [node, pose] : best) {
+    if (pose.score > best_) poses.push_back(pose);
+  }
+  return poses;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,43 @@
+// What the stages of a proof share: the question, and where its positions lie on the map.
+#pragma once
+
+#include "core/match/bound_terms.hpp"
+#include "core/match/branch_and_bound.hpp"
+
+namespace roadfix {
+
+struct BoundProblem {
+  const BoundedSearch& search;
+  const BoundMap& map;
+  int shift_col;  ///< of the positions within the map, cells
+  int shift_row;
+  double full_cells;
+  int base;  ///< base_of() the feature map
+
+  explicit BoundProblem(const BoundedSearch& asked)
+      : search(asked),
+        map(*asked.map),
+        shift_col(asked.positions.origin.col - map.geometry().origin.col),
+        shift_row(asked.positions.origin.row - map.geometry().origin.row),
+        full_cells(static_cast<double>(asked.features->cells.observed_count())),
+        base(base_of(*asked.features)) {}
+
+  /// Of an index into the headings searched.
+  Angle heading(std::size_t index) const { return search.bins.heading(search.headings[index]); }
+  /// Of a cell of the map.
+  bool cell_eligible(int map_col, int map_row) const {
+    const int col = map_col - shift_col;
+    const int row = map_row - shift_row;
+    return col >= 0 && row >= 0 && col < search.positions.cols && row < search.positions.rows &&
+           search.eligible(col, row);
+  }
+  /// Of any cell of a block of the map.
+  bool block_eligible(int col, int row) const {
+    for (int i = 0; i < kBlockCells * kBlockCells; ++i) {
+      if (cell_eligible(col * kBlockCells + i % kBlockCells, row * kBlockCells + i / kBlockCells)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace roadfix

@@ -1,0 +1,86 @@
+#include "core/match/heading_sectors.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "core/grid/resample.hpp"
+
+namespace roadfix {
+
+bool HeadingSectors::turn(const Deadline& deadline) {
+  const BoundedSearch& search = problem_.search;
+  const LineHints hints = find_lines(*search.features, problem_.base);
+  const std::size_t count = search.headings.size();
+  turned_.resize(count);
+  std::atomic<bool> whole{true};
+  parallel_for(static_cast<int>(count), search.threads, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (deadline.over()) {
+      whole = false;
+      return;
+    }
+    const Angle heading = problem_.heading(at);
+    turned_[at].emplace(rotated(*search.features, heading), heading, problem_.base, hints, problem_.map.span(),
+                        problem_.map.all_observed());
+  });
+  if (!whole) return false;
+  for (std::size_t first = 0; first < count; first += kSectorHeadings) {
+    sectors_.push_back(sector_between(first, std::min(first + kSectorHeadings, count)));
+  }
+  return true;
+}
+
+Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const {
+  Sector sector{first, last, {}, {}, 0.0, {}};
+  int side = 0;
+  for (std::size_t i = first; i < last; ++i) side = std::max(side, turned_[i]->side);
+  std::vector<bool> inner(static_cast<std::size_t>(side * side), true);
+  std::vector<bool> outer(inner.size(), false);
+  BlockSums& sums = sector.features;
+  constexpr double kMost = std::numeric_limits<double>::max();
+  sums.cells = {kMost, 0.0};
+  sums.feature = {kMost, 0.0};
+  sums.feature_square_least = kMost;
+  sums.base = problem_.base;
+  sums.span = problem_.map.span();
+  for (std::size_t i = first; i < last; ++i) {
+    const TurnedFeatures& turned = *turned_[i];
+    for (int row = 0; row < side; ++row) {
+      for (int col = 0; col < side; ++col) {
+        const int inset = (side - turned.side) / 2;
+        const int c = col - inset;
+        const int r = row - inset;
+        const bool within = c >= 0 && r >= 0 && c < turned.side && r < turned.side;
+        const auto from = static_cast<std::size_t>(r * turned.side + c);
+        const auto to = static_cast<std::size_t>(row * side + col);
+        inner[to] = inner[to] && within && turned.inner[from];
+        outer[to] = outer[to] || (within && turned.outer[from]);
+      }
+    }
+    sums.cells = {std::min(sums.cells.least, turned.cells), std::max(sums.cells.most, turned.cells)};
+    sums.feature = {std::min(sums.feature.least, turned.sum), std::max(sums.feature.most, turned.sum)};
+    sums.feature_square_least = std::min(sums.feature_square_least, turned.square);
+  }
+  sector.inner = runs_of(inner, side);
+  sector.outer = runs_of(outer, side);
+  for (const BlockRun& run : sector.outer) sector.outer_blocks += run.last - run.first;
+  return sector;
+}
+
+HeadingSectors::Covered HeadingSectors::covered(const Sector& sector, const SectorRun& run, std::size_t block) {
+  Covered result{sector.features, false};
+  BlockSums& sums = result.sums;
+  sums.map = {static_cast<double>(run.inner.value[block]), static_cast<double>(run.outer.value[block])};
+  sums.map_square = {static_cast<double>(run.inner.square[block]), static_cast<double>(run.outer.square[block])};
+  result.whole = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
+  if (!result.whole) {
+    sums.cells = {static_cast<double>(run.inner.cells[block]),
+                  std::min(sums.cells.most, static_cast<double>(run.outer.cells[block]))};
+    sums.feature.least = 0.0;
+    sums.feature_square_least = 0.0;
+  }
+  return result;
+}
+
+}  // namespace roadfix

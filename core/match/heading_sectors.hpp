@@ -1,0 +1,54 @@
+// The headings of a proof: the feature map turned to each, and what neighbouring headings cover of the map together.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/match/bound_problem.hpp"
+#include "core/match/bound_sums.hpp"
+#include "core/match/score_bound.hpp"
+
+namespace roadfix {
+
+/// Headings beside each other, and what any or all of them cover.
+struct Sector {
+  std::size_t first = 0;
+  std::size_t last = 0;  ///< after the last heading
+  std::vector<BlockRun> inner, outer;
+  double outer_blocks = 0.0;
+  BlockSums features;  ///< what holds for all of them; map sums are left out
+};
+
+/// What the map holds under all and under any of a sector's headings, for a run of blocks.
+struct SectorRun {
+  CoveredSums inner, outer;
+};
+
+class HeadingSectors {
+ public:
+  explicit HeadingSectors(const BoundProblem& problem) : problem_(problem) {}
+  /// False if time was over before all were turned.
+  bool turn(const Deadline& deadline);
+
+  const std::vector<Sector>& sectors() const { return sectors_; }
+  const Sector& sector_of(std::size_t heading) const { return sectors_[heading / kSectorHeadings]; }
+  const TurnedFeatures& turned(std::size_t heading) const { return *turned_[heading]; }
+
+  struct Covered {
+    BlockSums sums;      ///< for all headings of the sector
+    bool whole = false;  ///< all of the map under the block's positions is observed
+  };
+  static Covered covered(const Sector& sector, const SectorRun& run, std::size_t block);
+
+ private:
+  static constexpr std::size_t kSectorHeadings = 4;  // share what they cover of the map
+
+  Sector sector_between(std::size_t first, std::size_t last) const;
+
+  const BoundProblem& problem_;
+  std::vector<std::optional<TurnedFeatures>> turned_;
+  std::vector<Sector> sectors_;
+};
+
+}  // namespace roadfix

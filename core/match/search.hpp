@@ -21,28 +21,12 @@
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
 #include "core/match/search_cache.hpp"
+#include "core/match/search_region.hpp"
 
 namespace roadfix {
 
 /// Cells of the map at `geometry.cell_m` = finest cell * 2^k; unobserved where the map has none. Thread-safe.
 using GridReader = std::function<RoadGrid(const GridGeometry& geometry)>;
-
-/// Grid positions of the nadir and grid headings to consider.
-struct SearchRegion {
-  struct Circle {
-    GridPoint centre;
-    double radius_m = 0.0;
-  };
-
-  GridBox box;
-  std::optional<Circle> circle;  ///< intersects the box
-  Angle heading;                 ///< centre of the range
-  Angle heading_half_width = Angle::degrees(180.0);
-
-  bool contains(GridPoint point) const;
-  bool contains(Angle grid_heading) const;
-  double area_km2() const;
-};
 
 inline constexpr double kMostScaleRange = 0.3;
 

@@ -55,4 +55,12 @@ class SearchCache {
   std::uint64_t asked_ = 0;
 };
 
+/// From the cache, or without one just built.
+template <typename T, typename Build>
+std::shared_ptr<const T> kept_or_built(const std::shared_ptr<SearchCache>& cache, const GridGeometry& window,
+                                       std::array<int, 2> parameters, Build build) {
+  if (!cache) return std::make_shared<const T>(build());
+  return cache->get<T>(window, parameters, build);
+}
+
 }  // namespace roadfix

@@ -1,0 +1,117 @@
+#include "core/match/search_levels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/grid/resample.hpp"
+
+namespace roadfix {
+namespace {
+
+// Streets of a town blur into each other beyond 8 m: a large region is scanned in cells of 16 m all the same, since it
+// costs an eighth, but then many more candidates are followed.
+constexpr double kCoarsestCellM = 8.0;
+constexpr double kCoarsestCellOfLargeM = 16.0;
+constexpr double kLargeKm2 = 30.0;
+constexpr int kFootprintCells = 32;         // that the coarse level keeps at least across a footprint
+constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
+
+constexpr double kProofCellM = 4.0;       // roads are hardly wider
+constexpr int kProofFootprintCells = 64;  // likewise at least, where a proof is given in coarser cells than the map's
+
+constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
+constexpr std::size_t kCandidatesOfLarge = 4096;  // followed from coarser cells
+
+int coarse_level(double finest_cell_m, double side_m, const SearchRegion& region) {
+  const bool large = region.area_km2() >= kLargeKm2;
+  const auto fits = [&](double cell_m) {
+    const double across = side_m / cell_m;
+    return (cell_m <= kCoarsestCellM && across >= kFootprintCells) ||
+           (large && cell_m <= kCoarsestCellOfLargeM && across >= kFootprintCellsOfLarge);
+  };
+  int level = 0;
+  while (fits(std::ldexp(finest_cell_m, level + 1))) ++level;
+  return level;
+}
+
+}  // namespace
+
+SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
+                           const SearchRegion& region, const SearchOptions& options)
+    : region_(region), side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())) {
+  const int coarsest = coarse_level(finest_cell_m, side_m_, region);
+  const double radius_m = 0.5 * side_m_;
+  const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
+  const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
+  const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
+  for (int k = 0; k <= coarsest; ++k) {
+    const double cell_m = std::ldexp(finest_cell_m, k);
+    FeatureMap scaled = k == 0 && features.cell_m == cell_m ? features : resampled(features, cell_m);
+    levels_.push_back({read, features, LevelFeatures(std::move(scaled), options.min_observed_share),
+                       options.min_observed_share, HeadingBins(bins.count() << (coarsest - k)),
+                       scales.finer(1 << (coarsest - k)), options.threads});
+  }
+}
+
+std::size_t SearchLevels::followed(int index) const {
+  const double cell_m = at(index).cell_m();
+  if (cell_m > kCoarsestCellM) return kCandidatesOfLarge;
+  return index == coarsest() || cell_m == kCoarsestCellM ? kCandidates : kSurvivors;
+}
+
+int SearchLevels::proof_level() const {
+  int level = 0;
+  for (int k = 1; k <= coarsest(); ++k) {
+    const double cell_m = at(k).cell_m();
+    if (cell_m <= kProofCellM && side_m_ / cell_m >= kProofFootprintCells) level = k;
+  }
+  return level;
+}
+
+bool SearchLevels::within_region(const Level& level, const LatticePose& pose) const {
+  const SearchRegion wide = region_.grown(0.71 * level.cell_m(), level.bins.step());
+  const GridPose at = level.pose_of(pose);
+  return wide.contains(at.position) && wide.contains(at.heading);
+}
+
+std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
+                                                int coarse_bins_apart, std::size_t keep) const {
+  std::ranges::stable_sort(poses, std::ranges::greater{}, &LatticePose::score);
+  const int bins_apart = coarse_bins_apart * (level.bins.count() / coarse().bins.count());
+  const double apart_cells = apart_m / level.cell_m();
+  std::vector<LatticePose> kept;
+  std::array<std::size_t, 2> count{};
+  for (const LatticePose& pose : poses) {
+    std::size_t& same_side = count[within_region(level, pose) ? 0 : 1];
+    if (pose.score <= 0.0 || same_side >= keep) continue;
+    const bool known = std::ranges::any_of(kept, [&](const LatticePose& other) {
+      const double east = pose.cell.col - other.cell.col;
+      const double south = pose.cell.row - other.cell.row;
+      return east * east + south * south <= apart_cells * apart_cells &&
+             level.bins.distance(pose.bin, other.bin) <= bins_apart;
+    });
+    if (known) continue;
+    kept.push_back(pose);
+    ++same_side;
+  }
+  return kept;
+}
+
+GridGeometry framed(const GridGeometry& geometry, int cells) {
+  return {geometry.cell_m,
+          {geometry.origin.col - cells, geometry.origin.row - cells},
+          geometry.cols + 2 * cells,
+          geometry.rows + 2 * cells};
+}
+
+void descend(std::vector<LatticePose>& candidates) {
+  for (LatticePose& pose : candidates) {
+    pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};
+    pose.bin *= 2;
+    pose.scale *= 2;
+  }
+}
+
+}  // namespace roadfix

@@ -1,0 +1,51 @@
+// The pyramid that a search goes down: levels from the finest cells to those of the scan, and which of the poses on one
+// are places of their own.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/match/refine.hpp"
+#include "core/match/search_region.hpp"
+
+namespace roadfix {
+
+inline constexpr std::size_t kSurvivors = 96;  ///< followed from each finer level
+inline constexpr int kDistinctBins = 3;        ///< of the scan's headings, between places of their own
+
+class SearchLevels {
+ public:
+  /// All outlive the levels.
+  SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features, const SearchRegion& region,
+               const SearchOptions& options);
+
+  /// Index of the level that is scanned; the finest one has 0.
+  int coarsest() const { return static_cast<int>(levels_.size()) - 1; }
+  const Level& at(int index) const { return levels_[static_cast<std::size_t>(index)]; }
+  const Level& coarse() const { return levels_.back(); }
+  const Level& finest() const { return levels_.front(); }
+  const SearchRegion& region() const { return region_; }
+  /// The longer side of the feature map.
+  double side_m() const { return side_m_; }
+  /// How many candidates are followed from a level to the next finer one.
+  std::size_t followed(int index) const;
+  /// The level that a proof speaks of.
+  int proof_level() const;
+
+  bool within_region(const Level& level, const LatticePose& pose) const;
+  /// The best `keep` of those within the region, and of the others, that are apart; best first.
+  std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
+                                    int coarse_bins_apart, std::size_t keep) const;
+
+ private:
+  const SearchRegion& region_;
+  double side_m_;
+  std::vector<Level> levels_;  ///< finest first
+};
+
+/// So many cells more on every side.
+GridGeometry framed(const GridGeometry& geometry, int cells);
+/// From the cells of one level to those of the next finer one.
+void descend(std::vector<LatticePose>& candidates);
+
+}  // namespace roadfix

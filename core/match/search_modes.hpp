@@ -1,0 +1,15 @@
+// The last step of a search: its best candidates within the cell, and what is left as the background.
+#pragma once
+
+#include <vector>
+
+#include "core/match/search_levels.hpp"
+
+namespace roadfix {
+
+/// Modes from the best candidates of the region (at the finest level, distinct and best first), rivals from all others.
+/// `scanned`: the region that they come from. At the deadline it ends after the first mode.
+void rank(const SearchLevels& levels, const SearchRegion& scanned, const SearchOptions& options,
+          const Deadline& deadline, const std::vector<LatticePose>& candidates, SearchResult& result);
+
+}  // namespace roadfix

@@ -1,0 +1,73 @@
+#include "core/match/search_proof.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "core/match/branch_and_bound.hpp"
+
+namespace roadfix {
+namespace {
+
+/// All but the feature map and the map.
+BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, const SearchOptions& options,
+                             const std::vector<LatticePose>& candidates) {
+  const SearchRegion& region = levels.region();
+  BoundedSearch bounded;
+  bounded.bins = level.bins;
+  for (int bin = 0; bin < level.bins.count(); ++bin) {
+    if (region.contains(level.bins.heading(bin))) bounded.headings.push_back(bin);
+  }
+  bounded.positions = GridGeometry::covering(region.box, level.cell_m());
+  bounded.eligible = [&region, positions = bounded.positions](int col, int row) {
+    return region.contains(positions.cell_center(col, row));
+  };
+  bounded.threads = options.threads;
+  for (const LatticePose& pose : candidates) {
+    const GridPose at = level.pose_of(pose);
+    if (region.contains(at.position) && region.contains(at.heading)) {
+      bounded.known = std::max(bounded.known, pose.score);
+    }
+  }
+  return bounded;
+}
+
+/// What follows the best pose to the finest cells needs the rest of the time.
+Deadline end_of_proof(const SearchOptions& options) {
+  const auto now = std::chrono::steady_clock::now();
+  auto end = now + options.proof_time;
+  if (options.deadline) end = std::min(end, now + (*options.deadline - now) / 2);
+  return {options.stop, end};
+}
+
+}  // namespace
+
+SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates) {
+  const Level& level = levels.at(levels.proof_level());
+  BoundedSearch bounded = bounded_search(levels, level, options, candidates);
+  const int largest = level.scales.reach();
+  const GridGeometry window = framed(bounded.positions, level.reach(largest) + BoundMap::kFrame);
+  const auto map = kept_or_built<BoundMap>(options.cache, window, {}, [&] { return BoundMap(level.read(window)); });
+  bounded.map = map.get();
+  const Deadline deadline = end_of_proof(options);
+  SearchProof proof{level.cell_m(), static_cast<int>(bounded.headings.size()), 2 * largest + 1, 0.0, 0.0, true, 0.0};
+  for (int scale = -largest; scale <= largest; ++scale) {
+    const LevelFeatures features = level.at_scale(scale);
+    bounded.features = &features.map;
+    bounded.least_cells = features.least_cells;
+    BoundedResult found = search_with_bound(bounded, deadline);
+    for (LatticePose& pose : found.poses) {
+      pose.scale = scale;
+      bounded.known = std::max(bounded.known, pose.score);
+    }
+    candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
+    proof.bound = std::max(proof.bound, found.bound);
+    proof.complete = proof.complete && found.complete;
+    proof.excluded_share += found.excluded_share;
+  }
+  proof.best_score = bounded.known;
+  proof.excluded_share /= proof.scales;
+  return proof;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,31 @@
+#include "core/match/search_region.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace roadfix {
+
+bool SearchRegion::contains(GridPoint point) const {
+  return box.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m);
+}
+
+bool SearchRegion::contains(Angle grid_heading) const {
+  return heading_half_width.radians() >= std::numbers::pi ||
+         angular_distance(grid_heading, heading) <= heading_half_width;
+}
+
+double SearchRegion::area_km2() const {
+  const double boxed = box.empty() ? 0.0 : box.width_m() * box.height_m() * 1e-6;
+  if (!circle) return boxed;
+  return std::min(boxed, std::numbers::pi * circle->radius_m * circle->radius_m * 1e-6);
+}
+
+SearchRegion SearchRegion::grown(double by_m, Angle by_heading) const {
+  SearchRegion result = *this;
+  result.box = {{box.min.east_m - by_m, box.min.north_m - by_m}, {box.max.east_m + by_m, box.max.north_m + by_m}};
+  if (result.circle) result.circle->radius_m += by_m;
+  result.heading_half_width += by_heading;
+  return result;
+}
+
+}  // namespace roadfix

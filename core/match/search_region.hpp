@@ -1,0 +1,28 @@
+// Where a search looks: positions and headings.
+#pragma once
+
+#include <optional>
+
+#include "core/grid/geometry.hpp"
+
+namespace roadfix {
+
+/// Grid positions of the nadir and grid headings to consider.
+struct SearchRegion {
+  struct Circle {
+    GridPoint centre;
+    double radius_m = 0.0;
+  };
+
+  GridBox box;
+  std::optional<Circle> circle;  ///< intersects the box
+  Angle heading;                 ///< centre of the range
+  Angle heading_half_width = Angle::degrees(180.0);
+
+  bool contains(GridPoint point) const;
+  bool contains(Angle grid_heading) const;
+  double area_km2() const;
+  SearchRegion grown(double by_m, Angle heading) const;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,104 @@
+#include "core/match/search_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace roadfix {
+namespace {
+
+constexpr std::size_t kScanMaxima = 16384;
+constexpr std::size_t kCandidatesAround = 256;  // followed from outside of the region
+constexpr double kScanTimeShare = 0.75;         // at most, if the time is limited: what it finds has to be followed
+constexpr int kRivalsWanted = 1000;             // distinct places that a background is drawn from
+
+}  // namespace
+
+SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
+    : levels_(levels),
+      options_(options),
+      separation_m_(std::max(2.5 * levels.coarse().cell_m(), 0.1 * levels.side_m())),
+      scanned_(enlarged()) {}
+
+/// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
+SearchRegion SearchScan::enlarged() const {
+  const SearchRegion& region = levels_.region();
+  const double turns = region.heading_half_width.degrees() / 180.0;
+  const double places_per_m2 = levels_.coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
+  const double wanted_m2 = kRivalsWanted / places_per_m2;
+  if (region.area_km2() * 1e6 * std::min(turns, 1.0) >= wanted_m2) return region;
+  const double need = 0.5 * std::sqrt(wanted_m2);
+  SearchRegion result = region;
+  result.circle.reset();
+  const GridPoint centre{0.5 * (region.box.min.east_m + region.box.max.east_m),
+                         0.5 * (region.box.min.north_m + region.box.max.north_m)};
+  result.box.min.east_m = std::min(region.box.min.east_m, centre.east_m - need);
+  result.box.min.north_m = std::min(region.box.min.north_m, centre.north_m - need);
+  result.box.max.east_m = std::max(region.box.max.east_m, centre.east_m + need);
+  result.box.max.north_m = std::max(region.box.max.north_m, centre.north_m + need);
+  result.heading_half_width = Angle::degrees(180.0);
+  return result;
+}
+
+ScanRequest SearchScan::request() const {
+  const Level& coarse = levels_.coarse();
+  ScanRequest request;
+  request.positions = GridGeometry::covering(scanned_.box, coarse.cell_m());
+  request.bins = coarse.bins;
+  const SearchRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
+  for (int bin = 0; bin < request.bins.count(); ++bin) {
+    if (wide.contains(request.bins.heading(bin))) request.headings.push_back(bin);
+  }
+  request.eligible = [wide, positions = request.positions](int col, int row) {
+    return wide.contains(positions.cell_center(col, row));
+  };
+  request.min_observed_share = options_.min_observed_share;
+  request.keep = kScanMaxima;
+  request.threads = options_.threads;
+  return request;
+}
+
+std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, SearchResult& result) const {
+  const Level& coarse = levels_.coarse();
+  const ScanRequest asked = request();
+  const int largest = coarse.scales.reach();
+  const int reach = coarse.reach(largest);
+  const GridGeometry& positions = asked.positions;
+  const GridGeometry window = framed(positions, reach);
+  const int block = scan_block(coarse.features.map);
+  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block},
+                                          [&] { return ScanMap(coarse.read(window), reach, block); });
+  const Deadline end = deadline.after(kScanTimeShare);
+  std::vector<LatticePose> inside;
+  std::vector<LatticePose> outside;
+  double squares = 0.0;
+  double shares = 0.0;
+  result.scales = 2 * largest + 1;
+  for (int scale = -largest; scale <= largest; ++scale) {
+    const ScanResult found = coarse_scan(*map, coarse.at_scale(scale).map, asked, end);
+    shares += found.share;
+    result.background.poses += found.poses;
+    squares += found.score_square_sum;
+    for (const ScanPose& pose : found.maxima) {
+      const LatticePose lattice{{positions.origin.col + pose.col, positions.origin.row + pose.row},
+                                pose.bin,
+                                static_cast<double>(pose.score),
+                                scale};
+      (levels_.within_region(coarse, lattice) ? inside : outside).push_back(lattice);
+    }
+  }
+  result.scanned_share = shares / result.scales;
+  result.headings = static_cast<int>(asked.headings.size());
+  if (result.background.poses > 0) {
+    result.background.sd = std::sqrt(squares / static_cast<double>(result.background.poses));
+  }
+  const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
+    return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);
+  };
+  std::vector<LatticePose> candidates = apart(inside, levels_.followed(levels_.coarsest()));
+  const std::vector<LatticePose> others = apart(outside, kCandidatesAround);
+  candidates.insert(candidates.end(), others.begin(), others.end());
+  return candidates;
+}
+
+}  // namespace roadfix

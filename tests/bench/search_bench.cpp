@@ -36,8 +36,15 @@ struct City {
   std::vector<Query> queries;
 };
 
-/// A fifth of the roads erased and as many invented, over ground that has roads.
-Query query_at(const MapView& view, std::uint64_t seed) {
+/// A fifth of the roads erased and as many invented.
+FeatureQuality fifth_wrong() {
+  FeatureQuality quality;
+  quality.erase = quality.invent = 0.2;
+  return quality;
+}
+
+/// Over ground that has roads.
+Query query_at(const MapView& view, std::uint64_t seed, const FeatureQuality& quality) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (;;) {
@@ -51,8 +58,6 @@ Query query_at(const MapView& view, std::uint64_t seed) {
                                          view.cell_m));
     const auto roads = std::ranges::count_if(ground.cells.cells(), [](Cell c) { return is_observed(c) && c > 127; });
     if (static_cast<double>(roads) < 0.05 * static_cast<double>(ground.cells.cells().size())) continue;
-    FeatureQuality quality;
-    quality.erase = quality.invent = 0.2;
     return {pose.position, simulate_features(ground, pose, kSide, kSide, quality, random)};
   }
 }
@@ -62,7 +67,8 @@ const City* city() {
     const char* path = std::getenv("ROADFIX_BENCH_MAP");
     if (path == nullptr) return std::nullopt;
     City opened{view_of(std::make_shared<const MapReader>(path, kKept), "city"), {}};
-    for (std::uint64_t seed = 1; seed <= kQueries; ++seed) opened.queries.push_back(query_at(opened.view, seed));
+    for (std::uint64_t seed = 1; seed <= kQueries; ++seed)
+      opened.queries.push_back(query_at(opened.view, seed, fifth_wrong()));
     return opened;
   }();
   return kCity ? &*kCity : nullptr;
@@ -121,6 +127,55 @@ BENCHMARK(search_city)
     ->Args({1000, 1, 60, 0})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(kQueries);
+
+/// What an altitude or a tilt that is known roughly costs: circles of 1 km, feature maps of another size than they say
+/// (1 sigma) and tilted (1 sigma per axis), with and without a range of sizes to search.
+void search_misjudged(benchmark::State& state) {
+  if (city() == nullptr) return state.SkipWithError("ROADFIX_BENCH_MAP names no map");
+  MapView view = city()->view;
+  view.searches = std::make_shared<SearchCache>(kKept);
+  FeatureQuality quality = fifth_wrong();
+  quality.scale = static_cast<double>(state.range(0)) / 100.0;
+  quality.tilt_deg = static_cast<double>(state.range(1));
+  FixOptions options;
+  options.scale_range = static_cast<double>(state.range(2)) / 100.0;
+  std::uint64_t seed = 0;
+  int right = 0;
+  int fixes = 0;
+  int wrong_fixes = 0;
+  double probability = 0.0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    const Query query = query_at(view, 100 + seed++, quality);
+    Prior prior;
+    prior.circle =
+        GeoCircle{view.zone.unproject({query.position.east_m + 300.0, query.position.north_m - 200.0}), 1000.0};
+    state.ResumeTiming();
+    const Fix fix = locate(view, query.features, prior, options);
+    constexpr double kRightM = 25.0;
+    const bool is_right =
+        !fix.modes.empty() && distance_m(view.zone.project(fix.modes.front().pose.position), query.position) <= kRightM;
+    right += is_right ? 1 : 0;
+    fixes += fix.status == FixStatus::kFix ? 1 : 0;
+    wrong_fixes += fix.status == FixStatus::kFix && !is_right ? 1 : 0;
+    probability += fix.probability;
+  }
+  state.counters["asked"] = static_cast<double>(seed);
+  state.counters["right"] = right;
+  state.counters["fixes"] = fixes;
+  state.counters["wrong_fixes"] = wrong_fixes;
+  state.counters["probability"] = benchmark::Counter(probability, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(search_misjudged)
+    ->ArgNames({"scale_error_percent", "tilt_deg", "scale_range_percent"})
+    ->Args({0, 0, 0})
+    ->Args({5, 0, 0})
+    ->Args({5, 0, 15})
+    ->Args({0, 2, 0})
+    ->Args({0, 5, 0})
+    ->Args({0, 5, 15})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(20);
 
 /// The square around a circle of 1 km about the first query, in cells of 4 m, and its feature map at one heading.
 struct Around {

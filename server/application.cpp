@@ -36,7 +36,7 @@ struct Application::Parts {
         detector(make_detector(configuration.detector)),
         pictures(configuration.picture_cache_bytes),
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
-               configuration.track_limits, maps, configuration.limits),
+               configuration.track_limits, maps, configuration.limits, configuration.calibration),
         service{maps,     *detector, configuration.limits,         configuration.http,       metrics,
                 pictures, tracks,    configuration.search_threads, configuration.calibration},
         server(configuration.http, make_router(service), error_response, metrics) {

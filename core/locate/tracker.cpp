@@ -240,6 +240,7 @@ class Tracker::Step {
     options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
     options.time_limit = limits_.search_time;
     options.stop = limits_.stop;
+    options.calibration = settings_.calibration;
     state_.last_search = state_.measured;
     try {
       Fix fix = locate(tracker_.map_, *features_, prior, options);

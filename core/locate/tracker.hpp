@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -52,6 +53,7 @@ struct TrackSettings {
   double converged_sigma_m = 25.0;
   double max_search_km2 = 500.0;          ///< larger priors start uniformly; recovery looks around the last place
   std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
+  std::shared_ptr<const Calibration> calibration;  ///< of its searches; nullptr = the one that is shipped
 
   /// The paper's filter: uniform start, no search, equation (7).
   static TrackSettings paper(int particles);

@@ -9,7 +9,12 @@ using nlohmann::json;
 
 http::Response ready(const Service& service) {
   const auto maps = service.maps.maps().size();
-  return json_response({{"status", "ready"}, {"maps", maps}, {"unreadable_maps", service.maps.unreadable().size()}});
+  json answer{{"status", "ready"}, {"maps", maps}, {"unreadable_maps", service.maps.unreadable().size()}};
+  // Maps are served without it, so that it is no reason to send requests elsewhere.
+  const auto problem = service.tracks.problem();
+  answer["tracks"] = problem ? "unavailable" : "ready";
+  if (problem) answer["tracks_problem"] = *problem;
+  return json_response(answer);
 }
 
 http::Response limits(const Service& service) {

@@ -72,14 +72,23 @@ struct TrackRegistry::Live {
 };
 
 TrackRegistry::TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
-                             const api::Limits& request_limits)
-    : path_(std::move(store)), limits_(limits), maps_(maps), request_limits_(request_limits) {}
+                             const api::Limits& request_limits, std::shared_ptr<const Calibration> calibration)
+    : path_(std::move(store)),
+      limits_(limits),
+      maps_(maps),
+      request_limits_(request_limits),
+      calibration_(std::move(calibration)) {}
 
 /// Maps are served also while this fails; whoever wants a track is told why.
 TrackStore& TrackRegistry::store() const {
   const std::lock_guard lock(store_mutex_);
   if (!store_) store_ = std::make_unique<TrackStore>(path_, limits_.store_bytes);
   return *store_;
+}
+
+TrackSettings TrackRegistry::calibrated(TrackSettings settings) const {
+  settings.calibration = calibration_;
+  return settings;
 }
 
 std::optional<std::string> TrackRegistry::problem() const {
@@ -101,7 +110,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   expire();
   const api::TrackRequest asked = parsed(request, request_limits_);
   const auto map = maps_.find(asked.map);
-  auto fresh = std::make_shared<Live>(map, asked.settings);
+  auto fresh = std::make_shared<Live>(map, calibrated(asked.settings));
   const std::lock_guard lock(mutex_);
   const std::vector<StoredTrack> flying = store().flying();
   const auto own = std::ranges::count(flying, client, &StoredTrack::client);
@@ -161,7 +170,7 @@ std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t
 
 std::shared_ptr<TrackRegistry::Live> TrackRegistry::loaded(const StoredTrack& track) const {
   const auto map = maps_.find(track.map);
-  auto result = std::make_shared<Live>(map, stored_settings(track, request_limits_));
+  auto result = std::make_shared<Live>(map, calibrated(stored_settings(track, request_limits_)));
   result->state = stored_state(track.id);
   return result;
 }

@@ -34,9 +34,10 @@ struct TrackLimits {
 
 class TrackRegistry {
  public:
-  /// A store that cannot be opened is reported by problem(), and by every call below until it can.
+  /// A store that cannot be opened is reported by problem(), and by every call below until it can. `calibration` is of
+  /// the searches of all tracks; nullptr = the one that is shipped.
   TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
-                const api::Limits& request_limits);
+                const api::Limits& request_limits, std::shared_ptr<const Calibration> calibration = nullptr);
 
   const TrackLimits& limits() const { return limits_; }
   std::optional<std::string> problem() const;
@@ -73,6 +74,7 @@ class TrackRegistry {
   using Clock = std::chrono::steady_clock;
   struct Live;
   TrackStore& store() const;
+  TrackSettings calibrated(TrackSettings settings) const;
   std::shared_ptr<Live> live(const std::string& id);
   std::shared_ptr<Live> loaded(const StoredTrack& track) const;
   TrackerState stored_state(const std::string& id) const;
@@ -84,6 +86,7 @@ class TrackRegistry {
   const TrackLimits limits_;
   const MapRegistry& maps_;
   const api::Limits& request_limits_;
+  const std::shared_ptr<const Calibration> calibration_;
   const Clock::time_point began_ = Clock::now();
   mutable std::mutex store_mutex_;  ///< of opening it
   mutable std::unique_ptr<TrackStore> store_;

@@ -71,6 +71,7 @@ TEST_F(Service, GivesTheBrowserAPageThatLoadsNothingFromElsewhere) {
 TEST_F(Service, SaysThatItLivesAndWhatItServes) {
   EXPECT_EQ(client_.Get("/healthz")->status, 200);
   EXPECT_EQ(testing::json_of(client_.Get("/readyz"))["maps"], 1);
+  EXPECT_EQ(testing::json_of(client_.Get("/readyz"))["tracks"], "ready");
   const json list = testing::json_of(client_.Get("/v1/maps"));
   ASSERT_EQ(list["maps"].size(), 1U);
   EXPECT_EQ(list["maps"][0]["status"], "ready");

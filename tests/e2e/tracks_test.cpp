@@ -370,6 +370,10 @@ TEST_F(Tracks, SayWhyTheyCannotBeKeptWhileMapsAreServed) {
     const auto running = service({"--tracks", store});
     httplib::Client client = client_of(*running);
     EXPECT_EQ(client.Get("/v1/maps/town")->status, 200);
+    const json ready = testing::json_of(client.Get("/readyz"));
+    EXPECT_EQ(ready["status"], "ready");
+    EXPECT_EQ(ready["tracks"], "unavailable");
+    EXPECT_THAT(ready["tracks_problem"].get<std::string>(), HasSubstr(store));
     return testing::refusal(client.Post("/v1/tracks", asked().dump(), "application/json"));
   };
   EXPECT_EQ(refusal_with((folder_ / "broken.sqlite").string()), "503 track-store-corrupt");

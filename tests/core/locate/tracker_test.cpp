@@ -113,6 +113,22 @@ TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
   EXPECT_GT(blind.clusters[0].sigma_m[0], 2.0 * seeing.clusters[0].sigma_m[0]);
 }
 
+TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
+  Flight flight(map_, start_, 1);
+  const StepInput first = flight.step();
+  const auto accepted = [&](double highest) {
+    TrackSettings s = settings();
+    Calibration calibration = default_calibration();
+    calibration.highest = highest;
+    s.calibration = std::make_shared<const Calibration>(calibration);
+    const StepResult result = Tracker(view_, s).advance({}, first);
+    EXPECT_EQ(result.estimate.measurement, Measurement::kSearched);
+    return result.estimate.since_accepted_s.has_value();
+  };
+  EXPECT_TRUE(accepted(0.999));
+  EXPECT_FALSE(accepted(0.5));
+}
+
 TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <thread>
 
 #include "tests/support/code_of.hpp"
@@ -31,7 +32,7 @@ StepInput step_of(std::int64_t sequence) {
 class TrackRegistryTest : public ::testing::Test {
  protected:
   TrackRegistryTest() {
-    testing::write_map_file(folder_ / "town.gpkg", testing::street_map(3, {2.0, {300'100, -3'200'050}, 200, 200}), 2.0);
+    testing::write_map_file(folder_ / "town.gpkg", town_, 2.0);
     maps_.refresh();
   }
 
@@ -55,6 +56,7 @@ class TrackRegistryTest : public ::testing::Test {
     return answers;
   }
 
+  const RoadGrid town_ = testing::street_map(3, {2.0, {300'100, -3'200'050}, 300, 300});
   const testing::TemporaryFolder folder_;
   const api::Limits limits_;
   MapRegistry maps_{folder_.path(), 1 << 20};
@@ -120,6 +122,25 @@ TEST_F(TrackRegistryTest, KeepsTracksAsSoonAsTheStoreCanBeOpened) {
   std::filesystem::create_directory(folder_ / "later");
   EXPECT_FALSE(tracks->problem());
   EXPECT_EQ(code_of([&] { begin(*tracks); }), "no error");
+}
+
+TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
+  Calibration doubtful = default_calibration();
+  doubtful.highest = 0.5;
+  std::mt19937_64 random(1);
+  StepInput first = step_of(0);
+  first.odometry.reset();
+  first.features =
+      testing::observed_at(town_, {{600'400.0, 6'399'900.0}, Angle::degrees(40.0)}, 120, 120, 2.0, {}, random);
+  const auto accepted = [&](const char* file, std::shared_ptr<const Calibration> calibration) {
+    TrackRegistry tracks(folder_ / file, {}, maps_, limits_, std::move(calibration));
+    const std::string id = tracks.create("::1", R"({"map": "town", "particles": 500})").id;
+    const json answer = json::parse(tracks.step(id, first, 0, {}));
+    EXPECT_EQ(answer["measurement"], "searched");
+    return !answer["since_accepted_s"].is_null();
+  };
+  EXPECT_TRUE(accepted("sure.sqlite", nullptr));
+  EXPECT_FALSE(accepted("doubtful.sqlite", std::make_shared<const Calibration>(doubtful)));
 }
 
 TEST_F(TrackRegistryTest, LimitsTheTracksOfAClientAndOfAll) {

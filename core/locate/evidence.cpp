@@ -19,17 +19,17 @@ double detection_evidence(const MatchSums& s, double a, double b) {
 
 }  // namespace
 
-double EvidenceModel::log_likelihood(const MatchSums& sums, double cell_m) const {
+double EvidenceModel::log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const {
   if (kind == EvidenceKind::kEquation7) return std::log(likelihood(rho(sums).value_or(0.0)));
-  if (sums.n == 0) return 0.0;
   const double samples_per_cell = std::min(1.0, cell_m * cell_m / independent_m2);
   double evidence = 0.0;
   if (kind == EvidenceKind::kDetectionRates) {
-    evidence = samples_per_cell * detection_evidence(sums, detection_rate, false_rate);
+    if (sums.n > 0) evidence = samples_per_cell * detection_evidence(sums, detection_rate, false_rate);
   } else {
-    const double samples = samples_per_cell * static_cast<double>(sums.n);
+    const double samples = samples_per_cell * static_cast<double>(std::max(frame_cells, sums.n));
+    const double seen = samples_per_cell * static_cast<double>(sums.n);
     const double r = pearson(sums).value_or(0.0);
-    evidence = samples * expected_correlation * (r - 0.5 * expected_correlation);
+    evidence = expected_correlation * (seen * r - 0.5 * samples * expected_correlation);
   }
   // exp() cannot overflow: evidence is at most a few thousand samples times a fraction, so it is bounded first.
   constexpr double kMost = 300.0;

@@ -1,6 +1,8 @@
 // What a match says about a pose: the measurement model of the filter.
 #pragma once
 
+#include <cstdint>
+
 #include "core/match/correlation.hpp"
 
 namespace roadfix {
@@ -28,9 +30,12 @@ struct EvidenceModel {
   double temper = 0.5;                 ///< exponent, since consecutive frames see the same ground
   double useless_share = 0.1;          ///< of frames that say nothing even at the true pose
 
-  /// Log of the likelihood ratio to chance (of P for equation 7; -inf where it is 0). 0 where nothing was observed in
-  /// both.
-  double log_likelihood(const MatchSums& sums, double cell_m) const;
+  /// Log of the likelihood ratio to chance (of P for equation 7; -inf where it is 0).
+  ///
+  /// `frame_cells` is how many cells the feature map observes. Those that the map does not are taken to agree as by
+  /// chance: by saying nothing of them, a pose mostly outside the map would beat all that have something against them.
+  /// Equation (7) is as it stands and speaks of the cells observed in both, however few.
+  double log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const;
   /// Whether a measurement with this mean likelihood supports the belief.
   bool supports(double mean_likelihood) const;
 };

@@ -118,7 +118,7 @@ TrackSettings TrackSettings::paper(int particles) {
 
 Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
-      settings_(settings),
+      settings_(std::move(settings)),
       start_(acceptance_of(region_of(map_, settings_.prior))),
       region_(acceptance_of(region_of(map_, {}))) {}
 
@@ -210,9 +210,22 @@ class Tracker::Step {
     if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
     const std::vector<MatchSums> sums =
         match_particles(tracker_.map_, *features_, filter_.particles(), limits_.threads, limits_.stop);
+    const auto frame_cells = static_cast<std::int64_t>(features_->cells.observed_count());
+    if (unseen_by_map(sums, frame_cells)) {
+      estimate_.measurement = Measurement::kUseless;
+    } else {
+      weigh(sums, frame_cells);
+    }
+    if (settings_.recovers && (filter_.doubt() > kDoubtForSearch || stale()) &&
+        state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
+      recover();
+    }
+  }
+
+  void weigh(const std::vector<MatchSums>& sums, std::int64_t frame_cells) {
     std::vector<double> log_likelihoods(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      log_likelihoods[i] = settings_.evidence.log_likelihood(sums[i], features_->cell_m);
+      log_likelihoods[i] = settings_.evidence.log_likelihood(sums[i], frame_cells, features_->cell_m);
     }
     const Correction correction = filter_.correct(log_likelihoods);
     estimate_.mean_likelihood = correction.mean_likelihood;
@@ -221,10 +234,24 @@ class Tracker::Step {
                             : accepted         ? Measurement::kAccepted
                                                : Measurement::kRejected;
     if (accepted) accept();
-    if (settings_.recovers && filter_.doubt() > kDoubtForSearch &&
-        state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
-      recover();
-    }
+  }
+
+  /// Nothing has spoken for the belief for long, be it that nothing could.
+  bool stale() const { return since_accepted_s().value_or(0.0) >= kStaleAfterS; }
+
+  std::optional<double> since_accepted_s() const {
+    if (!state_.accepted_time_us) return std::nullopt;
+    return 1e-6 * static_cast<double>(input_.time_us - *state_.accepted_time_us);
+  }
+
+  /// Whether the belief lies where the map shows next to nothing, so that a frame speaks neither for nor against it.
+  bool unseen_by_map(const std::vector<MatchSums>& sums, std::int64_t frame_cells) const {
+    constexpr double kLeastShare = 0.25;
+    if (settings_.evidence.kind == EvidenceKind::kEquation7) return false;
+    const Particles& p = filter_.particles();
+    double seen = 0.0;
+    for (std::size_t i = 0; i < sums.size(); ++i) seen += p.weight[i] * static_cast<double>(sums[i].n);
+    return seen < kLeastShare * static_cast<double>(frame_cells);
   }
 
   void accept() {
@@ -305,9 +332,7 @@ class Tracker::Step {
     estimate_.particles = filter_.particles().size();
     estimate_.resets = filter_.state().resets;
     estimate_.doubt = filter_.doubt();
-    if (state_.accepted_time_us) {
-      estimate_.since_accepted_s = 1e-6 * static_cast<double>(state_.time_us - *state_.accepted_time_us);
-    }
+    estimate_.since_accepted_s = since_accepted_s();
     estimate_.converged = clusters.front().weight >= settings_.converged_weight &&
                           clusters.front().sigma_m() <= settings_.converged_sigma_m &&
                           state_.supported >= kSupportForConvergence && estimate_.doubt <= kDoubtForSearch &&

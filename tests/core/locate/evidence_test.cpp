@@ -55,7 +55,7 @@ TEST(Evidence, OfDetectionRatesIsTheSumOverTheCells) {
   model.useless_share = 0.0;
   model.temper = 1.0;
   model.independent_m2 = 400.0;
-  EXPECT_NEAR(model.log_likelihood(s, 2.0), expected * 4.0 / 400.0, 1e-9);
+  EXPECT_NEAR(model.log_likelihood(s, s.n, 2.0), expected * 4.0 / 400.0, 1e-9);
 }
 
 TEST(Evidence, IsForTheTruePlaceAndAgainstOthers) {
@@ -66,8 +66,8 @@ TEST(Evidence, IsForTheTruePlaceAndAgainstOthers) {
     const Cells truth = seen(random, 0.5, 0.1);
     const Cells other = seen(random, 0.5, 0.1);
     // 2000 cells of 16 m: as many samples as a footprint of 700 m.
-    EXPECT_GT(model.log_likelihood(sums_of(truth.m, truth.l), 16.0), 3.0);
-    EXPECT_LT(model.log_likelihood(sums_of(other.m, truth.l), 16.0), -1.0);
+    EXPECT_GT(model.log_likelihood(sums_of(truth.m, truth.l), 2000, 16.0), 3.0);
+    EXPECT_LT(model.log_likelihood(sums_of(other.m, truth.l), 2000, 16.0), -1.0);
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Evidence, ByCorrelationHasAMeanRatioOfOneByChance) {
   for (int i = 0; i < kRuns; ++i) {
     const Cells a = seen(random, 0.5, 0.5);
     const MatchSums s = sums_of(a.m, a.l);
-    sum += std::exp(model.log_likelihood(s, 10.0));
+    sum += std::exp(model.log_likelihood(s, s.n, 10.0));
   }
   // ratio = exp(x - v / 2) with x normal of variance v = 2000 * 0.03^2: its own spread is sqrt(e^v - 1) = 2.25.
   EXPECT_NEAR(sum / kRuns, 1.0, 5.0 * 2.25 / std::sqrt(kRuns));
@@ -94,14 +94,27 @@ TEST(Evidence, FallsNoFurtherThanTheShareOfUselessFrames) {
   EvidenceModel model;
   std::mt19937_64 random(4);
   const Cells cells = seen(random, 0.0, 0.9);
-  EXPECT_NEAR(model.log_likelihood(sums_of(cells.m, cells.l), 16.0), std::log(model.useless_share), 0.01);
+  EXPECT_NEAR(model.log_likelihood(sums_of(cells.m, cells.l), 2000, 16.0), std::log(model.useless_share), 0.01);
 }
 
 TEST(Evidence, SaysNothingWhereNothingWasObserved) {
-  EXPECT_EQ(EvidenceModel{}.log_likelihood({}, 2.0), 0.0);
+  EXPECT_EQ(EvidenceModel{}.log_likelihood({}, 0, 2.0), 0.0);
   EvidenceModel paper;
   paper.kind = EvidenceKind::kEquation7;
-  EXPECT_EQ(paper.log_likelihood({}, 2.0), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(paper.log_likelihood({}, 0, 2.0), -std::numeric_limits<double>::infinity());
+}
+
+TEST(Evidence, OfAPoseThatIsMostlyOutsideTheMapIsNoBetterThanThatOfAWrongPlace) {
+  std::mt19937_64 random(6);
+  const Cells truth = seen(random, 0.5, 0.1);
+  const Cells other = seen(random, 0.5, 0.1);
+  const EvidenceModel model;
+  const double wrong = model.log_likelihood(sums_of(other.m, truth.l), 2000, 16.0);
+  EXPECT_NEAR(model.log_likelihood({}, 2000, 16.0), wrong, 0.5) << "nothing in common";
+  // A tenth of the footprint on the map, and all that is seen there fits.
+  const std::vector<bool> few(truth.m.begin(), truth.m.begin() + 200);
+  EXPECT_LT(model.log_likelihood(sums_of(few, few), 2000, 16.0), 0.0);
+  EXPECT_GT(model.log_likelihood(sums_of(few, few), 200, 16.0), 0.0);
 }
 
 TEST(Evidence, OfEquation7IsItself) {
@@ -110,7 +123,7 @@ TEST(Evidence, OfEquation7IsItself) {
   EvidenceModel paper;
   paper.kind = EvidenceKind::kEquation7;
   const MatchSums s = sums_of(cells.m, cells.l);
-  EXPECT_NEAR(std::exp(paper.log_likelihood(s, 2.0)), *rho(s), 1e-12);
+  EXPECT_NEAR(std::exp(paper.log_likelihood(s, 2000, 2.0)), *rho(s), 1e-12);
 }
 
 }  // namespace

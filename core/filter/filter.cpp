@@ -140,7 +140,7 @@ double Filter::doubt() const { return std::clamp(1.0 - state_.fast_support / sta
 
 double Filter::share_to_inject() const {
   if (options_.injection == Injection::kFixedShare) return 0.0;
-  return std::min(doubt(), options_.injected_share);
+  return std::clamp(doubt() - options_.calm_doubt, 0.0, options_.injected_share);
 }
 
 void Filter::resample() {

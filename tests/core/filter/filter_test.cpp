@@ -148,6 +148,18 @@ TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
   EXPECT_GT(clusters_of(filter.particles(), {}).size(), 20U);
 }
 
+TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
+  Filter filter({}, kSquare, 1);
+  const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
+  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  for (int i = 0; i < 100; ++i) {
+    filter.predict(PlanarMotion{{0.0, 0.1}, {0.0, 0.01}, 1.0});
+    filter.correct(std::vector<double>(filter.particles().size(), i % 2 == 0 ? 1.0 : -0.5));
+    ASSERT_LT(filter.doubt(), 0.15) << "step " << i;
+  }
+  EXPECT_EQ(clusters_of(filter.particles(), {}).size(), 1U);
+}
+
 TEST(Filter, InjectsProposalsOfASearch) {
   Filter filter({}, kSquare, 1);
   const Proposal here{{{300.0, 300.0}, Angle()}, {}, 1.0};

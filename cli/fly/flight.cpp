@@ -18,6 +18,7 @@ constexpr int kTries = 10'000;
 // Streams of a seed: the flight, and one for the camera of each step.
 constexpr std::uint64_t kMotion = 0;
 constexpr std::uint64_t kCamera = 1;
+constexpr std::uint64_t kRegistration = 2;
 
 GridPose first_pose(Pilot& pilot, const Sensor& sensor, Random& random) {
   for (int i = 0; i < kTries; ++i) {
@@ -41,20 +42,25 @@ GridPose jumped(const GridPose& from, double distance_m, const GridBox& box, con
 
 class Sight {
  public:
-  Sight(const FlightPlan& plan, const Sensor& sensor, std::uint64_t seed) : plan_(plan), sensor_(sensor), seed_(seed) {}
+  Sight(const FlightPlan& plan, const Sensor& sensor, std::uint64_t seed) : plan_(plan), sensor_(sensor), seed_(seed) {
+    Random random = stream(seed, kRegistration, 0);
+    off_ = {plan.registration_m * normal(random), plan.registration_m * normal(random)};
+  }
 
   std::optional<FeatureMap> at(int step, const GridPose& pose) const {
     Random random = stream(seed_, kCamera, static_cast<std::uint64_t>(step));
     const bool lost = uniform(random, 0.0, 1.0) < plan_.missing_share;
     if (lost || step % plan_.frame_every != 0) return std::nullopt;
     if (plan_.outage && plan_.outage->contains(step)) return std::nullopt;
-    return sensor_.see(pose, random);
+    return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
+                       random);
   }
 
  private:
   const FlightPlan& plan_;
   const Sensor& sensor_;
   std::uint64_t seed_;
+  GridPoint off_;
 };
 
 }  // namespace

@@ -36,6 +36,9 @@ struct FlightPlan {
   double missing_share = 0.0;       ///< of the frames, at random
   std::optional<StepRange> outage;  ///< steps without frames
   std::optional<Kidnapping> kidnapping;
+  /// 1 sigma per axis by which all that is seen lies elsewhere than on the map, once for the flight: what a map that is
+  /// told to be so far off may do. Of no use where imagery has an error of its own.
+  double registration_m = 0.0;
 };
 
 struct Moment {

@@ -13,7 +13,9 @@ namespace {
 
 class LibraryLocalizer : public Localizer {
  public:
-  LibraryLocalizer(const Tracker& tracker, std::stop_token stop) : tracker_(tracker) { limits_.stop = std::move(stop); }
+  LibraryLocalizer(const MapView& map, const TrackSettings& settings, std::stop_token stop) : tracker_(map, settings) {
+    limits_.stop = std::move(stop);
+  }
 
   TrackEstimate advance(const StepInput& step) override {
     StepResult result = tracker_.advance(state_, step, limits_);
@@ -23,18 +25,20 @@ class LibraryLocalizer : public Localizer {
 
   std::vector<GeoPose> particles(std::size_t count) const override { return tracker_.particles(state_, count); }
 
+  /// Of this thread: wall-clock time says little on a machine that others use too.
+  double clock_ms() const override {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+  }
+
+  void finish() override {}
+
  private:
-  const Tracker& tracker_;
+  const Tracker tracker_;
   StepLimits limits_;
   TrackerState state_;
 };
-
-/// Of this thread: wall-clock time says little on a machine that others use too.
-double cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 double nees_of(const TrackCluster& cluster, GridPoint error, Angle grid_axis) {
   const double along = error.east_m * sin(grid_axis) + error.north_m * cos(grid_axis);
@@ -62,8 +66,8 @@ Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone)
 
 }  // namespace
 
-std::unique_ptr<Localizer> make_localizer(const Tracker& tracker, std::stop_token stop) {
-  return std::make_unique<LibraryLocalizer>(tracker, std::move(stop));
+std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop) {
+  return std::make_unique<LibraryLocalizer>(map, settings, std::move(stop));
 }
 
 TrackSettings filter_named(const std::string& name, int particles) {
@@ -87,13 +91,14 @@ TrackSettings filter_named(const std::string& name, int particles) {
 std::vector<Record> localize(const Flight& flight, Localizer& localizer, const UtmZone& zone, const Watcher& watch) {
   std::vector<Record> records;
   for (const Moment& moment : flight) {
-    const double before = cpu_ms();
+    const double before = localizer.clock_ms();
     TrackEstimate estimate = localizer.advance(moment.input);
-    const double spent = cpu_ms() - before;
+    const double spent = localizer.clock_ms() - before;
     records.push_back(judged(moment, std::move(estimate), zone));
-    records.back().cpu_ms = spent;
+    records.back().step_ms = spent;
     watch(records.back(), localizer);
   }
+  localizer.finish();
   return records;
 }
 

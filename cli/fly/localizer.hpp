@@ -16,10 +16,14 @@ class Localizer {
   virtual TrackEstimate advance(const StepInput& step) = 0;
   /// Of the belief after the last step.
   virtual std::vector<GeoPose> particles(std::size_t count) const = 0;
+  /// The clock that a step's time is taken by.
+  virtual double clock_ms() const = 0;
+  /// After the last step.
+  virtual void finish() = 0;
 };
 
-/// The tracker of the library, which must outlive the localizer.
-std::unique_ptr<Localizer> make_localizer(const Tracker& tracker, std::stop_token stop);
+/// The tracker of the library.
+std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop);
 
 /// From the paper's filter to the default, one improvement after the other.
 inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default";
@@ -37,8 +41,8 @@ struct Record {
   GridPose best;  ///< of the heaviest cluster
   double error_m = 0.0;
   double heading_error_deg = 0.0;
-  double nees = 0.0;    ///< squared error of the position in units of the stated ellipse
-  double cpu_ms = 0.0;  ///< of the filter's thread, without detection
+  double nees = 0.0;     ///< squared error of the position in units of the stated ellipse
+  double step_ms = 0.0;  ///< by the localizer's clock, without detection
 };
 
 /// Called after each step.

@@ -135,7 +135,7 @@ Summary summary_of(std::span<const Run> runs, const Events& events) {
     add_claims(run.records, summary, samples);
     add_event(run.records, events, summary, samples);
     for (const Record& record : run.records) {
-      if (record.saw) samples.step_ms.push_back(record.cpu_ms);
+      if (record.saw) samples.step_ms.push_back(record.step_ms);
       samples.particles.push_back(static_cast<double>(record.estimate.particles));
     }
   }
@@ -158,7 +158,7 @@ nlohmann::json to_json(const Summary& s) {
             {"false_steps", s.false_claims},
             {"nees_mean", or_null(s.nees_mean)},
             {"within_95_ellipse", or_null(s.within_95)}}},
-          {"step_cpu_ms", {{"median", or_null(s.step_ms_median)}, {"p95", or_null(s.step_ms_p95)}}},
+          {"step_ms", {{"median", or_null(s.step_ms_median)}, {"p95", or_null(s.step_ms_p95)}}},
           {"particles_mean", or_null(s.particles_mean)},
           {"recovered", s.recovered},
           {"recovery_s", {{"median", or_null(s.recovery_s_median)}, {"p90", or_null(s.recovery_s_p90)}}},

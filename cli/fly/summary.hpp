@@ -49,7 +49,7 @@ struct Summary {
   int false_claims = 0;                        ///< steps
   std::optional<double> nees_mean;             ///< over the claims; a consistent filter gives 2
   std::optional<double> within_95;             ///< share of the claims whose 95 % ellipse holds the truth
-  std::optional<double> step_ms_median;        ///< processor time of a step with a frame
+  std::optional<double> step_ms_median;        ///< of a step with a frame, by the localizer's clock
   std::optional<double> step_ms_p95;
   std::optional<double> particles_mean;
   // Where the plan has an event:

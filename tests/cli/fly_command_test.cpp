@@ -59,7 +59,8 @@ TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
 }
 
 TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {
-  const std::string flight = "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --csv ";
+  const std::string flight =
+      "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --registration 3 --csv ";
   ASSERT_EQ(roadfix(flight + file("a.csv")).code, 0);
   ASSERT_EQ(roadfix(flight + file("b.csv")).code, 0);
   const auto without_times = [](const std::string& text) {
@@ -80,6 +81,9 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(large.err, HasSubstr("no-place-to-fly"));
   EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
   EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
+  const std::string over_service = "fly " + map() + " --footprint-m 200 --steps 1 --vehicles 2 --map town --server ";
+  EXPECT_THAT(roadfix(over_service + "127.0.0.1").err, HasSubstr("bad-url"));
+  EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));
 }
 
 }  // namespace

@@ -32,9 +32,10 @@ std::string first_line(int pipe) {
 
 }  // namespace
 
-ServiceProcess::ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options) {
-  std::vector<std::string> arguments{ROADFIX_PROGRAM, "serve", "--maps",      maps.string(), "--port",     "0",
-                                     "--watch",       "0.05",  "--log-level", "warn",        "--detector", "tree"};
+ServiceProcess::ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options, int port) {
+  std::vector<std::string> arguments{ROADFIX_PROGRAM,      "serve",   "--maps", maps.string(), "--port",
+                                     std::to_string(port), "--watch", "0.05",   "--log-level", "warn",
+                                     "--detector",         "tree"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");

@@ -12,8 +12,9 @@ namespace roadfix::testing {
 
 class ServiceProcess {
  public:
-  /// Starts it and waits until it has printed its address. `options` come after --maps and --port 0.
-  explicit ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options = {});
+  /// Starts it and waits until it has printed its address. `options` come after --maps and --port; 0 = any free one.
+  explicit ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options = {},
+                          int port = 0);
   /// Kills it if it still runs.
   ~ServiceProcess();
   ServiceProcess(const ServiceProcess&) = delete;

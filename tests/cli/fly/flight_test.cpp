@@ -108,6 +108,35 @@ TEST_F(Flights, AKidnappedVehicleIsElsewhereAndItsOdometryDoesNotTell) {
   EXPECT_EQ(code_of([&] { flown(); }), "kidnapping-too-far");
 }
 
+TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEveryStep) {
+  /// Remembers from where it was looked.
+  class Witness : public Window {
+   public:
+    FeatureMap see(const GridPose& pose, bench::Random& random) const override {
+      seen.push_back(pose.position);
+      return Window::see(pose, random);
+    }
+    mutable std::vector<GridPoint> seen;
+  };
+  const auto offset_of = [&](double registration_m) {
+    const Witness witness;
+    plan.registration_m = registration_m;
+    const auto pilot = make_random_pilot(kBox, plan.handling);
+    const Flight flight = fly(plan, kBox, *pilot, witness, 5, [] {});
+    const auto off = [&](std::size_t i) {
+      return GridPoint{witness.seen[i].east_m - flight[i].truth.position.east_m,
+                       witness.seen[i].north_m - flight[i].truth.position.north_m};
+    };
+    for (std::size_t i = 1; i < flight.size(); ++i) EXPECT_LT(distance_m(off(i), off(0)), 1e-6);
+    return off(0);
+  };
+  EXPECT_EQ(offset_of(0.0), (GridPoint{0.0, 0.0}));
+  const GridPoint once = offset_of(2.0);
+  const GridPoint twice = offset_of(4.0);
+  EXPECT_GT(distance_m(once, {}), 0.0);
+  EXPECT_NEAR(distance_m(twice, {2.0 * once.east_m, 2.0 * once.north_m}), 0.0, 1e-6);
+}
+
 TEST_F(Flights, OfWaypointsPassCloseToEachAndEndAtTheLast) {
   const std::vector<GridPoint> points{{600'600, 6'399'100}, {601'000, 6'399'100}, {601'000, 6'399'700}};
   plan.steps = 1000;

@@ -1,0 +1,71 @@
+#include "cli/fly/service_answer.hpp"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using nlohmann::json;
+
+InvalidInput unreadable(const std::string& what) {
+  return {"service-answer-unreadable",
+          "the service answered what no step of a track is answered (" + what + "): is it a Roadfix of this version?"};
+}
+
+TrackCluster cluster_of(const json& value) {
+  const json& pose = value.at("pose");
+  return {{{pose.at("lat"), pose.at("lon")}, Angle::degrees(pose.at("heading_deg"))},
+          value.at("weight"),
+          value.at("sigma_m").get<std::array<double, 2>>(),
+          Angle::degrees(value.at("ellipse_heading_deg")),
+          Angle::degrees(value.at("heading_sigma_deg")),
+          value.at("radius95_m")};
+}
+
+Measurement measurement_of(const std::string& word) {
+  for (const Measurement measurement : {Measurement::kNone, Measurement::kSkipped, Measurement::kSearched,
+                                        Measurement::kAccepted, Measurement::kRejected, Measurement::kUseless}) {
+    if (word == to_string(measurement)) return measurement;
+  }
+  throw unreadable("measurement " + word);
+}
+
+}  // namespace
+
+TrackEstimate estimate_of(const json& answer) {
+  TrackEstimate estimate;
+  try {
+    estimate.sequence = answer.at("sequence");
+    estimate.time_us = answer.at("time_us");
+    estimate.converged = answer.at("status") == "converged";
+    for (const json& cluster : answer.at("clusters")) estimate.clusters.push_back(cluster_of(cluster));
+    estimate.cluster_count = answer.at("cluster_count");
+    estimate.particles = answer.at("particles");
+    estimate.resets = answer.at("resets");
+    estimate.measurement = measurement_of(answer.at("measurement"));
+    estimate.mean_likelihood = answer.at("mean_likelihood");
+    estimate.doubt = answer.at("doubt");
+    const json& accepted = answer.at("since_accepted_s");
+    if (!accepted.is_null()) estimate.since_accepted_s = accepted.get<double>();
+    estimate.missed_steps = answer.at("missed_steps");
+  } catch (const json::exception& error) {
+    throw unreadable(error.what());
+  }
+  if (estimate.clusters.empty()) throw unreadable("no clusters");
+  return estimate;
+}
+
+std::vector<GeoPose> particles_of(const json& list) {
+  std::vector<GeoPose> poses;
+  try {
+    for (const json& p : list) poses.push_back({{p.at(1), p.at(0)}, Angle::degrees(p.at(2))});
+  } catch (const json::exception& error) {
+    throw unreadable(error.what());
+  }
+  return poses;
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,186 @@
+#include "cli/fly/service_localizer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "cli/fly/service_answer.hpp"
+#include "core/detect/image_codec.hpp"
+#include "core/units/error.hpp"
+#include "server/http/client.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using http::Answer;
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kAnswerTime{600};  // a first search of a large map takes its time
+
+/// Worth another try: the service is not there, has too much to do, or cannot write just now.
+bool may_pass(const std::optional<Answer>& answer) {
+  return !answer || answer->status == 502 || answer->status == 503 || answer->status == 504;
+}
+
+std::string reason_of(const std::optional<Answer>& answer) {
+  if (!answer) return "no answer";
+  const json problem = json::parse(answer->body, nullptr, false);
+  if (!problem.is_object()) return std::to_string(answer->status);
+  return fmt::format("{} {}: {}", answer->status, problem.value("code", "?"), problem.value("detail", "?"));
+}
+
+/// A connection that sends a request until it is answered, or patience is at its end.
+class Connection {
+ public:
+  using Send = std::function<std::optional<Answer>(http::Client&)>;
+
+  explicit Connection(const ServicePlan& plan)
+      : client_(plan.base, kAnswerTime), base_(plan.base), patience_(plan.patience), stop_(plan.stop) {}
+
+  json ask(const Send& send) {
+    constexpr std::chrono::milliseconds kFirstPause{20};
+    constexpr std::chrono::milliseconds kLongestPause{2000};
+    const Clock::time_point began = Clock::now();
+    for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+      const std::optional<Answer> answer = send(client_);
+      if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
+      if (!may_pass(answer)) return content_of(*answer);
+      if (Clock::now() + pause > began + patience_) {
+        throw IoFailure("service-silent", fmt::format("the service at {} did not take a request within {} s ({})",
+                                                      base_, patience_.count(), reason_of(answer)));
+      }
+      rest(answer && answer->retry_after ? std::max<std::chrono::milliseconds>(pause, *answer->retry_after) : pause);
+    }
+  }
+
+ private:
+  static json content_of(const Answer& answer) {
+    if (answer.status >= 400) throw InvalidInput("service-refused", "the service refused: " + reason_of(answer));
+    return answer.body.empty() ? json() : json::parse(answer.body, nullptr, false);
+  }
+
+  void rest(std::chrono::milliseconds pause) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any stopped;
+    stopped.wait_for(lock, stop_, pause, [] { return false; });
+  }
+
+  http::Client client_;
+  const std::string base_;
+  const std::chrono::seconds patience_;
+  const std::stop_token stop_;
+};
+
+json track_request(const ServicePlan& plan, const std::string& filter, std::uint64_t seed) {
+  if (filter != "default" && filter != "paper") {
+    throw InvalidInput("filter-unknown",
+                       fmt::format("a service has no filter '{}': take default or paper, or fly without it", filter));
+  }
+  json request{{"map", plan.map},
+               {"filter", filter == "paper" ? "paper" : "adaptive"},
+               {"particles", plan.particles},
+               {"measure_every", plan.measure_every},
+               {"seed", seed},
+               {"odometry_share", plan.vehicle.odometry_share},
+               {"wind_walk", plan.vehicle.wind_walk}};
+  if (plan.vehicle.planar) {
+    const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
+    request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;
+    request["speed_sigma_m_s"] = plan.vehicle.planar->speed_m_s.sigma;
+    request["turn_rate_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.mean);
+    request["turn_rate_sigma_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.sigma);
+  }
+  return request;
+}
+
+json told(const StepInput& step) {
+  json fields{{"sequence", step.sequence}, {"time_us", step.time_us}};
+  if (step.odometry) {
+    fields["forward_m"] = step.odometry->forward_m;
+    fields["right_m"] = step.odometry->right_m;
+    fields["turn_deg"] = step.odometry->turn.degrees();
+  }
+  if (step.features) {
+    fields["cell_m"] = step.features->cell_m;
+    fields["nadir_col"] = step.features->nadir.col;
+    fields["nadir_row"] = step.features->nadir.row;
+  }
+  return fields;
+}
+
+std::string as_query(const json& fields) {
+  std::string query;
+  for (const auto& [name, value] : fields.items()) query += (query.empty() ? "?" : "&") + name + "=" + value.dump();
+  return query;
+}
+
+class ServiceLocalizer : public Localizer {
+ public:
+  ServiceLocalizer(const ServicePlan& plan, const std::string& filter, std::uint64_t seed)
+      : connection_(plan), keeps_(plan.keeps_tracks) {
+    const std::string request = track_request(plan, filter, seed).dump();
+    // Should the answer be lost, the track that was begun expires without a step.
+    const json track =
+        connection_.ask([&](http::Client& client) { return client.post("/v1/tracks", request, "application/json"); });
+    if (!track.is_object() || !track.contains("id")) {
+      throw InvalidInput("service-answer-unreadable", plan.base + " begins no tracks: is it a Roadfix?");
+    }
+    path_ = "/v1/tracks/" + track.at("id").get<std::string>();
+  }
+
+  TrackEstimate advance(const StepInput& step) override {
+    const json fields = told(step);
+    if (!step.features) {
+      const std::string body = fields.dump();
+      return estimate_of(connection_.ask(
+          [&](http::Client& client) { return client.post(path_ + "/steps", body, "application/json"); }));
+    }
+    const auto picture = encode_feature_map(step.features->cells);
+    const std::string body(picture.begin(), picture.end());
+    const std::string target = path_ + "/steps" + as_query(fields);
+    return estimate_of(connection_.ask([&](http::Client& client) { return client.post(target, body, "image/png"); }));
+  }
+
+  std::vector<GeoPose> particles(std::size_t count) const override {
+    const std::string target = fmt::format("{}?particles={}", path_, std::clamp<std::size_t>(count, 1, 10'000));
+    const json track = connection_.ask([&](http::Client& client) { return client.get(target); });
+    return track.contains("particles") ? particles_of(track.at("particles")) : std::vector<GeoPose>();
+  }
+
+  /// What a vehicle waits for, the network and the other vehicles included.
+  double clock_ms() const override {
+    return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
+  }
+
+  void finish() override {
+    if (keeps_) return;
+    connection_.ask([&](http::Client& client) {
+      std::optional<Answer> answer = client.remove(path_);
+      constexpr int kGone = 410;
+      if (answer && answer->status == kGone) answer->status = 204;  // ended already, by a request whose answer was lost
+      return answer;
+    });
+  }
+
+ private:
+  mutable Connection connection_;
+  bool keeps_;
+  std::string path_;
+};
+
+}  // namespace
+
+LocalizerFactory service_localizers(const ServicePlan& plan) {
+  return [plan](const std::string& filter, std::uint64_t seed) -> std::unique_ptr<Localizer> {
+    return std::make_unique<ServiceLocalizer>(plan, filter, seed);
+  };
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,139 @@
+#include "cli/fly_options.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "cli/fly/localizer.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+void add_basics(CLI::App& command, FlyOptions& o) {
+  command.add_option("map", o.map, "Map file (GeoPackage) to localize on")->required();
+  command.add_option("--over", o.over,
+                     "What lies below: georeferenced imagery, or another map; default: the map itself, as feature maps "
+                     "with errors");
+  command
+      .add_option("--filter", o.filters, std::string("One or more of ") + fly::kFilterNames + ", over the same flights")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--particles", o.particles, "At most")->capture_default_str()->check(CLI::Range(10, 1'000'000));
+  command.add_option("--measure-every", o.measure_every, "Weight by every k-th frame only")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_option("--runs", o.runs, "Flights, with seeds that count up")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100'000));
+  command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str();
+  o.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command.add_option("--jobs", o.jobs, "Flights at a time; results do not depend on it")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_flight_options(CLI::App& command, FlyOptions& o) {
+  constexpr const char* kGroup = "Flight";
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return command.add_option(name, value, what)->capture_default_str()->group(kGroup);
+  };
+  add("--course", o.course, "random, survey, or a GeoJSON file of waypoints")->type_name("COURSE");
+  add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(CLI::PositiveNumber);
+  add("--area-m", o.area_m, "Only the square of this side in the middle of the map; 0 = all")
+      ->check(CLI::NonNegativeNumber);
+  add("--steps", o.plan.steps, "Steps of a flight, at most")->check(CLI::Range(1, 100'000));
+  add("--step-s", o.plan.handling.step_s, "Seconds between steps")->check(CLI::PositiveNumber);
+  add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(CLI::NonNegativeNumber);
+  add("--turn-rate", o.turn_rate_deg, "Fastest turn in degrees per second")->check(CLI::NonNegativeNumber);
+  add("--footprint-m", o.footprint_m, "Ground that a frame shows: side, or width,height")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->check(CLI::PositiveNumber);
+  add("--frame-every", o.plan.frame_every, "A frame in every k-th step")->check(CLI::PositiveNumber);
+  add("--missing", o.plan.missing_share, "Share of frames that are lost, at random")->check(CLI::Range(0.0, 1.0));
+  add("--outage", o.outage, "No frames from step FIRST to before step END")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("FIRST,END")
+      ->check(CLI::NonNegativeNumber);
+  add("--kidnap", o.kidnap, "At this step the vehicle is METRES away, unnoticed by its odometry")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("STEP,METRES")
+      ->check(CLI::PositiveNumber);
+}
+
+void add_error_options(CLI::App& command, FlyOptions& o) {
+  constexpr const char* kGroup = "Errors (1 sigma)";
+  const auto add = [&](const char* name, double& value, const char* what) {
+    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(CLI::NonNegativeNumber);
+  };
+  add("--odometry-noise", o.plan.odometry.share, "Odometry: share of the distance, each step and axis");
+  add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");
+  add("--turn-noise", o.turn_noise_deg, "Odometry: degrees of each step's turn");
+  add("--turn-drift", o.turn_drift_deg, "Odometry: degrees per second, once for a flight");
+  add("--attitude", o.attitude_deg, "Imagery: degrees of roll and pitch not known to the rectification");
+  add("--altitude", o.camera.altitude, "Imagery: relative error of the altitude");
+  add("--agl", o.camera.agl_m, "Imagery: metres above ground, by which attitude moves what is seen");
+  add("--erase", o.quality.erase, "Feature maps: share of the road that is missing");
+  add("--invent", o.quality.invent, "Feature maps: roads that are not there, as a share of the true ones");
+  add("--block", o.quality.block, "Feature maps: share of the footprint that is not observed");
+  add("--shift", o.quality.shift_m, "Feature maps: metres of shift per axis, in every frame");
+  add("--scale", o.quality.scale, "Feature maps: relative error of their size");
+  add("--tilt", o.quality.tilt_deg, "Feature maps: degrees of tilt per axis");
+  command
+      .add_option("--registration", o.registration_m,
+                  "Feature maps: metres per axis between ground and map, once for a flight; default: what the map says")
+      ->check(CLI::NonNegativeNumber)
+      ->group(kGroup);
+  command.add_flag("--no-odometry", o.no_odometry, "Tell no odometry: equation (4) with known speed, unknown turns")
+      ->group(kGroup);
+}
+
+void add_output_options(CLI::App& command, FlyOptions& o) {
+  constexpr const char* kGroup = "Output";
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return command.add_option(name, value, what)->group(kGroup);
+  };
+  add("--json", o.json_file, "Figures of every filter")->type_name("FILE");
+  add("--csv", o.csv_file, "Truth, estimate and covariance of every step")->type_name("FILE");
+  add("--geojson", o.geojson_file, "True paths, estimated paths, ellipses")->type_name("FILE");
+  add("--pictures", o.screening.folder, "Draw steps of the first flight into this folder")->type_name("DIR");
+  add("--picture-steps", o.screening.steps, "Which steps; default: 0,1,5,20,80 and the last")->delimiter(',');
+  add("--film", o.screening.film, "The first flight as an animated GIF, filters side by side")->type_name("FILE");
+  add("--film-rate", o.screening.frames_per_second, "Steps per second of the film")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 50));
+  add("--picture-px", o.screening.longest_px, "Longer side of a picture")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 8000));
+}
+
+void add_service_options(CLI::App& command, FlyOptions& o) {
+  constexpr const char* kGroup = "Over a running service";
+  command.add_option("--server", o.server, "http://HOST:PORT; the vehicles are followed by its tracks")
+      ->type_name("URL")
+      ->group(kGroup);
+  command.add_option("--map", o.served_map, "The map's name there; default: that of the file")->group(kGroup);
+  command
+      .add_option("--vehicles", o.vehicles, "So many flights, all at the same time; default: --runs, --jobs of them")
+      ->check(CLI::Range(1, 1024))
+      ->group(kGroup);
+  command.add_option("--patience", o.patience_s, "Seconds in which a step is sent again when no answer comes")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 86'400))
+      ->group(kGroup);
+  command.add_flag("--keep-tracks", o.keep_tracks, "Leave the tracks in the service after the flights")->group(kGroup);
+}
+
+}  // namespace
+
+void add_fly_options(CLI::App& command, FlyOptions& options) {
+  add_basics(command, options);
+  add_flight_options(command, options);
+  add_error_options(command, options);
+  add_service_options(command, options);
+  add_output_options(command, options);
+  add_detector_options(command, options.detector);
+}
+
+}  // namespace roadfix::cli

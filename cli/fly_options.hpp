@@ -1,0 +1,55 @@
+// What `roadfix fly` is asked for.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/detector_options.hpp"
+#include "cli/fly/flight.hpp"
+#include "cli/fly/screening.hpp"
+#include "cli/fly/sensor.hpp"
+
+namespace roadfix::cli {
+
+struct FlyOptions {
+  std::string map;
+  std::string over;
+  std::string course = "random";
+  double lane_m = 300.0;
+  double area_m = 0.0;
+  std::vector<double> footprint_m{400.0};
+  fly::FlightPlan plan;
+  double turn_rate_deg = 10.0;
+  double turn_noise_deg = 0.3;
+  double turn_drift_deg = 0.05;
+  bool no_odometry = false;
+  std::vector<int> outage;
+  std::vector<double> kidnap;
+  std::optional<double> registration_m;  ///< default: what the map says of itself
+  double attitude_deg = 1.0;
+  fly::CameraErrors camera;
+  FeatureQuality quality{0.2, 0.2, 0.0, 2.0, 0.0, 0.0};
+  DetectorChoice detector;
+  std::vector<std::string> filters{"default"};
+  int particles = 10'000;
+  int measure_every = 1;
+  int runs = 1;
+  std::uint64_t seed = 1;
+  int jobs = 1;
+  std::string server;
+  std::string served_map;
+  int vehicles = 0;
+  int patience_s = 60;
+  bool keep_tracks = false;
+  std::string json_file;
+  std::string csv_file;
+  std::string geojson_file;
+  fly::ScreeningOptions screening;
+};
+
+void add_fly_options(CLI::App& command, FlyOptions& options);
+
+}  // namespace roadfix::cli

@@ -15,6 +15,9 @@ namespace roadfix {
 namespace {
 
 constexpr std::int64_t kSupportForConvergence = 3;
+const double kEvidenceForConvergence = std::log(100.0);
+// So that a track that has long been right does not go on for long when it is not any more.
+const double kMostEvidence = 2.0 * kEvidenceForConvergence;
 constexpr std::int64_t kMeasurementsBetweenSearches = 10;
 constexpr double kDoubtForSearch = 0.4;
 constexpr double kRecoveryShare = 0.3;
@@ -198,6 +201,7 @@ class Tracker::Step {
 
   void forget_support() {
     state_.supported = 0;
+    state_.evidence = 0.0;
     state_.searched = false;
   }
 
@@ -234,7 +238,12 @@ class Tracker::Step {
                             : accepted         ? Measurement::kAccepted
                                                : Measurement::kRejected;
     if (accepted) accept();
+    if (correction.usable) weigh_belief(std::log(correction.mean_likelihood));
   }
+
+  /// Particles gather somewhere also where nothing speaks for it. A sum that begins anew at 0 (Page's test) says
+  /// whether something does, and forgets what came before a kidnapping.
+  void weigh_belief(double log_odds) { state_.evidence = std::clamp(state_.evidence + log_odds, 0.0, kMostEvidence); }
 
   /// Nothing has spoken for the belief for long, be it that nothing could.
   bool stale() const { return since_accepted_s().value_or(0.0) >= kStaleAfterS; }
@@ -305,7 +314,10 @@ class Tracker::Step {
     filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 0.1, 0.9),
                          first ? tracker_.start_ : tracker_.region_);
     estimate_.measurement = Measurement::kSearched;
-    if (fix->status == FixStatus::kFix) accept();
+    if (fix->status == FixStatus::kFix) {
+      accept();
+      weigh_belief(std::log(fix->probability / (1.0 - fix->probability)));
+    }
     return true;
   }
 
@@ -335,8 +347,14 @@ class Tracker::Step {
     estimate_.since_accepted_s = since_accepted_s();
     estimate_.converged = clusters.front().weight >= settings_.converged_weight &&
                           clusters.front().sigma_m() <= settings_.converged_sigma_m &&
-                          state_.supported >= kSupportForConvergence && estimate_.doubt <= kDoubtForSearch &&
+                          state_.supported >= kSupportForConvergence && is_borne_out() &&
+                          estimate_.doubt <= kDoubtForSearch &&
                           estimate_.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
+  }
+
+  /// Equation (7) is no ratio to chance, and bears out what it does not reject.
+  bool is_borne_out() const {
+    return settings_.evidence.kind == EvidenceKind::kEquation7 || state_.evidence >= kEvidenceForConvergence;
   }
 
   const Tracker& tracker_;

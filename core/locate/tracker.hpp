@@ -76,6 +76,8 @@ struct TrackerState {
   std::int64_t measured = 0;     ///< feature maps so far
   std::int64_t last_search = 0;  ///< `measured` at the last search
   std::int64_t supported = 0;    ///< accepted measurements since the belief began
+  /// Log of the odds that the measurements gave the belief against chance, since they last spoke against it.
+  double evidence = 0.0;
   std::optional<std::int64_t> accepted_time_us;
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };

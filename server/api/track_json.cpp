@@ -90,6 +90,7 @@ json counters_json(const TrackerState& state) {
           {"measured", state.measured},
           {"last_search", state.last_search},
           {"supported", state.supported},
+          {"evidence", state.evidence},
           {"accepted_time_us", state.accepted_time_us ? json(*state.accepted_time_us) : json()}};
 }
 
@@ -104,6 +105,7 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.measured = counters.at("measured");
     state.last_search = counters.at("last_search");
     state.supported = counters.at("supported");
+    state.evidence = counters.at("evidence");
     if (!counters.at("accepted_time_us").is_null()) {
       state.accepted_time_us = counters.at("accepted_time_us").get<std::int64_t>();
     }

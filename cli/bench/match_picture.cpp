@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <ranges>
 
 #include "cli/bench/panels.hpp"
 
@@ -39,7 +38,8 @@ cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m
   const auto px = [&](double metres) { return static_cast<int>(std::lround(metres / m_per_px)); };
   cv::Mat canvas(std::max(1, px(box.height_m())), std::max(1, px(box.width_m())), CV_8UC3, cv::Scalar::all(90));
   const cv::Rect all({}, canvas.size());
-  for (const Orthoimage& ortho : imagery | std::views::reverse) {
+  for (std::size_t i = imagery.size(); i-- > 0;) {
+    const Orthoimage& ortho = imagery[i];
     const GridBox own = ortho.box();
     const cv::Rect place = cv::Rect(px(own.min.east_m - box.min.east_m), px(box.max.north_m - own.max.north_m),
                                     px(own.width_m()), px(own.height_m())) &

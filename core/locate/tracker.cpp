@@ -203,6 +203,7 @@ class Tracker::Step {
     state_.supported = 0;
     state_.evidence = 0.0;
     state_.searched = false;
+    state_.compared = false;
   }
 
   void measure() {
@@ -220,8 +221,8 @@ class Tracker::Step {
     } else {
       weigh(sums, frame_cells);
     }
-    if (settings_.recovers && (filter_.doubt() > kDoubtForSearch || stale()) &&
-        state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
+    const bool wanted = filter_.doubt() > kDoubtForSearch || stale() || (has_evidence() && !state_.compared);
+    if (settings_.recovers && wanted && state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
       recover();
     }
   }
@@ -280,7 +281,10 @@ class Tracker::Step {
     state_.last_search = state_.measured;
     try {
       Fix fix = locate(tracker_.map_, *features_, prior, options);
-      if (fix.complete) return fix;
+      if (fix.complete) {
+        state_.compared = state_.compared || fix.status != FixStatus::kNoFix;
+        return fix;
+      }
       // What it has depends on the machine, and a track must come out the same.
       if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);
       return std::nullopt;
@@ -352,9 +356,12 @@ class Tracker::Step {
                           estimate_.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
   }
 
+  bool has_evidence() const { return state_.evidence >= kEvidenceForConvergence; }
+
   /// Equation (7) is no ratio to chance, and bears out what it does not reject.
   bool is_borne_out() const {
-    return settings_.evidence.kind == EvidenceKind::kEquation7 || state_.evidence >= kEvidenceForConvergence;
+    if (settings_.evidence.kind == EvidenceKind::kEquation7) return true;
+    return has_evidence() && (state_.compared || !settings_.recovers);
   }
 
   const Tracker& tracker_;

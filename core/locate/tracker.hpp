@@ -42,7 +42,10 @@ enum class TrackStart { kSearch, kUniform };
 struct TrackSettings {
   Prior prior;  ///< of the place at the first step
   TrackStart start = TrackStart::kSearch;
-  bool recovers = true;  ///< searches anew when the measurements speak against the belief
+  /// Searches anew when the measurements speak against the belief, and before the first claim where no search has told
+  /// it from other places: frames that follow each other show much the same ground, so that what agrees by chance goes
+  /// on agreeing. Without it a track converges by its particles alone.
+  bool recovers = true;
   FilterOptions filter;
   EvidenceModel evidence;
   VehicleNoise vehicle;
@@ -70,7 +73,9 @@ struct StepInput {
 struct TrackerState {
   FilterState filter;
   bool started = false;
-  bool searched = false;  ///< a search has had its say since the start
+  bool searched = false;  ///< the search of the start has been tried
+  /// A search has weighed the belief against all other places, and found more than chance. See TrackSettings::recovers.
+  bool compared = false;
   std::int64_t sequence = -1;
   std::int64_t time_us = 0;
   std::int64_t measured = 0;     ///< feature maps so far

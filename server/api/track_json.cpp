@@ -87,6 +87,7 @@ json counters_json(const TrackerState& state) {
   return {{"sequence", state.sequence},
           {"time_us", state.time_us},
           {"searched", state.searched},
+          {"compared", state.compared},
           {"measured", state.measured},
           {"last_search", state.last_search},
           {"supported", state.supported},
@@ -102,6 +103,7 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.sequence = counters.at("sequence");
     state.time_us = counters.at("time_us");
     state.searched = counters.at("searched");
+    state.compared = counters.at("compared");
     state.measured = counters.at("measured");
     state.last_search = counters.at("last_search");
     state.supported = counters.at("supported");

@@ -72,6 +72,30 @@ TEST_F(Track, ConvergesFromAUniformBeliefWithoutSearch) {
   EXPECT_LT(error_m(last, flight.pose()), 12.0);
 }
 
+TEST_F(Track, ClaimsNoPlaceBeforeASearchHasToldItFromAllOthers) {
+  TrackSettings uniform = settings();
+  uniform.start = TrackStart::kUniform;
+  uniform.filter.max_particles = 20'000;
+  uniform.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 250.0};
+  TrackSettings unsearchable = uniform;
+  unsearchable.max_search_km2 = 1e-3;
+  for (const bool searches : {true, false}) {
+    const Tracker tracker(view_, searches ? uniform : unsearchable);
+    Flight flight(map_, start_, 2);
+    TrackerState state;
+    TrackEstimate last;
+    for (int i = 0; i < 25; ++i) {
+      StepResult result = tracker.advance(state, flight.step());
+      state = std::move(result.state);
+      last = std::move(result.estimate);
+      EXPECT_TRUE(!last.converged || state.last_search > 0) << "step " << i;
+    }
+    EXPECT_LT(error_m(last, flight.pose()), 12.0);
+    EXPECT_GE(state.evidence, std::log(100.0));
+    EXPECT_EQ(last.converged, searches);
+  }
+}
+
 TEST_F(Track, ThePapersFilterFindsTheUavToo) {
   TrackSettings paper = TrackSettings::paper(4'000);
   paper.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};

@@ -23,7 +23,10 @@ json number_or_null(const std::optional<double>& value) {
 
 json evidence_json(const std::optional<SearchEvidence>& evidence) {
   if (!evidence) return nullptr;
-  return {{"surprise", evidence->surprise}, {"lead", evidence->lead}, {"gap", evidence->gap}};
+  return {{"surprise", evidence->surprise},
+          {"lead", evidence->lead},
+          {"gap", evidence->gap},
+          {"agreement", evidence->agreement}};
 }
 
 json outcome_json(const Outcome& outcome) {

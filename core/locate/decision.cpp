@@ -9,18 +9,11 @@
 namespace roadfix {
 namespace {
 
-// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample. An
-// agreement of this many standard deviations is not chance, even where all places of a regular city reach it.
-constexpr double kSampleM2 = 15.0 * 15.0;
+// An agreement of this many standard deviations is not chance, even where all places of a regular city reach it.
 constexpr double kBeyondChanceDeviations = 12.0;
 
 // Chance would give a hundredth of a place that fits as well.
 constexpr double kBeyondChance = 4.6;
-
-double deviations(const SearchMode& mode, double cell_m) {
-  const double samples = static_cast<double>(mode.observed_cells) * cell_m * cell_m / kSampleM2;
-  return mode.pearson * std::sqrt(samples);
-}
 
 /// Shares of the posterior of the modes, all places of the region considered.
 std::vector<double> shares(const SearchResult& found) {
@@ -95,7 +88,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   }
   const auto alike =
       std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
-  if (evidence.surprise >= kBeyondChance || deviations(found.modes.front(), found.cell_m) >= kBeyondChanceDeviations) {
+  if (evidence.surprise >= kBeyondChance || evidence.agreement >= kBeyondChanceDeviations) {
     decision.status = FixStatus::kAmbiguous;
     decision.weights.resize(static_cast<std::size_t>(alike));
     decision.reason = alike > 1 ? "several-places-fit" : "below-confidence";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/ellipse.hpp"
 #include "core/locate/prepare.hpp"
@@ -54,7 +55,8 @@ bool shows_less_than_a_road_across(const FeatureMap& features) {
   return cell_m2 * static_cast<double>(roads) < kRoadWidthM * across_m;
 }
 
-FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight, const Calibration& calibration) {
+FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
+                      const Calibration& calibration) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const auto& c = mode.covariance;
   const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
@@ -63,7 +65,7 @@ FixMode to_geographic(const MapView& map, const SearchMode& mode, double weight,
   result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};
   result.scale = mode.scale;
   result.weight = weight;
-  result.rho = mode.rho;
+  result.rho = rho_at(map, cells, mode.pose, mode.scale);
   result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
                     calibration.position_sigma_scale * ellipse.sigma_m[1]};
   const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
@@ -100,7 +102,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   Fix fix;
   fix.map_name = map.name;
   fix.map_version = map.version;
-  if (hopeless(cells, fix)) return fix;
+  const FeatureMap compared = compared_cells(cells);
+  if (hopeless(cells, fix) || hopeless(compared, fix)) return fix;
 
   SearchOptions search_options;
   search_options.max_modes = options.max_modes;
@@ -110,7 +113,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   search_options.stop = options.stop;
   search_options.proof_time = options.proof_time;
   if (options.time_limit.count() > 0) search_options.deadline = started + options.time_limit;
-  const SearchResult found = search(map.read, cells.cell_m, cells, region, search_options);
+  const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region, search_options);
 
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   Decision decision = decide(found, calibration, options.confidence);
@@ -124,7 +127,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   }
   fix.probability = decision.probability;
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {
-    fix.modes.push_back(to_geographic(map, found.modes[i], decision.weights[i], calibration));
+    fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
   if (!found.modes.empty()) fix.evidence = evidence_of(found);
   fix.searched_km2 = region.area_km2();

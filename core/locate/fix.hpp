@@ -70,9 +70,9 @@ inline constexpr double kRegionSigmas = 4.0;
 
 struct FixMode {
   GeoPose pose;
-  double scale = 1.0;   ///< of the feature map's size
-  double weight = 0.0;  ///< share of the posterior of this mode, all modes sum to at most 1
-  double rho = 0.0;
+  double scale = 1.0;               ///< of the feature map's size
+  double weight = 0.0;              ///< share of the posterior of this mode, all modes sum to at most 1
+  double rho = 0.0;                 ///< equation (5), of the cells as they are
   std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
   Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
   Angle heading_sigma;

@@ -13,6 +13,9 @@ constexpr std::size_t kFewestRivals = 12;
 constexpr double kUnknown = -10.0;
 constexpr double kLargest = 1000.0;
 
+// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample.
+constexpr double kSampleM2 = 15.0 * 15.0;
+
 /// Differences between correlations near 1 mean more than the same near 0.
 double fisher(double score) {
   constexpr double kPerfect = 0.9999;
@@ -25,6 +28,11 @@ double mean_excess(std::span<const double> rivals) {
   double sum = 0.0;
   for (const double score : rivals) sum += fisher(score) - lowest;
   return sum / static_cast<double>(rivals.size() - 1);
+}
+
+double agreement_of(const SearchMode& mode, double cell_m) {
+  const double samples = static_cast<double>(mode.observed_cells) * cell_m * cell_m / kSampleM2;
+  return mode.pearson * std::sqrt(samples);
 }
 
 double second_of(const SearchResult& found) {
@@ -41,7 +49,7 @@ SearchEvidence evidence_of(const SearchResult& found) {
   const ScoreBackground& background = found.background;
   const double best = fisher(found.modes.front().score);
   const double ahead = best - fisher(second_of(found));
-  SearchEvidence evidence{kUnknown, 0.0, 0.0};
+  SearchEvidence evidence{kUnknown, 0.0, 0.0, agreement_of(found.modes.front(), found.cell_m)};
   if (background.sd > 0.0) evidence.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
   if (background.rivals.size() < kFewestRivals) return evidence;
   const double scale = mean_excess(background.rivals);

@@ -16,6 +16,9 @@ struct SearchEvidence {
   double lead = 0.0;
   /// The same distance in mean excesses of that tail. Of chance alone it is about exponential with mean 1.
   double gap = 0.0;
+  /// Pearson's correlation at the best place in standard deviations of independent samples: of itself, whatever the
+  /// other places say.
+  double agreement = 0.0;
 };
 
 /// `found` holds a mode.

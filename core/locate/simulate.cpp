@@ -1,6 +1,7 @@
 #include "core/locate/simulate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -60,7 +61,24 @@ CellPosition anywhere(const CellArray& cells, std::mt19937_64& random) {
   return {col, uniform(random, 0.0, cells.rows())};
 }
 
-void erase(CellArray& cells, double share, double cell_m, std::mt19937_64& random) {
+/// What this map usually says where there is no road, and where there is one. Errors have to look like that too: an
+/// erased patch that is surer of no road than all ground around it can be told by that alone.
+struct UsualCells {
+  Cell no_road = kNoRoad;
+  Cell road = kRoad;
+};
+
+UsualCells usual(const CellArray& cells) {
+  std::array<std::int64_t, 256> count{};
+  for (const Cell cell : cells.cells()) ++count[cell];
+  const auto most = [&](int first, int last, Cell otherwise) {
+    const auto top = std::max_element(count.begin() + first, count.begin() + last + 1);
+    return *top > 0 ? static_cast<Cell>(top - count.begin()) : otherwise;
+  };
+  return {most(kNoRoad, kRoad / 2, kNoRoad), most(kRoad / 2 + 1, kRoad, kRoad)};
+}
+
+void erase(CellArray& cells, double share, double cell_m, Cell no_road, std::mt19937_64& random) {
   std::vector<CellPosition> roads;
   for (int row = 0; row < cells.rows(); ++row) {
     for (int col = 0; col < cells.cols(); ++col) {
@@ -74,12 +92,12 @@ void erase(CellArray& cells, double share, double cell_m, std::mt19937_64& rando
     roads.pop_back();
     along(cells, centre, centre, kPatchRadiusM / cell_m, [&](Cell& cell) {
       left -= is_road(cell) ? 1 : 0;
-      cell = kNoRoad;
+      cell = no_road;
     });
   }
 }
 
-void invent(CellArray& cells, std::int64_t wanted, double cell_m, std::mt19937_64& random) {
+void invent(CellArray& cells, std::int64_t wanted, double cell_m, Cell road, std::mt19937_64& random) {
   constexpr int kMaxStrokes = 100'000;  // a map full of roads has no room for more
   for (int stroke = 0; wanted > 0 && stroke < kMaxStrokes; ++stroke) {
     const CellPosition a = anywhere(cells, random);
@@ -88,7 +106,7 @@ void invent(CellArray& cells, std::int64_t wanted, double cell_m, std::mt19937_6
     const CellPosition b{a.col + length * std::cos(direction), a.row + length * std::sin(direction)};
     along(cells, a, b, kStrokeWidthM / 2.0 / cell_m, [&](Cell& cell) {
       wanted -= is_road(cell) ? 0 : 1;
-      cell = kRoad;
+      cell = road;
     });
   }
 }
@@ -166,8 +184,9 @@ FeatureMap simulate_features(const RoadGrid& map, const GridPose& pose, int cols
       {pose.position.east_m + quality.shift_m * east, pose.position.north_m + quality.shift_m * north}, pose.heading};
   FeatureMap features = seen(map, shifted, cols, rows, quality, random);
   const auto true_roads = static_cast<double>(road_cells(features.cells));
-  erase(features.cells, quality.erase, cell_m, random);
-  invent(features.cells, std::llround(quality.invent * true_roads), cell_m, random);
+  const UsualCells usual_cells = usual(features.cells);
+  erase(features.cells, quality.erase, cell_m, usual_cells.no_road, random);
+  invent(features.cells, std::llround(quality.invent * true_roads), cell_m, usual_cells.road, random);
   block(features.cells, quality.block, random);
   return features;
 }

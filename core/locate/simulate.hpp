@@ -10,7 +10,7 @@ namespace roadfix {
 
 /// How a simulated feature map differs from the map it was cut from. All zero = not at all.
 struct FeatureQuality {
-  double erase = 0.0;     ///< share of the road cells that vanish, in round patches
+  double erase = 0.0;     ///< share of the road cells that vanish, in round patches of what the map says of no road
   double invent = 0.0;    ///< road cells that appear, as a share of the true ones, as straight strokes
   double block = 0.0;     ///< share of the footprint that is not observed, in discs
   double shift_m = 0.0;   ///< 1 sigma of a common shift per axis: map and ground registered differently

@@ -41,6 +41,14 @@ TEST(SearchEvidence, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
   EXPECT_NEAR(evidence.gap, ahead / 0.02, 0.05 * ahead / 0.02);
 }
 
+TEST(SearchEvidence, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
+  SearchResult result = found(0.6, 0.2, 0.02);
+  result.cell_m = 2.0;
+  result.modes[0].pearson = 0.5;
+  result.modes[0].observed_cells = 22'500;  // 90,000 m2, 400 samples
+  EXPECT_NEAR(evidence_of(result).agreement, 0.5 * 20.0, 1e-9);
+}
+
 TEST(SearchEvidence, ASmallerRegionLeavesChanceLessRoom) {
   SearchResult result = found(0.4, 0.2, 0.02);
   const double whole = evidence_of(result).surprise;

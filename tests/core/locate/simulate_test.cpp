@@ -47,6 +47,17 @@ TEST(SimulateFeatures, EraseAndInventTheirShares) {
   EXPECT_NEAR(more / all, 1.5, 0.05);
 }
 
+TEST(SimulateFeatures, AreWrongInTheWordsOfTheMap) {
+  constexpr Cell kHardly = 5;
+  constexpr Cell kLikely = 236;
+  RoadGrid map = street_grid();
+  for (Cell& cell : map.cells.cells()) cell = cell == kRoad ? kLikely : kHardly;
+  std::mt19937_64 random(3);
+  const FeatureMap features = simulate_features(map, kPose, 150, 150, {.erase = 0.4, .invent = 0.4}, random);
+  EXPECT_TRUE(
+      std::ranges::all_of(features.cells.cells(), [](Cell cell) { return cell == kHardly || cell == kLikely; }));
+}
+
 TEST(SimulateFeatures, HideAShareOfTheGround) {
   // The last disc, of at most a fifth of the side, may hide pi / 25 more.
   const double hidden = 1.0 - static_cast<double>(simulated(200, {.block = 0.3}).cells.observed_count()) / 40'000.0;

@@ -1,0 +1,99 @@
+#include "core/locate/compared_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "core/grid/resample.hpp"
+#include "core/match/footprint.hpp"
+#include "core/match/kernel.hpp"
+#include "core/match/soft_cells.hpp"
+
+namespace roadfix {
+namespace {
+
+const SoftCells& half_the_log_odds() {
+  static const SoftCells kSoft(0.5);
+  return kSoft;
+}
+
+CellArray compared(const MapView& map, const GridGeometry& geometry) {
+  CellArray cells = map.read(geometry).cells;
+  half_the_log_odds().apply(cells);
+  return cells;
+}
+
+constexpr int kBlockCells = 128;  // of coarser cells that are made and kept at a time
+constexpr std::size_t kBytesOfOneSearch = std::size_t{64} << 20;
+
+// From cells two levels finer: roads are hardly narrower than a quarter of the coarsest cells.
+constexpr int kFinerLevels = 2;
+
+struct ComparedBlock {
+  CellArray cells;
+  std::size_t bytes() const { return cells.cells().size(); }
+};
+
+ComparedBlock coarser(const MapView& map, const GridGeometry& window, int levels) {
+  GridGeometry fine = window;
+  for (int k = 0; k < levels; ++k) {
+    fine = {0.5 * fine.cell_m, {2 * fine.origin.col, 2 * fine.origin.row}, 2 * fine.cols, 2 * fine.rows};
+  }
+  ComparedBlock block{compared(map, fine)};
+  for (int k = 0; k < levels; ++k) block.cells = halved(block.cells);
+  return block;
+}
+
+FeatureMap at_scale(const FeatureMap& features, double scale) {
+  if (scale == 1.0) return features;
+  FeatureMap scaled = features;
+  scaled.cell_m *= scale;
+  return resampled(scaled, features.cell_m);
+}
+
+}  // namespace
+
+GridReader compared_cells(const MapView& map, double finest_cell_m) {
+  const auto kept = map.searches ? map.searches : std::make_shared<SearchCache>(kBytesOfOneSearch);
+  return [&map, kept, finest_cell_m](const GridGeometry& geometry) {
+    const int levels =
+        std::min(kFinerLevels, static_cast<int>(std::lround(std::log2(geometry.cell_m / finest_cell_m))));
+    if (levels <= 0) return RoadGrid{geometry, compared(map, geometry)};
+    RoadGrid grid{geometry, CellArray(geometry.cols, geometry.rows)};
+    const auto block_of = [](int cell) {
+      return static_cast<int>(std::floor(static_cast<double>(cell) / kBlockCells));
+    };
+    const LatticeIndex first = geometry.origin;
+    for (int row = block_of(first.row); row * kBlockCells < first.row + geometry.rows; ++row) {
+      for (int col = block_of(first.col); col * kBlockCells < first.col + geometry.cols; ++col) {
+        const GridGeometry window{geometry.cell_m, {col * kBlockCells, row * kBlockCells}, kBlockCells, kBlockCells};
+        const auto block = kept->get<ComparedBlock>(window, {levels, 0}, [&] { return coarser(map, window, levels); });
+        paste(block->cells, grid.cells, window.origin.col - first.col, window.origin.row - first.row);
+      }
+    }
+    return grid;
+  };
+}
+
+FeatureMap compared_cells(FeatureMap features) {
+  half_the_log_odds().apply(features.cells);
+  return features;
+}
+
+double rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose, double scale) {
+  const double col = pose.position.east_m / features.cell_m;
+  const double row = -pose.position.north_m / features.cell_m;
+  const LatticeIndex cell{static_cast<int>(std::floor(col)), static_cast<int>(std::floor(row))};
+  const Footprint footprint =
+      footprint_at(at_scale(features, scale), pose.heading, {col - cell.col - 0.5, row - cell.row - 0.5});
+  const int reach = footprint.reach();
+  const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
+  const MapPlane plane(map.read(window).cells, 0);
+  const PlaneCell centre{reach, reach};
+  MatchSums sums;
+  match_sums(plane, footprint, std::span(&centre, 1), std::span(&sums, 1));
+  return rho(sums).value_or(0.0);
+}
+
+}  // namespace roadfix

@@ -138,11 +138,13 @@ void filter_step(benchmark::State& state) {
   for (std::size_t i = 0; i < 3; ++i) covariance[i][i] = 1e-4;
   const OdometryMotion motion({5.0, 0.0, Angle::degrees(3.0)}, covariance, 1.0, 0.1);
   const EvidenceModel evidence;
+  const auto frame_cells = static_cast<std::int64_t>(window.cells.observed_count());
   std::vector<double> log_likelihoods(kPoses);
   for (auto _ : state) {
     filter.predict(motion);
     const std::vector<MatchSums> sums = match_particles(view, window, filter.particles());
-    for (std::size_t i = 0; i < sums.size(); ++i) log_likelihoods[i] = 0.01 * evidence.log_likelihood(sums[i], 2.0);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      log_likelihoods[i] = 0.01 * evidence.log_likelihood(sums[i], frame_cells, 2.0);
     benchmark::DoNotOptimize(filter.correct(log_likelihoods));
   }
   count_cells(state, static_cast<int>(state.range(0)));

@@ -221,8 +221,7 @@ class Tracker::Step {
     } else {
       weigh(sums, frame_cells);
     }
-    const bool wanted = filter_.doubt() > kDoubtForSearch || stale() || (has_evidence() && !state_.compared);
-    if (settings_.recovers && wanted && state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
+    if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
       recover();
     }
   }
@@ -354,6 +353,12 @@ class Tracker::Step {
                           state_.supported >= kSupportForConvergence && is_borne_out() &&
                           estimate_.doubt <= kDoubtForSearch &&
                           estimate_.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
+  }
+
+  bool wants_search() const {
+    if (filter_.doubt() > kDoubtForSearch || stale()) return true;
+    if (has_evidence()) return !state_.compared;
+    return state_.evidence == 0.0 && estimate_.measurement != Measurement::kUseless;
   }
 
   bool has_evidence() const { return state_.evidence >= kEvidenceForConvergence; }

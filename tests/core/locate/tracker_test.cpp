@@ -204,8 +204,7 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
   for (int i = 0; i < 15; ++i) state = tracker.advance(state, flight.step()).state;
   flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});
   int recovered = -1;
-  // Doubt may stay just below what calls for a search: then a minute without support does.
-  for (int i = 0; i < 120 && recovered < 0; ++i) {
+  for (int i = 0; i < 60 && recovered < 0; ++i) {
     const StepResult result = tracker.advance(state, flight.step());
     state = result.state;
     const bool right = error_m(result.estimate, flight.pose()) < 20.0;
@@ -213,7 +212,7 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
     if (result.estimate.converged && right) recovered = i;
   }
   EXPECT_GE(recovered, 0);
-  EXPECT_LT(recovered, 110);
+  EXPECT_LT(recovered, 40);
 }
 
 TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 #include "cli/bench/panels.hpp"
@@ -14,17 +13,6 @@ namespace {
 
 constexpr int kPanelPx = 320;
 
-/// The probability that is drawn brightest: networks are seldom sure in places they have not seen.
-double brightest_of(const CellArray& cells) {
-  constexpr double kShare = 0.98;
-  std::vector<Cell> seen;
-  std::ranges::copy_if(cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
-  if (seen.empty()) return 1.0;
-  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
-  std::ranges::nth_element(seen, at);
-  return probability(*at);
-}
-
 cv::Vec3b colour_of(double before, double after) {
   const auto level = [](double p) { return cv::saturate_cast<uchar>(255.0 * std::min(1.0, p)); };
   return {level(before), level(std::min(before, after)), level(after)};
@@ -34,9 +22,7 @@ cv::Vec3b colour_of(double before, double after) {
 GridPose centre_of(const FeatureMap& features, const GridPose& pose) {
   const double right = (features.cells.cols() / 2.0 - features.nadir.col) * features.cell_m;
   const double forward = (features.nadir.row - features.cells.rows() / 2.0) * features.cell_m;
-  return {{pose.position.east_m + right * cos(pose.heading) + forward * sin(pose.heading),
-           pose.position.north_m - right * sin(pose.heading) + forward * cos(pose.heading)},
-          pose.heading};
+  return {beside(pose, right, forward), pose.heading};
 }
 
 cv::Mat ground_before(std::span<const Orthoimage> imagery, const FeatureMap& features, const GridPose& pose) {
@@ -52,8 +38,8 @@ cv::Mat ground_before(std::span<const Orthoimage> imagery, const FeatureMap& fea
 
 cv::Mat agreement(const CellArray& before, const CellArray& after) {
   assert(before.cols() == after.cols() && before.rows() == after.rows());
-  const double most_before = brightest_of(before);
-  const double most_after = brightest_of(after);
+  const double most_before = strongest_of(before);
+  const double most_after = strongest_of(after);
   cv::Mat picture(after.rows(), after.cols(), CV_8UC3, cv::Scalar::all(90));
   for (int row = 0; row < picture.rows; ++row) {
     for (int col = 0; col < picture.cols; ++col) {
@@ -80,24 +66,21 @@ cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imager
                           const FeatureMap& features, const Answer& answer) {
   const CellArray nothing(features.cells.cols(), features.cells.rows(), kNoRoad);
   std::vector<Panel> panels;
-  const auto pose_of = [&](const GeoPose& pose) {
-    const GridPoint at = map.zone.project(pose.position);
-    return GridPose{at, map.zone.grid_from_true(pose.heading, at)};
-  };
   if (query.truth) {
-    const cv::Mat before = ground_before(imagery, features, pose_of(*query.truth));
+    const cv::Mat before = ground_before(imagery, features, on_grid(*query.truth, map.zone));
     if (!before.empty()) panels.push_back({"before", before});
   }
   if (query.picture) panels.push_back({"after", query.picture->pixels});
   CellArray there;
   if (query.truth) {
-    there = map_under(map, features, pose_of(*query.truth));
+    there = map_under(map, features, on_grid(*query.truth, map.zone));
     panels.push_back({"roads before", agreement(there, nothing)});
   }
   panels.push_back({"roads after", agreement(nothing, features.cells)});
   if (query.truth) panels.push_back({"both, true place", agreement(there, features.cells)});
   if (answer.best) {
-    panels.push_back({"both, best guess", agreement(map_under(map, features, pose_of(*answer.best)), features.cells)});
+    const CellArray guessed = map_under(map, features, on_grid(*answer.best, map.zone));
+    panels.push_back({"both, best guess", agreement(guessed, features.cells)});
   }
   return side_by_side(panels, kPanelPx);
 }

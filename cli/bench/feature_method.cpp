@@ -51,7 +51,7 @@ cv::Ptr<cv::DescriptorMatcher> make_matcher(FeatureKind kind) {
 class FeatureMethod : public Method {
  public:
   FeatureMethod(FeatureKind kind, const std::vector<Orthoimage>& imagery, const UtmZone& zone)
-      : kind_(kind), zone_(zone), imagery_(imagery), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
+      : kind_(kind), zone_(zone), origin_(imagery.front().north_west), matcher_(make_matcher(kind)) {
     const std::span all(imagery);
     for (std::size_t i = 0; i < all.size(); ++i) add(all[i], all.first(i));
     if (map_.descriptors.rows < 2) return;
@@ -72,14 +72,11 @@ class FeatureMethod : public Method {
     return result;
   }
 
-  cv::Mat drawn(const Query& query, const Answer&) const override {
+  cv::Mat drawn(const Query& query, const Answer&, std::span<const Orthoimage> imagery) const override {
     if (!query.picture) return {};
     std::optional<GridPose> truth;
-    if (query.truth) {
-      const GridPoint at = zone_.project(query.truth->position);
-      truth = GridPose{at, zone_.grid_from_true(query.truth->heading, at)};
-    }
-    return match_picture(imagery_, *query.picture, matches_of(*query.picture), truth);
+    if (query.truth) truth = on_grid(*query.truth, zone_);
+    return match_picture(imagery, *query.picture, matches_of(*query.picture), truth);
   }
 
  private:
@@ -154,7 +151,6 @@ class FeatureMethod : public Method {
 
   FeatureKind kind_;
   UtmZone zone_;
-  std::vector<Orthoimage> imagery_;
   GridPoint origin_;
   Keypoints map_;
   cv::Ptr<cv::DescriptorMatcher> matcher_;

@@ -26,13 +26,6 @@ GridBox common_box(std::span<const Orthoimage> imagery) {
   return box;
 }
 
-cv::Mat coloured(const cv::Mat& pixels) {
-  if (pixels.channels() == 3) return pixels;
-  cv::Mat colour;
-  cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
-  return colour;
-}
-
 /// All imagery in one picture, north up; where some overlap the first one shows.
 cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m_per_px) {
   const auto px = [&](double metres) { return static_cast<int>(std::lround(metres / m_per_px)); };
@@ -62,10 +55,8 @@ std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, c
     const cv::Point2d known = matches.map_m[i];
     const double across = (seen.x + 0.5 - frame.pixels.cols / 2.0) * frame.gsd_m;
     const double ahead = (frame.pixels.rows / 2.0 - 0.5 - seen.y) * frame.gsd_m;
-    const double east = truth.position.east_m + across * cos(truth.heading) + ahead * sin(truth.heading);
-    const double north = truth.position.north_m - across * sin(truth.heading) + ahead * cos(truth.heading);
     const GridPoint found{origin.east_m + known.x, origin.north_m - known.y};
-    right.push_back(distance_m(found, {east, north}) <= tolerance_m);
+    right.push_back(distance_m(found, beside(truth, across, ahead)) <= tolerance_m);
   }
   return right;
 }

@@ -1,6 +1,7 @@
 #include "cli/bench/panels.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 
 namespace roadfix::bench {
@@ -10,8 +11,7 @@ constexpr int kTitlePx = 22;
 constexpr int kGapPx = 6;
 
 cv::Mat framed(const Panel& panel, int height_px) {
-  cv::Mat colour = panel.pixels;
-  if (colour.channels() == 1) cv::cvtColor(colour, colour, cv::COLOR_GRAY2BGR);
+  const cv::Mat colour = coloured(panel.pixels);
   const double scale = static_cast<double>(height_px) / colour.rows;
   const cv::Size size(std::max(1, static_cast<int>(colour.cols * scale)), height_px);
   cv::Mat scaled;
@@ -24,6 +24,23 @@ cv::Mat framed(const Panel& panel, int height_px) {
 }
 
 }  // namespace
+
+cv::Mat coloured(const cv::Mat& pixels) {
+  if (pixels.channels() == 3) return pixels;
+  cv::Mat colour;
+  cv::cvtColor(pixels, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+double strongest_of(const CellArray& cells) {
+  constexpr double kShare = 0.98;
+  std::vector<Cell> seen;
+  std::ranges::copy_if(cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
+  if (seen.empty()) return 1.0;
+  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
+  std::ranges::nth_element(seen, at);
+  return probability(*at);
+}
 
 cv::Mat side_by_side(const std::vector<Panel>& panels, int height_px) {
   std::vector<cv::Mat> columns;

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,9 @@ class Method {
  public:
   virtual ~Method() = default;
   virtual Answer answer(const Query& query) const = 0;
-  /// What led to the answer, beside the truth, for the eye (CV_8UC3). May be called from several threads.
-  virtual cv::Mat drawn(const Query& query, const Answer& answer) const = 0;
+  /// What led to the answer, beside the truth, for the eye (CV_8UC3); empty where there is nothing to see. `imagery` is
+  /// that of the map and may be empty. May be called from several threads.
+  virtual cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const = 0;
 };
 
 }  // namespace roadfix::bench

@@ -1,7 +1,6 @@
 #include "cli/bench/roads_method.hpp"
 
 #include <chrono>
-#include <utility>
 
 #include "cli/bench/agreement_picture.hpp"
 #include "core/detect/frame.hpp"
@@ -11,8 +10,8 @@ namespace {
 
 class RoadsMethod : public Method {
  public:
-  RoadsMethod(const MapView& map, const RoadDetector& detector, RoadsOptions options)
-      : map_(map), detector_(detector), options_(std::move(options)) {}
+  RoadsMethod(const MapView& map, const RoadDetector& detector, const RoadsOptions& options)
+      : map_(map), detector_(detector), options_(options) {}
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
@@ -30,8 +29,8 @@ class RoadsMethod : public Method {
     return answer;
   }
 
-  cv::Mat drawn(const Query& query, const Answer& answer) const override {
-    return agreement_picture(map_, options_.imagery, query, features_of(query), answer);
+  cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const override {
+    return agreement_picture(map_, imagery, query, features_of(query), answer);
   }
 
  private:
@@ -55,8 +54,9 @@ class RoadsMethod : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector, RoadsOptions options) {
-  return std::make_unique<RoadsMethod>(map, detector, std::move(options));
+std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector,
+                                          const RoadsOptions& options) {
+  return std::make_unique<RoadsMethod>(map, detector, options);
 }
 
 }  // namespace roadfix::bench

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "cli/bench/query.hpp"
-#include "core/detect/orthoimage.hpp"
 #include "core/detect/road_detector.hpp"
 
 namespace roadfix::bench {
@@ -14,10 +12,10 @@ struct RoadsOptions {
   double cell_m = 2.0;
   std::uint64_t seed = 1;
   FixOptions fix;
-  std::vector<Orthoimage> imagery = {};  ///< of the map, for pictures; may be empty
 };
 
 /// `map` and `detector` must outlive the method.
-std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector, RoadsOptions options);
+std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector,
+                                          const RoadsOptions& options);
 
 }  // namespace roadfix::bench

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <span>
 
 #include "cli/bench/feature_method.hpp"
 #include "cli/bench/queries.hpp"
@@ -22,19 +23,32 @@ void stop_if_asked(const BenchOptions& options) {
     throw Interrupted("bench-stopped", "the bench was stopped; its maps are kept");
 }
 
-std::unique_ptr<Method> make_method(const std::string& name, const ManifestMap& manifest_map, const MapView& map,
+/// What keypoints are matched with, and what pictures show.
+std::vector<Orthoimage> imagery_for(const Manifest& manifest, const ManifestMap& map, const UtmZone& zone,
                                     const BenchOptions& options) {
-  const bool roads = name == "roads";
-  const auto imagery =
-      roads && options.pictures.empty() ? std::vector<Orthoimage>{} : read_imagery(manifest_map, map.zone);
-  if (roads)
-    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix, imagery});
+  const bool keypoints = std::ranges::any_of(manifest.methods, [](const auto& name) { return name != "roads"; });
+  if (!keypoints && options.pictures.empty()) return {};
+  return read_imagery(map, zone);
+}
+
+std::unique_ptr<Method> make_method(const std::string& name, const std::vector<Orthoimage>& imagery, const MapView& map,
+                                    const BenchOptions& options) {
+  if (name == "roads")
+    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix});
   if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
   return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
 }
 
-void draw(const Method& method, const Query& query, const Answer& answer, const std::filesystem::path& file) {
-  const cv::Mat picture = method.drawn(query, answer);
+/// Where pictures are drawn to, and what of the map they show.
+struct Drawing {
+  std::filesystem::path folder;  ///< empty = no pictures
+  std::span<const Orthoimage> imagery;
+};
+
+void draw(const Method& method, const Query& query, const Answer& answer, const Drawing& drawing) {
+  if (drawing.folder.empty()) return;
+  const std::filesystem::path file = drawing.folder / (query.id + ".jpg");
+  const cv::Mat picture = method.drawn(query, answer, drawing.imagery);
   if (picture.empty()) return;  // nothing to see, say of keypoints in a feature map
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
@@ -43,7 +57,7 @@ void draw(const Method& method, const Query& query, const Answer& answer, const 
 }
 
 std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries, const UtmZone& zone,
-                         const std::string& task, const std::filesystem::path& pictures, const BenchOptions& options) {
+                         const std::string& task, const Drawing& drawing, const BenchOptions& options) {
   std::vector<Outcome> outcomes(queries.size());
   std::atomic<std::int64_t> done = 0;
   tbb::task_arena arena(options.jobs);
@@ -51,7 +65,7 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
     tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
       stop_if_asked(options);
       const Answer answer = method.answer(queries[i]);
-      if (!pictures.empty()) draw(method, queries[i], answer, pictures / (queries[i].id + ".jpg"));
+      draw(method, queries[i], answer, drawing);
       outcomes[i] = judged(queries[i].id, queries[i].truth, answer, zone);
       options.progress(task, ++done, static_cast<std::int64_t>(queries.size()));
     });
@@ -75,7 +89,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
   for (const ManifestMap& manifest_map : manifest.maps) {
     const MapView& map = maps.at(manifest_map.name);
     std::map<std::string, std::unique_ptr<Method>> methods;
-    for (const std::string& name : manifest.methods) methods[name] = make_method(name, manifest_map, map, options);
+    const auto imagery = imagery_for(manifest, manifest_map, map.zone, options);
+    for (const std::string& name : manifest.methods) methods[name] = make_method(name, imagery, map, options);
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
@@ -83,11 +98,11 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));
-        const auto pictures =
-            options.pictures.empty() ? options.pictures : options.pictures / fmt::format("{}-{}", i + 1, name);
-        results.push_back(
-            {name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, pictures, options),
-             std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere, common_quality(set)});
+        Drawing drawing{{}, imagery};
+        if (!options.pictures.empty()) drawing.folder = options.pictures / fmt::format("{}-{}", i + 1, name);
+        results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, drawing, options),
+                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere,
+                           common_quality(set)});
       }
     }
   }

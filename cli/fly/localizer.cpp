@@ -55,8 +55,8 @@ Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone)
   record.saw = moment.input.features.has_value();
   record.estimate = std::move(estimate);
   const TrackCluster& best = record.estimate.clusters.front();
-  const GridPoint at = zone.project(best.pose.position);
-  record.best = {at, zone.grid_from_true(best.pose.heading, at)};
+  record.best = on_grid(best.pose, zone);
+  const GridPoint at = record.best.position;
   record.error_m = distance_m(at, moment.truth.position);
   record.heading_error_deg = angular_distance(record.best.heading, moment.truth.heading).degrees();
   record.nees = nees_of(best, {moment.truth.position.east_m - at.east_m, moment.truth.position.north_m - at.north_m},

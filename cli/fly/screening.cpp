@@ -43,8 +43,7 @@ void Screening::show(const std::string& filter, const Record& record, const Loca
   reel.path.push_back(record.truth.position);
   Scene scene{caption_of(filter, record), &record, reel.path, {}, footprint_};
   for (const GeoPose& pose : localizer.particles(kParticles)) {
-    const GridPoint at = map_.zone.project(pose.position);
-    scene.particles.push_back({at, map_.zone.grid_from_true(pose.heading, at)});
+    scene.particles.push_back(on_grid(pose, map_.zone));
   }
   reel.last = drawn(backdrop_, map_.zone, scene);
   reel.last_step = record.sequence;

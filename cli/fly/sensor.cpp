@@ -19,9 +19,7 @@ class ImagingSensor : public Sensor {
     const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double scale = std::max(0.5, 1.0 + errors_.altitude * normal(random));
-    const GridPose seen{{pose.position.east_m + forward * sin(pose.heading) + right * cos(pose.heading),
-                         pose.position.north_m + forward * cos(pose.heading) - right * sin(pose.heading)},
-                        pose.heading};
+    const GridPose seen{beside(pose, right, forward), pose.heading};
     const double gsd = imagery_.image.gsd_m;
     const Footprint covered{scale * footprint_.width_m, scale * footprint_.height_m};
     GroundImage frame = cut_out(around(seen, covered), seen, covered, scale * gsd);

@@ -19,14 +19,9 @@ bool sees(const Orthoimage& imagery, GridPoint point) {
 }
 
 std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pose) {
-  const double c = cos(pose.heading);
-  const double s = sin(pose.heading);
-  const auto placed = [&](double right, double forward) {
-    return GridPoint{pose.position.east_m + c * right + s * forward, pose.position.north_m - s * right + c * forward};
-  };
   const double w = footprint.width_m / 2.0;
   const double h = footprint.height_m / 2.0;
-  return {placed(-w, h), placed(w, h), placed(w, -h), placed(-w, -h)};
+  return {beside(pose, -w, h), beside(pose, w, h), beside(pose, w, -h), beside(pose, -w, -h)};
 }
 
 GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footprint& footprint, double gsd_m) {

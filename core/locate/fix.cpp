@@ -94,6 +94,11 @@ void require_valid(const FixOptions& options, double area_km2) {
 
 }  // namespace
 
+GridPose on_grid(const GeoPose& pose, const UtmZone& zone) {
+  const GridPoint at = zone.project(pose.position);
+  return {at, zone.grid_from_true(pose.heading, at)};
+}
+
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   const SearchRegion region = region_of(map, prior);

@@ -24,6 +24,9 @@ struct GeoPose {
   Angle heading;
 };
 
+/// The same on the plane of the zone, its heading from grid north.
+GridPose on_grid(const GeoPose& pose, const UtmZone& zone);
+
 struct GeoCircle {
   LatLon centre;
   double radius_m = 0.0;

@@ -36,15 +36,15 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
   constexpr double kLeastWeight = 0.02;
   std::vector<Proposal> proposals;
   for (const FixMode& mode : fix.modes) {
-    const GridPoint at = map.zone.project(mode.pose.position);
-    const double axis = map.zone.grid_from_true(mode.ellipse_heading, at).radians();
+    const GridPose at = on_grid(mode.pose, map.zone);
+    const double axis = map.zone.grid_from_true(mode.ellipse_heading, at.position).radians();
     const double along2 = kWiden * mode.sigma_m[0] * mode.sigma_m[0] + 1.0;
     const double across2 = kWiden * mode.sigma_m[1] * mode.sigma_m[1] + 1.0;
     const double s = std::sin(axis);
     const double c = std::cos(axis);
     const double shared = (along2 - across2) * s * c;
     const double turn2 = kWiden * std::pow(mode.heading_sigma.radians(), 2.0) + 1e-4;
-    proposals.push_back({{at, map.zone.grid_from_true(mode.pose.heading, at)},
+    proposals.push_back({at,
                          {{{along2 * s * s + across2 * c * c, shared, 0.0},
                            {shared, along2 * c * c + across2 * s * s, 0.0},
                            {0.0, 0.0, turn2}}},

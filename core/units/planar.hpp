@@ -32,4 +32,7 @@ struct GridBox {
 
 double distance_m(GridPoint a, GridPoint b);
 
+/// The point that lies so far to the right of a body at the pose and ahead of it.
+GridPoint beside(const GridPose& pose, double right_m, double forward_m);
+
 }  // namespace roadfix

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <opencv2/imgproc.hpp>
+
+#include "cli/bench/panels.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -79,20 +80,9 @@ RoadGrid overview(const MapView& map, double m_per_px) {
   return map.read(GridGeometry::covering(map.extent, cell_m));
 }
 
-/// The road probability that is drawn darkest: maps of detectors seldom reach 1.
-double darkest_of(const RoadGrid& grid) {
-  constexpr double kShare = 0.98;
-  std::vector<Cell> seen;
-  std::ranges::copy_if(grid.cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
-  if (seen.empty()) return 1.0;
-  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
-  std::ranges::nth_element(seen, at);
-  return probability(*at);
-}
-
 cv::Mat shades(const RoadGrid& grid) {
   constexpr double kGround = 235.0;
-  const double darkest = darkest_of(grid);
+  const double darkest = bench::strongest_of(grid.cells);
   cv::Mat grey(grid.cells.rows(), grid.cells.cols(), CV_8UC1);
   for (int row = 0; row < grey.rows; ++row) {
     for (int col = 0; col < grey.cols; ++col) {
@@ -111,13 +101,14 @@ void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
   const double x = (backdrop.box.min.east_m - imagery.north_west.east_m) / imagery.image.gsd_m;
   const double y = (imagery.north_west.north_m - backdrop.box.max.north_m) / imagery.image.gsd_m;
   const cv::Matx23d source_from_target(scale, 0.0, x + 0.5 * scale - 0.5, 0.0, scale, y + 0.5 * scale - 0.5);
-  cv::Mat colour = imagery.image.pixels;
-  if (colour.channels() == 1) cv::cvtColor(colour, colour, cv::COLOR_GRAY2BGR);
-  if (scale > 1.0) cv::blur(colour, colour, cv::Size(1 + static_cast<int>(scale), 1 + static_cast<int>(scale)));
+  const cv::Mat colour = bench::coloured(imagery.image.pixels);
+  cv::Mat smooth;  // not in place: the vehicle looks at these pixels
+  const int side = scale > 1.0 ? 1 + static_cast<int>(scale) : 1;
+  cv::blur(colour, smooth, cv::Size(side, side));
   cv::Mat shown;
   cv::Mat observed;
   const int flags = cv::INTER_LINEAR | cv::WARP_INVERSE_MAP;
-  cv::warpAffine(colour, shown, source_from_target, backdrop.pixels.size(), flags);
+  cv::warpAffine(smooth, shown, source_from_target, backdrop.pixels.size(), flags);
   cv::warpAffine(imagery.image.observed, observed, source_from_target, backdrop.pixels.size(),
                  cv::INTER_NEAREST | cv::WARP_INVERSE_MAP);
   shown.copyTo(backdrop.pixels, observed);

@@ -1,4 +1,4 @@
-// The stable code of the error that a call throws.
+// The stable code of the error that a call throws, and its message.
 #pragma once
 
 #include <string>
@@ -12,6 +12,15 @@ std::string code_of(const auto& call) {
     call();
   } catch (const Error& error) {
     return error.code();
+  }
+  return "no error";
+}
+
+std::string message_of(const auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
   }
   return "no error";
 }

@@ -14,31 +14,11 @@
 #include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/osm_tags.hpp"
+#include "tiles/sources/road_layer.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 namespace {
-
-/// Attributes of one feature, those packed in hstore text included.
-class FeatureTags {
- public:
-  explicit FeatureTags(const OGRFeature& feature) : feature_(feature) {}
-
-  std::string operator()(std::string_view key) {
-    const int field = feature_.GetFieldIndex(std::string(key).c_str());
-    if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
-    const int packed = feature_.GetFieldIndex("other_tags");
-    if (packed < 0 || feature_.IsFieldSetAndNotNull(packed) == 0) return {};
-    if (!tags_) tags_ = parse_hstore(feature_.GetFieldAsString(packed));
-    const auto found = tags_->find(key);
-    return found != tags_->end() ? found->second : std::string();
-  }
-
- private:
-  const OGRFeature& feature_;
-  std::optional<std::map<std::string, std::string, std::less<>>> tags_;
-};
 
 bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, double width_m, RoadNetwork& network) {
   const int count = line.getNumPoints();
@@ -83,119 +63,144 @@ bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
   return false;
 }
 
-struct LayerReader {
-  TransformationPtr to_plane;
-  RoadRules rules;
-  bool classified = false;
-  bool has_lines = false;
+/// Lines of the layers that tell roads apart, and of those that do not.
+struct Parts {
+  RoadNetwork classified;
+  RoadNetwork plain;
+  bool any_classified = false;
+  std::int64_t lines = 0;
+  std::map<std::string, std::int64_t> unknown_classes;
+  /// Layers of lines without classes by name: the first file that has them, and their attributes.
+  std::map<std::string, std::pair<std::string, std::string>> plain_layers;
 };
 
-bool has_attribute(OGRLayer& layer, const std::string& name) {
-  return layer.GetLayerDefn()->GetFieldIndex(name.c_str()) >= 0;
-}
-
-/// Whether at least half of the first values of the attribute are classes of the rules.
-bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
-  constexpr int kSample = 200;
-  int values = 0;
-  int known = 0;
-  layer.ResetReading();
-  for (int i = 0; i < kSample; ++i) {
-    const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
-    if (!feature) break;
-    const std::string value = feature->GetFieldAsString(attribute.c_str());
-    if (value.empty()) continue;
-    ++values;
-    known += rules.knows(value) ? 1 : 0;
-  }
-  layer.ResetReading();
-  return values > 0 && 2 * known >= values;
-}
-
-/// The attribute that the user named or that of OpenStreetMap, else one that other road data keep the same classes in.
-std::string class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
-  const std::string& wanted = rules.class_attribute();
-  if (has_attribute(layer, wanted) || wanted != RoadRules().class_attribute()) return wanted;
-  for (const char* usual : {"fclass", "type", "class", "road_class"}) {
-    if (has_attribute(layer, usual) && holds_classes(layer, usual, rules)) return usual;
-  }
-  return wanted;
-}
-
-LayerReader reader_of(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules) {
-  LayerReader reader{std::move(to_plane), rules, false, false};
-  reader.rules.set_class_attribute(class_attribute_of(layer, rules));
-  reader.classified = has_attribute(layer, reader.rules.class_attribute());
-  return reader;
-}
-
-/// Tells how the lines of a layer were told apart where that was not what the rules say.
-void note_classes(OGRLayer& layer, const LayerReader& reader, const RoadRules& rules, const std::string& path,
-                  RoadNetwork& network) {
-  if (!reader.has_lines || (reader.classified && reader.rules.class_attribute() == rules.class_attribute())) return;
-  const std::string about = fmt::format("layer '{}' of ", layer.GetName());
-  if (std::ranges::any_of(network.notes, [&](const auto& note) { return note.starts_with(about); })) return;
-  if (reader.classified) {
-    network.notes.push_back(fmt::format("{}{}: the classes of its roads are taken from the attribute '{}'", about, path,
-                                        reader.rules.class_attribute()));
-    if (network.class_attribute.empty()) network.class_attribute = reader.rules.class_attribute();
+/// Takes down what is known of a layer once all its features were seen.
+void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, Parts& parts) {
+  if (layer.lines() == 0) return;
+  parts.lines += layer.lines();
+  for (const auto& [name, count] : layer.unknown_classes()) parts.unknown_classes[name] += count;
+  if (!layer.classified()) {
+    parts.plain_layers.try_emplace(layer.name(), path, layer.attributes());
     return;
   }
-  std::string names;
-  const OGRFeatureDefn& definition = *layer.GetLayerDefn();
-  for (int i = 0; i < definition.GetFieldCount(); ++i) {
-    names += fmt::format("{}{}", i == 0 ? "" : ", ", definition.GetFieldDefn(i)->GetNameRef());
-  }
-  network.notes.push_back(
-      fmt::format("{}{}: no attribute '{}', so every line is drawn as a road; it has {}. --class-attribute and "
-                  "--width-attribute tell roads apart",
-                  about, path, rules.class_attribute(), names.empty() ? "no attributes" : "the attributes " + names));
+  parts.any_classified = true;
+  if (layer.class_attribute() == rules.class_attribute()) return;
+  RoadNetwork& network = parts.classified;
+  if (network.class_attribute.empty()) network.class_attribute = layer.class_attribute();
+  const std::string about = fmt::format("layer '{}' of ", layer.name());
+  if (std::ranges::any_of(network.notes, [&](const auto& note) { return note.starts_with(about); })) return;
+  network.notes.push_back(fmt::format("{}{}: the classes of its roads are taken from the attribute '{}'", about, path,
+                                      layer.class_attribute()));
+}
+
+void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, Parts& parts) {
+  const bool tile = vector_tile_of(path).has_value();
+  if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
+  const std::optional<OGREnvelope> box = file.extent_of(layer.layer());
+  if (!box) return;
+  const PlanePolygon covered = box_on_plane(*box, layer.to_plane(), path);
+  if (layer.classified() || tile) parts.classified.covered.push_back(covered);
+  if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
 }
 
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
-              RoadNetwork& network) {
+              Parts& parts) {
   VectorFile file(path, options);
   const OGRSpatialReference plane = utm_reference(zone);
-  std::map<const OGRLayer*, LayerReader> readers;
+  std::map<const OGRLayer*, RoadLayer> layers;
   for (OGRLayer* layer : file.layers()) {
     const OGRSpatialReference crs = file.crs_of(*layer);
-    if (network.crs.empty()) network.crs = crs_name(crs);
-    readers.emplace(layer, reader_of(*layer, transformation(crs, plane, path), rules));
+    if (parts.plain.crs.empty()) parts.plain.crs = parts.classified.crs = crs_name(crs);
+    layers.emplace(layer, RoadLayer(*layer, transformation(crs, plane, path), rules));
   }
-  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-    const auto found = readers.find(&layer);
+  file.for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
+    const auto found = layers.find(&of);
     const OGRGeometry* geometry = feature.GetGeometryRef();
-    if (found == readers.end() || geometry == nullptr) return;
-    LayerReader& reader = found->second;
-    reader.has_lines = reader.has_lines || geometry->getDimension() == 1;
-    FeatureTags tags(feature);
-    const std::optional<double> width = reader.rules.width_of(std::ref(tags), reader.classified);
-    if (!width || !add_geometry(*geometry, *reader.to_plane, *width, network)) ++network.left_out;
+    if (found == layers.end() || geometry == nullptr) return;
+    RoadLayer& layer = found->second;
+    RoadNetwork& network = layer.classified() ? parts.classified : parts.plain;
+    const std::optional<double> width = layer.width_of(feature);
+    if (!width || !add_geometry(*geometry, layer.to_plane(), *width, network)) ++network.left_out;
   });
-  for (OGRLayer* layer : file.layers()) note_classes(*layer, readers.at(layer), rules, path, network);
-  if (!options.extent.empty()) return;
-  for (OGRLayer* layer : file.layers()) {
-    const LayerReader& reader = readers.at(layer);
-    if (!reader.has_lines && !vector_tile_of(path)) continue;  // shops say nothing about roads
-    const std::optional<OGREnvelope> box = file.extent_of(*layer);
-    if (box) network.covered.push_back(box_on_plane(*box, *reader.to_plane, path));
+  for (OGRLayer* of : file.layers()) {
+    const RoadLayer& layer = layers.at(of);
+    add_layer(layer, rules, path, parts);
+    if (options.extent.empty()) add_covered(file, layer, path, parts);
   }
+}
+
+/// Where some layers tell roads apart, the lines of the others are rivers, railways or bus routes.
+RoadNetwork join(Parts& parts, const RoadRules& rules) {
+  RoadNetwork network = std::move(parts.any_classified ? parts.classified : parts.plain);
+  if (parts.any_classified) {
+    network.left_out += parts.plain.left_out + static_cast<std::int64_t>(parts.plain.lines.size());
+  }
+  for (const auto& [name, about] : parts.plain_layers) {
+    const auto& [path, attributes] = about;
+    network.notes.push_back(
+        parts.any_classified
+            ? fmt::format("layer '{}' of {}: no attribute '{}', by which other layers tell roads apart, so none of its "
+                          "lines is drawn. --layer {} draws them",
+                          name, path, rules.class_attribute(), name)
+            : fmt::format("layer '{}' of {}: no attribute '{}', so every line is drawn as a road; it has {}. "
+                          "--class-attribute and --width-attribute tell roads apart",
+                          name, path, rules.class_attribute(), attributes));
+  }
+  return network;
+}
+
+/// The most frequent of them: "Autobahn (12), Feldweg (3)".
+std::string most_frequent(const std::map<std::string, std::int64_t>& counts) {
+  constexpr std::size_t kNamed = 8;
+  std::vector<std::pair<std::int64_t, std::string>> order;
+  for (const auto& [name, count] : counts) order.emplace_back(-count, name);
+  std::ranges::sort(order);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(order.size(), kNamed); ++i) {
+    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", order[i].second, -order[i].first);
+  }
+  return order.size() > kNamed ? text + " and others" : text;
+}
+
+/// A few features of odd classes are in every extract of OpenStreetMap; more of them are missing roads.
+void note_unknown_classes(const Parts& parts, RoadNetwork& network) {
+  constexpr double kWorthNoting = 0.02;
+  std::int64_t unknown = 0;
+  for (const auto& [name, count] : parts.unknown_classes) unknown += count;
+  if (static_cast<double>(unknown) <= kWorthNoting * static_cast<double>(parts.lines)) return;
+  network.notes.push_back(fmt::format(
+      "{} of {} lines are not drawn, since the road rules do not know their classes: {}. --rules FILE gives "
+      "widths to them",
+      unknown, parts.lines, most_frequent(parts.unknown_classes)));
+}
+
+std::string why_none_is_drawn(const Parts& parts, const RoadRules& rules) {
+  if (parts.lines == 0) return "none of them is a line; points and areas are not drawn, centrelines are";
+  if (!parts.unknown_classes.empty()) {
+    return fmt::format(
+        "the road rules do not know their classes, {}; give them widths with --rules FILE or name another attribute "
+        "with --class-attribute",
+        most_frequent(parts.unknown_classes));
+  }
+  return fmt::format(
+      "the rules leave them out ({}); name the attribute with --class-attribute or the layer with --layer",
+      rules.describe());
 }
 
 }  // namespace
 
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone) {
-  RoadNetwork network;
-  for (const std::string& path : paths) add_file(path, options, rules, zone, network);
+  Parts parts;
+  for (const std::string& path : paths) add_file(path, options, rules, zone, parts);
+  RoadNetwork network = join(parts, rules);
   if (!options.extent.empty()) network.covered = read_extent(options.extent, zone);
   if (network.lines.empty() || network.covered.empty()) {
-    throw InvalidInput(
-        "source-without-roads",
-        fmt::format("{}: none of its {} features is drawn as a road by the rules ({}); name the attribute "
-                    "with --class-attribute or the layer with --layer",
-                    paths.front(), network.left_out, rules.describe()));
+    throw InvalidInput("source-without-roads",
+                       fmt::format("{}: none of its {} features is drawn as a road: {}", paths.front(),
+                                   network.left_out, why_none_is_drawn(parts, rules)));
   }
+  note_unknown_classes(parts, network);
   return network;
 }
 

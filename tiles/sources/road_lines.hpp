@@ -39,9 +39,10 @@ struct RoadNetwork {
 };
 
 /// The class attribute is that of the rules; where a layer lacks it and the user named none, the first of fclass, type,
-/// class and road_class whose values are mostly classes of the rules. A layer without any is all roads.
-/// OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound,
-/// InvalidInput ("source-unreadable", "roads-without-georeference", "source-without-roads", "crs-not-transformable",
+/// class and road_class whose values are mostly classes of the rules. Where no layer has any, every line is a road;
+/// where some layers of lines have one, the lines of the others (rivers, bus routes) are not drawn. OSM PBF and XML,
+/// GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound, InvalidInput
+/// ("source-unreadable", "roads-without-georeference", "source-without-roads", "crs-not-transformable",
 /// "extent-unreadable") or CorruptData ("roads-unreadable").
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);

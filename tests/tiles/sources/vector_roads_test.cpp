@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -20,6 +21,7 @@ using testing::code_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::message_of;
 
 const UtmZone kZone = *UtmZone::from_epsg(32637);
 constexpr GridPoint kCentre{400000.0, 4200000.0};
@@ -158,6 +160,43 @@ TEST_F(VectorRoads, LinesWithoutClassesAreAllRoadsAndSaidSo) {
   EXPECT_EQ(network.lines.size(), 6U);
   EXPECT_THAT(network.class_attribute, IsEmpty());
   EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("type, lanes"), HasSubstr("--class-attribute"))));
+}
+
+TEST_F(VectorRoads, RiversBesideClassifiedRoadsAreNotDrawnAndSaidSo) {
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-150, 40), at(150, 40))});
+  std::filesystem::rename(roads, folder / "streets.geojson");
+  const std::string streets = (folder / "streets.geojson").string();
+  const std::string rivers = geojson({feature(R"("name":"Firat")", at(-190, -90), at(190, -40))});
+  for (const auto& paths : {std::vector{streets, rivers}, std::vector{rivers, streets}}) {
+    const RoadNetwork network = read_road_network(paths, {}, RoadRules(), kZone);
+    ASSERT_EQ(network.lines.size(), 1U);
+    EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+    EXPECT_EQ(network.left_out, 1);
+    EXPECT_EQ(network.covered.size(), 1U) << "where a river is known, a road need not be";
+    EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("layer 'roads'"), HasSubstr("none of its lines is drawn"))));
+  }
+}
+
+TEST_F(VectorRoads, ARiverIsNoRoadWhereTheRoadsAreAllTooNarrow) {
+  const std::string paths = geojson({feature(R"("highway":"footway")", at(-150, 40), at(150, 40))});
+  std::filesystem::rename(paths, folder / "paths.geojson");
+  const std::string rivers = geojson({feature(R"("name":"Firat")", at(-190, -90), at(190, -40))});
+  EXPECT_EQ(code_of([&] {
+              read_road_network({(folder / "paths.geojson").string(), rivers}, {}, RoadRules(), kZone);
+            }),
+            "source-without-roads");
+}
+
+TEST_F(VectorRoads, ClassesThatNoRuleKnowsAreNamed) {
+  const std::string some = geojson({feature(R"("highway":"primary")", at(-150, 40), at(150, 40)),
+                                    feature(R"("highway":"Feldweg")", at(-150, 0), at(150, 0)),
+                                    feature(R"("highway":"Feldweg")", at(-150, -20), at(150, -20)),
+                                    feature(R"("highway":"Autobahn")", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({some}, {}, RoadRules(), kZone);
+  EXPECT_EQ(network.left_out, 3);
+  EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("3 of 4 lines"), HasSubstr("Feldweg (2), Autobahn (1)"))));
+  const std::string none = geojson({feature(R"("highway":"Feldweg")", at(-150, 0), at(150, 0))});
+  EXPECT_THAT(message_of([&] { read_road_network({none}, {}, RoadRules(), kZone); }), HasSubstr("Feldweg (1)"));
 }
 
 TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {

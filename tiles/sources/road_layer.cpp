@@ -1,0 +1,95 @@
+#include "tiles/sources/road_layer.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "tiles/sources/osm_tags.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Attributes of one feature, those packed in hstore text included.
+class FeatureTags {
+ public:
+  explicit FeatureTags(const OGRFeature& feature) : feature_(feature) {}
+
+  std::string operator()(std::string_view key) {
+    const int field = feature_.GetFieldIndex(std::string(key).c_str());
+    if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
+    const int packed = feature_.GetFieldIndex("other_tags");
+    if (packed < 0 || feature_.IsFieldSetAndNotNull(packed) == 0) return {};
+    if (!tags_) tags_ = parse_hstore(feature_.GetFieldAsString(packed));
+    const auto found = tags_->find(key);
+    return found != tags_->end() ? found->second : std::string();
+  }
+
+ private:
+  const OGRFeature& feature_;
+  std::optional<std::map<std::string, std::string, std::less<>>> tags_;
+};
+
+bool has_attribute(OGRLayer& layer, const std::string& name) {
+  return layer.GetLayerDefn()->GetFieldIndex(name.c_str()) >= 0;
+}
+
+/// Whether at least half of the first values of the attribute are classes of the rules.
+bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
+  constexpr int kSample = 200;
+  int values = 0;
+  int known = 0;
+  const GdalMessages messages;
+  layer.ResetReading();
+  for (int i = 0; i < kSample; ++i) {
+    const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
+    if (!feature) break;
+    const std::string value = feature->GetFieldAsString(attribute.c_str());
+    if (value.empty()) continue;
+    ++values;
+    known += rules.knows(value) ? 1 : 0;
+  }
+  layer.ResetReading();
+  return values > 0 && 2 * known >= values;
+}
+
+/// The attribute that the user named or that of OpenStreetMap, else one that other road data keep the same classes in.
+std::string class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
+  const std::string& wanted = rules.class_attribute();
+  if (has_attribute(layer, wanted) || wanted != RoadRules().class_attribute()) return wanted;
+  for (const char* usual : {"fclass", "type", "class", "road_class"}) {
+    if (has_attribute(layer, usual) && holds_classes(layer, usual, rules)) return usual;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+RoadLayer::RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
+    : layer_(&layer), to_plane_(std::move(to_plane)), rules_(rules) {
+  rules_.set_class_attribute(class_attribute_of(layer, rules));
+  classified_ = has_attribute(layer, rules_.class_attribute());
+}
+
+std::string RoadLayer::attributes() const {
+  std::string names;
+  const OGRFeatureDefn& definition = *layer_->GetLayerDefn();
+  for (int i = 0; i < definition.GetFieldCount(); ++i) {
+    names += fmt::format("{}{}", i == 0 ? "the attributes " : ", ", definition.GetFieldDefn(i)->GetNameRef());
+  }
+  return names.empty() ? "no attributes" : names;
+}
+
+std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
+  FeatureTags tags(feature);
+  if (feature.GetGeometryRef()->getDimension() == 1) {
+    ++lines_;
+    const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
+    if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
+  }
+  return rules_.width_of(std::ref(tags), classified_);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,46 @@
+// One layer of a vector file as roads: by which attribute its lines are told apart, and which of them are drawn.
+#pragma once
+
+#include <ogrsf_frmts.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/road_rules.hpp"
+
+namespace roadfix {
+
+class RoadLayer {
+ public:
+  /// The class attribute is that of the rules; where the layer lacks it and the user named none, the first of fclass,
+  /// type, class and road_class whose values are mostly classes of the rules. The layer must outlive this.
+  RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules);
+
+  std::string name() const { return layer_->GetName(); }
+  OGRLayer& layer() const { return *layer_; }
+  OGRCoordinateTransformation& to_plane() const { return *to_plane_; }
+  /// Whether its features have a class attribute. Without one nothing tells its roads from its rivers.
+  bool classified() const { return classified_; }
+  const std::string& class_attribute() const { return rules_.class_attribute(); }
+  /// "no attributes" or "the attributes a, b", for messages.
+  std::string attributes() const;
+
+  /// Width in metres to draw the feature with, nullopt to leave it out. Its geometry must not be null.
+  std::optional<double> width_of(const OGRFeature& feature);
+  /// Lines that width_of() was asked about, and how many of them have a class that the rules do not know, by class.
+  std::int64_t lines() const { return lines_; }
+  const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
+
+ private:
+  OGRLayer* layer_;
+  TransformationPtr to_plane_;
+  RoadRules rules_;
+  bool classified_ = false;
+  std::int64_t lines_ = 0;
+  std::map<std::string, std::int64_t> unknown_classes_;
+};
+
+}  // namespace roadfix

@@ -48,7 +48,7 @@ bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
                   RoadNetwork& network) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
   if (type == wkbLineString) return add_line(*geometry.toLineString(), to_plane, width_m, network);
-  if (type == wkbMultiLineString || type == wkbGeometryCollection) {
+  if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != FALSE) {
     bool any = false;
     for (const OGRGeometry* part : *geometry.toGeometryCollection()) {
       any = add_geometry(*part, to_plane, width_m, network) || any;

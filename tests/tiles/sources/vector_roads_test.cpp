@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -185,6 +186,21 @@ TEST_F(VectorRoads, ARiverIsNoRoadWhereTheRoadsAreAllTooNarrow) {
               read_road_network({(folder / "paths.geojson").string(), rivers}, {}, RoadRules(), kZone);
             }),
             "source-without-roads");
+}
+
+TEST_F(VectorRoads, CurvesAreDrawnHoweverTheyAreNested) {
+  const char* const collections[] = {"CIRCULARSTRING(0 0,50 50,100 0)",
+                                     "COMPOUNDCURVE((0 -50,0 0),CIRCULARSTRING(0 0,50 50,100 0))",
+                                     "MULTICURVE((0 -50,0 0),CIRCULARSTRING(0 0,50 50,100 0))",
+                                     "GEOMETRYCOLLECTION(POINT(0 0),MULTICURVE(CIRCULARSTRING(0 0,50 50,100 0)))"};
+  for (const char* wkt : collections) {
+    const std::string path = (folder / "curves.csv").string();
+    std::ofstream(path) << "highway,WKT\nprimary,\"" << wkt << "\"\n";
+    VectorOptions options;
+    options.crs = "EPSG:32637";
+    const RoadNetwork network = read_road_network({path}, options, RoadRules(), kZone);
+    EXPECT_TRUE(std::ranges::any_of(network.points, [](GridPoint p) { return p.north_m > 49.0; })) << wkt;
+  }
 }
 
 TEST_F(VectorRoads, ClassesThatNoRuleKnowsAreNamed) {

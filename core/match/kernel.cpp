@@ -1,5 +1,7 @@
 #include "core/match/kernel.hpp"
 
+#include "core/match/kernel_sums.hpp"
+
 // clang-format off: foreach_target compiles this file once per instruction set, and must come before highway.h
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/match/kernel.cpp"
@@ -10,10 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace roadfix {
 namespace HWY_NAMESPACE {
-
-struct IntegerSums {
-  std::int64_t n = 0, m = 0, l = 0, mm = 0, ll = 0, ml = 0;
-};
 
 #if HWY_TARGET == HWY_SCALAR  // processors without the byte operations (SSE2 only)
 
@@ -170,20 +168,10 @@ void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Foo
 
 #endif
 
-void sums_at(const MapPlane& map, const Footprint& footprint, const PlaneCell* places, std::size_t count,
-             MatchSums* out) {
-  constexpr double kUnit = 1.0 / 254.0;
-  constexpr double kSquare = kUnit * kUnit;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* nadir = map.at(places[i].col, places[i].row);
-    IntegerSums s;
-    sums_over_cells(nadir, map.stride(), footprint, s);
-    out[i] = {s.n,
-              static_cast<double>(s.m) * kUnit,
-              static_cast<double>(s.l) * kUnit,
-              static_cast<double>(s.mm) * kSquare,
-              static_cast<double>(s.ll) * kSquare,
-              static_cast<double>(s.ml) * kSquare};
+void sums_at(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+             std::span<IntegerSums> sums) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    sums_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint, sums[i]);
   }
 }
 
@@ -195,12 +183,47 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+
+#include "core/match/kernel_vnni.hpp"
 
 namespace roadfix {
 
 HWY_EXPORT(sums_at);
 HWY_EXPORT(target_name);
+
+namespace {
+
+MatchSums scaled(const IntegerSums& s) {
+  constexpr double kUnit = 1.0 / 254.0;
+  constexpr double kSquare = kUnit * kUnit;
+  return {s.n,
+          static_cast<double>(s.m) * kUnit,
+          static_cast<double>(s.l) * kUnit,
+          static_cast<double>(s.mm) * kSquare,
+          static_cast<double>(s.ll) * kSquare,
+          static_cast<double>(s.ml) * kSquare};
+}
+
+/// All places within the plane and its margin.
+void sums_within(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                 std::span<MatchSums> out) {
+  std::array<IntegerSums, 64> sums;
+  for (std::size_t first = 0; first < places.size(); first += sums.size()) {
+    const std::size_t count = std::min(sums.size(), places.size() - first);
+    const auto some = std::span(sums).first(count);
+    if (has_byte_products()) {
+      sums_by_byte_products(map, footprint, places.subspan(first, count), some);
+    } else {
+      HWY_DYNAMIC_DISPATCH(sums_at)(map, footprint, places.subspan(first, count), some);
+    }
+    std::ranges::transform(some, out.subspan(first).begin(), scaled);
+  }
+}
+
+}  // namespace
 
 void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums) {
@@ -213,15 +236,13 @@ void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const
   while (begin < places.size()) {
     std::size_t end = begin;
     while (end < places.size() && within(places[end])) ++end;
-    if (end > begin) {
-      HWY_DYNAMIC_DISPATCH(sums_at)(map, footprint, places.data() + begin, end - begin, sums.data() + begin);
-    }
+    sums_within(map, footprint, places.subspan(begin, end - begin), sums.subspan(begin, end - begin));
     if (end < places.size()) sums[end++] = MatchSums{};
     begin = end;
   }
 }
 
-const char* kernel_target() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
+const char* kernel_target() { return has_byte_products() ? "AVX3_VNNI" : HWY_DYNAMIC_DISPATCH(target_name)(); }
 
 }  // namespace roadfix
 

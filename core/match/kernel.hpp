@@ -22,7 +22,7 @@ struct PlaneCell {
 void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums);
 
-/// Name of the instruction set in use ("AVX3_DL", "AVX2", ...), for reports.
+/// Name of the instruction set in use ("AVX3_VNNI", "AVX2", ...), for reports.
 const char* kernel_target();
 
 }  // namespace roadfix

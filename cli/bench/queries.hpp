@@ -1,6 +1,8 @@
 // The queries of a set: frames cut from imagery, real frames with truth, or simulated feature maps.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/bench/manifest.hpp"
@@ -21,7 +23,10 @@ struct QueryDrawing {
 std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
                                 const QueryDrawing& drawing);
 
-/// "post.jpg 400x400 m", "frames.csv", "simulated 400x400 m".
+/// Of simulated feature maps that are all equally bad; otherwise nullopt.
+std::optional<FeatureQuality> common_quality(const QuerySet& set);
+
+/// "post.jpg 400x400 m", "frames.csv", "simulated 400x400 m, 60 % erased".
 std::string describe(const QuerySet& set);
 
 }  // namespace roadfix::bench

@@ -142,15 +142,22 @@ std::vector<Outcome> road_outcomes(const std::vector<SetResult>& results) {
 }
 
 std::string to_table(const std::vector<SetResult>& results) {
-  std::string table = fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n",
-                                  "method", "map", "queries", "n", "answered", "r@5", "r@10", "r@25", "r@50", "false",
-                                  "med. m", "med. deg", "p50 ms", "p95 ms");
+  std::size_t map_width = 3;
+  std::size_t set_width = 7;
+  for (const SetResult& result : results) {
+    map_width = std::max(map_width, result.map.size());
+    set_width = std::max(set_width, result.query_set.size());
+  }
+  std::string table = fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n",
+                                  "method", "map", map_width, "queries", set_width, "n", "answered", "r@5", "r@10",
+                                  "r@25", "r@50", "false", "med. m", "med. deg", "p50 ms", "p95 ms");
   for (const SetResult& result : results) {
     const Figures f = figures(result.outcomes);
-    table += fmt::format("{:<7}{:<12}{:<44}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
-                         result.method, result.map, result.query_set, f.n, f.answered, f.recall_5, f.recall_10,
-                         f.recall_25, f.recall_50, f.false_fixes, cell(f.median_error_m, 1),
-                         cell(f.median_heading_error_deg, 2), f.time_p50_ms, f.time_p95_ms);
+    table +=
+        fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
+                    result.method, result.map, map_width, result.query_set, set_width, f.n, f.answered, f.recall_5,
+                    f.recall_10, f.recall_25, f.recall_50, f.false_fixes, cell(f.median_error_m, 1),
+                    cell(f.median_heading_error_deg, 2), f.time_p50_ms, f.time_p95_ms);
   }
   return table;
 }

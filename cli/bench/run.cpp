@@ -73,11 +73,6 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   return outcomes;
 }
 
-std::optional<FeatureQuality> common_quality(const QuerySet& set) {
-  if (set.kind != QuerySet::Kind::kSimulated || set.noise.low != set.noise.high) return std::nullopt;
-  return set.noise.low;
-}
-
 }  // namespace
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/bench/queries.hpp"
+
 namespace roadfix::bench {
 namespace {
 
@@ -36,6 +38,24 @@ TEST(Figures, CountRecallOverAllAndErrorsOverTheAnswered) {
 TEST(Figures, OfNothingHaveNoMedian) {
   EXPECT_FALSE(figures({}).median_error_m);
   EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);
+}
+
+TEST(Table, KeepsItsColumnsApartForLongNames) {
+  const std::string table = to_table({{"roads", "liechtenstein-latest", "simulated 400x400 m, 60 % erased", {}},
+                                      {"sift", "town", "post.jpg 300x300 m", {}}});
+  EXPECT_NE(table.find("liechtenstein-latest  simulated 400x400 m, 60 % erased    0"), std::string::npos) << table;
+  EXPECT_NE(table.find("town                  post.jpg 300x300 m"), std::string::npos) << table;
+}
+
+TEST(QuerySet, IsDescribedWithTheErrorsThatAllItsFeatureMapsHave) {
+  QuerySet set;
+  set.kind = QuerySet::Kind::kSimulated;
+  set.footprint = {300.0, 200.0};
+  EXPECT_EQ(describe(set), "simulated 300x200 m");
+  set.noise.low = set.noise.high = {.erase = 0.6, .shift_m = 4.0};
+  EXPECT_EQ(describe(set), "simulated 300x200 m, 60 % erased, 4 m shifted");
+  set.noise.low.erase = 0.0;
+  EXPECT_EQ(describe(set), "simulated 300x200 m");
 }
 
 TEST(Quantile, LiesBetweenTheOrderStatistics) {

@@ -26,19 +26,21 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr hn::CappedTag<double, 8> kDoubles;
-constexpr hn::Rebind<std::int32_t, decltype(kDoubles)> kInts;
-constexpr hn::Rebind<std::uint8_t, decltype(kDoubles)> kBytes;
-using Doubles = hn::Vec<decltype(kDoubles)>;
+constexpr hn::CappedTag<float, 16> kFloats;
+constexpr hn::RebindToSigned<decltype(kFloats)> kInts;
+constexpr hn::RebindToUnsigned<decltype(kFloats)> kUnsigned;
+constexpr hn::Rebind<std::uint8_t, decltype(kFloats)> kBytes;
+using Floats = hn::Vec<decltype(kFloats)>;
 using Ints = hn::Vec<decltype(kInts)>;
 
+// Cells are whole numbers up to 255 and shares multiples of 1/128, so that all sums and products of them are exact.
 struct Quads {
-  Doubles above_left, above_right, below_left, below_right;
+  Floats above_left, above_right, below_left, below_right;
 };
 
 HWY_INLINE HWY_ATTR Quads parted(Ints quads) {
   const Ints byte = hn::Set(kInts, 255);
-  const auto cell = [&](Ints bits) HWY_ATTR { return hn::PromoteTo(kDoubles, hn::And(bits, byte)); };
+  const auto cell = [&](Ints bits) HWY_ATTR { return hn::ConvertTo(kFloats, hn::And(bits, byte)); };
   return {cell(quads), cell(hn::ShiftRight<8>(quads)), cell(hn::ShiftRight<16>(quads)),
           cell(hn::ShiftRight<24>(quads))};
 }
@@ -52,74 +54,73 @@ HWY_INLINE HWY_ATTR auto any_unobserved(Ints quads) {
 static_assert(kUnobserved == 255);
 
 /// bilinear() where all four cells were observed.
-HWY_INLINE HWY_ATTR Doubles observed_mean(const Quads& q, Doubles fx, Doubles fy) {
-  const Doubles upper = hn::Add(q.above_left, hn::Mul(fx, hn::Sub(q.above_right, q.above_left)));
-  const Doubles lower = hn::Add(q.below_left, hn::Mul(fx, hn::Sub(q.below_right, q.below_left)));
-  return hn::Add(hn::Add(upper, hn::Mul(fy, hn::Sub(lower, upper))), hn::Set(kDoubles, 0.5));
+HWY_INLINE HWY_ATTR Floats observed_mean(const Quads& q, Floats fx, Floats fy) {
+  const Floats upper = hn::MulAdd(fx, hn::Sub(q.above_right, q.above_left), q.above_left);
+  const Floats lower = hn::MulAdd(fx, hn::Sub(q.below_right, q.below_left), q.below_left);
+  return hn::Add(hn::MulAdd(fy, hn::Sub(lower, upper), upper), hn::Set(kFloats, 0.5F));
 }
 
 /// WeightedMean of the cells that were observed; `mean` where all were.
-HWY_INLINE HWY_ATTR Doubles partial_mean(const Quads& q, Doubles fx, Doubles fy, Doubles mean) {
-  const Doubles one = hn::Set(kDoubles, 1.0);
-  const Doubles unobserved = hn::Set(kDoubles, double{kUnobserved});
-  Doubles total = hn::Zero(kDoubles);
-  Doubles observed = total;
-  Doubles sum = total;
-  const auto add = [&](Doubles cell, Doubles weight) HWY_ATTR {
+HWY_INLINE HWY_ATTR Floats partial_mean(const Quads& q, Floats fx, Floats fy, Floats mean) {
+  const Floats one = hn::Set(kFloats, 1.0F);
+  const Floats unobserved = hn::Set(kFloats, float{kUnobserved});
+  Floats observed = hn::Zero(kFloats);
+  Floats sum = observed;
+  const auto add = [&](Floats cell, Floats weight) HWY_ATTR {
     const auto seen = hn::Ne(cell, unobserved);
-    total = hn::Add(total, weight);
     observed = hn::Add(observed, hn::IfThenElseZero(seen, weight));
     sum = hn::Add(sum, hn::IfThenElseZero(seen, hn::Mul(weight, cell)));
     return seen;
   };
-  const Doubles left = hn::Sub(one, fx);
-  const Doubles above = hn::Sub(one, fy);
+  const Floats left = hn::Sub(one, fx);
+  const Floats above = hn::Sub(one, fy);
   const auto seen0 = add(q.above_left, hn::Mul(left, above));
   const auto seen1 = add(q.above_right, hn::Mul(fx, above));
   const auto seen2 = add(q.below_left, hn::Mul(left, fy));
   const auto seen3 = add(q.below_right, hn::Mul(fx, fy));
   const auto whole = hn::And(hn::And(seen0, seen1), hn::And(seen2, seen3));
-  const auto enough =
-      hn::And(hn::Gt(observed, hn::Zero(kDoubles)), hn::Ge(observed, hn::Mul(hn::Set(kDoubles, 0.5), total)));
-  const Doubles part = hn::Add(hn::Div(sum, hn::IfThenElse(enough, observed, one)), hn::Set(kDoubles, 0.5));
+  const auto enough = hn::Ge(observed, hn::Set(kFloats, 0.5F));
+  const Floats part = hn::Add(hn::Div(sum, hn::IfThenElse(enough, observed, one)), hn::Set(kFloats, 0.5F));
   return hn::IfThenElse(whole, mean, hn::IfThenElse(enough, part, unobserved));
 }
 
-void sample_row(const QuadPlane& source, const Placement& placement, int row, int first, int last, Cell* out) {
-  const int step = static_cast<int>(hn::Lanes(kDoubles));
-  const Doubles half = hn::Set(kDoubles, 0.5);
-  const Doubles one = hn::Set(kDoubles, 1.0);
-  const Doubles none = hn::Set(kDoubles, -1.0);
-  const Doubles cols = hn::Set(kDoubles, source.cols);
-  const Doubles rows = hn::Set(kDoubles, source.rows);
-  const Doubles right_col = hn::Set(kDoubles, placement.right.col);
-  const Doubles right_row = hn::Set(kDoubles, placement.right.row);
-  const Doubles origin_col = hn::Set(kDoubles, placement.origin.col);
-  const Doubles origin_row = hn::Set(kDoubles, placement.origin.row);
-  const Doubles down_col = hn::Set(kDoubles, (row + 0.5) * placement.down.col);
-  const Doubles down_row = hn::Set(kDoubles, (row + 0.5) * placement.down.row);
+/// `count` cells in a row, from the run's start on.
+void sample_run(const QuadPlane& source, const SnappedPlacement::Run& run, int count, Cell* out) {
+  constexpr int kCellBits = SnappedPlacement::kCellBits;
+  constexpr int kDropped = kCellBits - SnappedPlacement::kShareBits;
+  const int step = static_cast<int>(hn::Lanes(kFloats));
+  const Ints lanes = hn::Iota(kInts, 0);
+  const Ints share_mask = hn::Set(kInts, (1 << SnappedPlacement::kShareBits) - 1);
+  const Floats share_unit = hn::Set(kFloats, 1.0F / (1 << SnappedPlacement::kShareBits));
+  const auto cols = hn::Set(kUnsigned, static_cast<std::uint32_t>(source.cols + 1));
+  const auto rows = hn::Set(kUnsigned, static_cast<std::uint32_t>(source.rows + 1));
   const Ints stride = hn::Set(kInts, source.cols + 1);
-  for (int col = first; col < last; col += step) {
-    const Doubles middle = hn::Add(hn::Iota(kDoubles, col), half);
-    const Doubles x = hn::Sub(hn::Add(hn::Add(origin_col, hn::Mul(middle, right_col)), down_col), half);
-    const Doubles y = hn::Sub(hn::Add(hn::Add(origin_row, hn::Mul(middle, right_row)), down_row), half);
-    const auto within = hn::And(hn::And(hn::Gt(x, none), hn::Gt(y, none)), hn::And(hn::Lt(x, cols), hn::Lt(y, rows)));
-    const Ints quad_col = hn::DemoteTo(kInts, hn::IfThenElseZero(within, hn::Add(x, one)));
-    const Ints quad_row = hn::DemoteTo(kInts, hn::IfThenElseZero(within, hn::Add(y, one)));
-    const Doubles fx = hn::Sub(x, hn::Sub(hn::PromoteTo(kDoubles, quad_col), one));
-    const Doubles fy = hn::Sub(y, hn::Sub(hn::PromoteTo(kDoubles, quad_row), one));
-    const Ints quads = hn::GatherIndex(kInts, source.quads, hn::Add(hn::Mul(quad_row, stride), quad_col));
+  Ints x = hn::Add(hn::Set(kInts, run.col), hn::Mul(lanes, hn::Set(kInts, run.col_step)));
+  Ints y = hn::Add(hn::Set(kInts, run.row), hn::Mul(lanes, hn::Set(kInts, run.row_step)));
+  const Ints x_step = hn::Set(kInts, step * run.col_step);
+  const Ints y_step = hn::Set(kInts, step * run.row_step);
+  for (int i = 0; i < count; i += step, x = hn::Add(x, x_step), y = hn::Add(y, y_step)) {
+    const Ints col = hn::ShiftRight<kCellBits>(x);
+    const Ints row = hn::ShiftRight<kCellBits>(y);
+    const auto within = hn::And(hn::Lt(hn::BitCast(kUnsigned, col), cols), hn::Lt(hn::BitCast(kUnsigned, row), rows));
+    const auto inside = hn::RebindMask(kInts, within);
+    const auto share = [&](Ints at) HWY_ATTR {
+      return hn::Mul(hn::ConvertTo(kFloats, hn::And(hn::ShiftRight<kDropped>(at), share_mask)), share_unit);
+    };
+    const Ints index = hn::IfThenElseZero(inside, hn::Add(hn::Mul(row, stride), col));
+    const Ints quads = hn::GatherIndex(kInts, source.quads, index);
     const Quads q = parted(quads);
-    Doubles mean = observed_mean(q, fx, fy);
+    const Floats fx = share(x);
+    const Floats fy = share(y);
+    Floats mean = observed_mean(q, fx, fy);
     if (!hn::AllFalse(kInts, any_unobserved(quads))) mean = partial_mean(q, fx, fy, mean);
-    mean = hn::IfThenElse(within, mean, hn::Set(kDoubles, double{kUnobserved}));
-    const auto cells = hn::DemoteTo(kBytes, hn::DemoteTo(kInts, mean));
-    if (col + step <= last) {
-      hn::StoreU(cells, kBytes, out + col);
+    const Ints cells = hn::IfThenElse(inside, hn::ConvertTo(kInts, mean), hn::Set(kInts, kUnobserved));
+    if (i + step <= count) {
+      hn::StoreU(hn::DemoteTo(kBytes, cells), kBytes, out + i);
     } else {
-      Cell rest[8] = {};
-      hn::StoreU(cells, kBytes, rest);
-      for (int i = 0; i < last - col; ++i) out[col + i] = rest[i];
+      Cell rest[16] = {};
+      hn::StoreU(hn::DemoteTo(kBytes, cells), kBytes, rest);
+      for (int k = 0; k < count - i; ++k) out[i + k] = rest[k];
     }
   }
 }
@@ -131,11 +132,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace roadfix {
 
-HWY_EXPORT(sample_row);
+HWY_EXPORT(sample_run);
 
 namespace {
 
@@ -147,13 +149,13 @@ struct Range {
 /// Narrowed to about where -1 < start + (col + 0.5) * step < size + 1.
 Range narrowed(Range range, double start, double step, double size) {
   constexpr double kFlat = 1e-6;
-  if (std::abs(step) < kFlat) return range;
+  if (std::abs(step) < kFlat) return start > -2.0 && start < size + 2.0 ? range : Range{};
   const double a = (-1.0 - start) / step;
   const double b = (size + 1.0 - start) / step;
   const auto bounded = [&](double col) {
     return static_cast<int>(std::clamp(col, static_cast<double>(range.first), static_cast<double>(range.last)));
   };
-  return {bounded(std::floor(std::min(a, b)) - 1.0), bounded(std::ceil(std::max(a, b)) + 1.0)};
+  return {bounded(std::min(a, b) - 1.0), bounded(std::max(a, b) + 2.0)};
 }
 
 }  // namespace
@@ -178,14 +180,21 @@ BilinearSource::BilinearSource(const CellArray& cells)
 }
 
 CellArray BilinearSource::sampled(const Placement& placement, int cols, int rows) const {
+  assert(std::max(cols_, rows_) < SnappedPlacement::kMostCells);
   CellArray result(cols, rows);
   const QuadPlane plane{quads_.data(), cols_, rows_};
+  const SnappedPlacement snapped(placement);
   for (int row = 0; row < rows; ++row) {
     const GridGeometry::CellPosition start = placement.source_of(0.0, row + 0.5);
     Range range{0, cols};
     range = narrowed(range, start.col, placement.right.col, cols_);
     range = narrowed(range, start.row, placement.right.row, rows_);
-    HWY_DYNAMIC_DISPATCH(sample_row)(plane, placement, row, range.first, range.last, result.row(row).data());
+    while (range.first < range.last) {
+      const int count = std::min(range.last - range.first, SnappedPlacement::cells_left(range.first));
+      HWY_DYNAMIC_DISPATCH(sample_run)
+      (plane, snapped.run_at(range.first, row), count, result.row(row).data() + range.first);
+      range.first += count;
+    }
   }
   return result;
 }

@@ -15,7 +15,8 @@ class BilinearSource {
  public:
   explicit BilinearSource(const CellArray& cells);
 
-  /// Each cell of the result is bilinear() at the placement of its middle, to the last bit on every processor.
+  /// Each cell of the result is bilinear() at the placement of its middle, rounded to 1/128 of a cell
+  /// (SnappedPlacement), to the last bit on every processor.
   CellArray sampled(const Placement& placement, int cols, int rows) const;
 
  private:

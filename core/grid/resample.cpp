@@ -1,12 +1,11 @@
 #include "core/grid/resample.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
-#include "core/grid/bilinear_kernel.hpp"
 #include "core/grid/sampling.hpp"
+#include "core/grid/turnable_map.hpp"
 
 namespace roadfix {
 namespace {
@@ -77,29 +76,7 @@ FeatureMap resampled(const FeatureMap& map, double cell_m) {
   return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
 }
 
-FeatureMap rotated(const FeatureMap& map, Angle heading) {
-  const double c = cos(heading);
-  const double s = sin(heading);
-  const auto cols = static_cast<double>(map.cells.cols());
-  const auto rows = static_cast<double>(map.cells.rows());
-  // Farthest corner in each direction decides the size; body right = (c, s), body down = (-s, c) in (col, row).
-  double half_cols = 0.5;
-  double half_rows = 0.5;
-  for (const CellPosition corner : std::array<CellPosition, 4>{{{0, 0}, {cols, 0}, {0, rows}, {cols, rows}}}) {
-    const double right = corner.col - map.nadir.col;
-    const double down = corner.row - map.nadir.row;
-    half_cols = std::max(half_cols, std::abs(c * right - s * down));
-    half_rows = std::max(half_rows, std::abs(s * right + c * down));
-  }
-  const int reach_cols = static_cast<int>(std::ceil(half_cols - 0.5 - 1e-9));
-  const int reach_rows = static_cast<int>(std::ceil(half_rows - 0.5 - 1e-9));
-  const CellPosition centre{reach_cols + 0.5, reach_rows + 0.5};
-  const Placement placement{
-      {map.nadir.col - c * centre.col - s * centre.row, map.nadir.row + s * centre.col - c * centre.row},
-      {c, -s},
-      {s, c}};
-  return {BilinearSource(map.cells).sampled(placement, 2 * reach_cols + 1, 2 * reach_rows + 1), map.cell_m, centre};
-}
+FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }
 
 FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m) {
   assert(cols > 0 && rows > 0 && cell_m > 0.0);

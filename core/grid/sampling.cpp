@@ -28,4 +28,37 @@ Cell bilinear(const CellArray& cells, GridGeometry::CellPosition p) {
   return mean.cell();
 }
 
+namespace {
+
+constexpr double kCell = 1 << SnappedPlacement::kCellBits;
+constexpr int kDroppedBits = SnappedPlacement::kCellBits - SnappedPlacement::kShareBits;
+
+/// Rounded to the nearest; the shift makes the conversion round down below 0 too.
+std::int32_t fixed(double cells) {
+  constexpr std::int64_t kShift = std::int64_t{1} << 40;
+  return static_cast<std::int32_t>(static_cast<std::int64_t>(cells * kCell + 0.5 + static_cast<double>(kShift)) -
+                                   kShift);
+}
+
+}  // namespace
+
+SnappedPlacement::SnappedPlacement(const Placement& placement)
+    : placement_(placement), col_step_(fixed(placement.right.col)), row_step_(fixed(placement.right.row)) {}
+
+SnappedPlacement::Run SnappedPlacement::run_at(int col, int row) const {
+  const int into = col % kRunCells;
+  const GridGeometry::CellPosition start = placement_.source_of(col - into + 0.5, row + 0.5);
+  constexpr std::int32_t kHalf = 1 << (kDroppedBits - 1);
+  return {fixed(start.col + 0.5) + kHalf + into * col_step_, fixed(start.row + 0.5) + kHalf + into * row_step_,
+          col_step_, row_step_};
+}
+
+GridGeometry::CellPosition SnappedPlacement::position_of(int col, int row) const {
+  const Run run = run_at(col, row);
+  const auto snapped = [](std::int32_t at) {
+    return (at >> kDroppedBits) / static_cast<double>(1 << kShareBits) - 0.5;
+  };
+  return {snapped(run.col), snapped(run.row)};
+}
+
 }  // namespace roadfix

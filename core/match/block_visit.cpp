@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <map>
 
-#include "core/grid/resample.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
 
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
-  const FeatureMap turned = rotated(*problem_.search.features, problem_.heading(heading));
+  const FeatureMap turned = problem_.turnable.at(problem_.heading(heading));
   const Footprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(heading, nodes);
   parts = surviving(std::move(parts), above, kBlockCells);

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <span>
 
-#include "core/grid/resample.hpp"
+#include "core/grid/turnable_map.hpp"
 #include "core/match/correlator.hpp"
 #include "core/match/scan_kernel.hpp"
 #include "core/match/scan_means.hpp"
@@ -123,7 +123,7 @@ class Scan {
 
   /// Planes of the footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
   ScanPlanes patch_at(int bin) const {
-    const FeatureMap turned = rotated(features_, request_.bins.heading(bin));
+    const FeatureMap turned = features_.at(request_.bins.heading(bin));
     CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
     paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
           reach_ - static_cast<int>(turned.nadir.row));
@@ -251,7 +251,7 @@ class Scan {
     return buffers;
   }
 
-  const FeatureMap& features_;
+  TurnableMap features_;
   const ScanRequest& request_;
   const Deadline& deadline_;
   const ScanMap& map_;

@@ -1,13 +1,45 @@
 #include "core/match/footprint.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <cstring>
 
 #include "core/grid/resample.hpp"
 
 namespace roadfix {
+namespace {
+
+/// Bits of eight cells that differ from unobserved ones, the first cell's lowest.
+std::uint64_t observed_bits(const Cell* from) {
+  static_assert(kUnobserved == 255 && std::endian::native == std::endian::little);
+  std::uint64_t cells = 0;
+  std::memcpy(&cells, from, sizeof(cells));
+  return ~cells;
+}
+
+std::size_t unobserved_before(std::span<const Cell> row) {
+  std::size_t count = 0;
+  for (; count + 8 <= row.size(); count += 8) {
+    const std::uint64_t bits = observed_bits(&row[count]);
+    if (bits != 0) return count + static_cast<std::size_t>(std::countr_zero(bits)) / 8;
+  }
+  while (count < row.size() && !is_observed(row[count])) ++count;
+  return count;
+}
+
+std::size_t unobserved_after(std::span<const Cell> row) {
+  std::size_t end = row.size();
+  for (; end >= 8; end -= 8) {
+    const std::uint64_t bits = observed_bits(&row[end - 8]);
+    if (bits != 0) return row.size() - end + static_cast<std::size_t>(std::countl_zero(bits)) / 8;
+  }
+  while (end > 0 && !is_observed(row[end - 1])) --end;
+  return row.size() - end;
+}
+
+}  // namespace
 
 Footprint::Footprint(const FeatureMap& north_up) {
   const CellArray& cells = north_up.cells;
@@ -16,38 +48,33 @@ Footprint::Footprint(const FeatureMap& north_up) {
   const int nadir_row = static_cast<int>(std::floor(north_up.nadir.row));
   const std::size_t blocks_of_row = (static_cast<std::size_t>(cells.cols()) + kAlignment - 1) / kAlignment;
   values_.reserve(blocks_of_row * static_cast<std::size_t>(cells.rows()));
-  mask_.reserve(values_.capacity());
   for (int r = 0; r < cells.rows(); ++r) {
     const auto row = cells.row(r);
-    const auto first = std::ranges::find_if(row, is_observed);
-    if (first == row.end()) continue;
-    const auto last = std::find_if(row.rbegin(), row.rend(), is_observed).base();
-    const int first_col = static_cast<int>(first - row.begin()) - nadir_col;
-    const int last_col = first_col + static_cast<int>(last - first) - 1;
-    rows_.push_back({first_col, r - nadir_row, last_col - first_col + 1, values_.size() * kAlignment});
-    add_span({first, last});
+    const std::size_t first = unobserved_before(row);
+    if (first == row.size()) continue;
+    const std::size_t last = row.size() - unobserved_after(row);
+    const int first_col = static_cast<int>(first) - nadir_col;
+    const int last_col = static_cast<int>(last) - 1 - nadir_col;
+    rows_.push_back({first_col, r - nadir_row, static_cast<int>(last - first), values_.size() * kAlignment});
+    values_.resize(values_.size() + (last - first + kAlignment - 1) / kAlignment);
+    std::memcpy(values_.data()->cells + rows_.back().offset, &row[first], last - first);
     reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
   }
+  mask_.resize(values_.size());
+  for (std::size_t i = 0; i < values_.size(); ++i) mask_and_count(values_[i], mask_[i]);
 }
 
-void Footprint::add_span(std::span<const Cell> span) {
-  const std::size_t first_block = values_.size();
-  values_.resize(first_block + (span.size() + kAlignment - 1) / kAlignment);
-  mask_.resize(values_.size());
-  std::uint8_t* values = values_[first_block].cells;
-  std::uint8_t* mask = mask_[first_block].cells;
+/// The block's cells as they came, from which its mask and what it adds to the sums follow.
+void Footprint::mask_and_count(Block& values, Block& mask) {
   // Loops that compilers turn into vectors.
-  for (std::size_t i = 0; i < span.size(); ++i) {
-    mask[i] = is_observed(span[i]) ? 255 : 0;
-    values[i] = span[i] & mask[i];
-  }
   std::uint32_t observed = 0;
   std::uint32_t sum = 0;
   std::uint32_t squares = 0;
-  static_assert(std::uint64_t{kMaxCols} * kRoad * kRoad <= std::numeric_limits<std::uint32_t>::max());
-  for (std::size_t i = 0; i < span.size(); ++i) {
-    const std::uint32_t value = values[i];
-    observed += mask[i] & 1U;
+  for (std::size_t i = 0; i < kAlignment; ++i) {
+    mask.cells[i] = is_observed(values.cells[i]) ? 255 : 0;
+    values.cells[i] &= mask.cells[i];
+    const std::uint32_t value = values.cells[i];
+    observed += mask.cells[i] & 1U;
     sum += value;
     squares += value * value;
   }
@@ -66,5 +93,7 @@ Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::
   shifted.nadir.row -= -s * offset.col + c * offset.row;
   return Footprint(rotated(shifted, grid_heading));
 }
+
+Footprint footprint_at(const TurnableMap& map, Angle grid_heading) { return Footprint(map.at(grid_heading)); }
 
 }  // namespace roadfix

@@ -1,12 +1,14 @@
 // A feature map turned to grid north-up, packed for the matching kernel.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
+#include "core/grid/turnable_map.hpp"
 
 namespace roadfix {
 
@@ -42,11 +44,11 @@ class Footprint {
 
  private:
   struct alignas(kAlignment) Block {
-    std::uint8_t cells[kAlignment] = {};
+    Block() { std::fill_n(cells, kAlignment, kUnobserved); }
+    Cell cells[kAlignment];
   };
 
-  /// The cells of a row from the first to the last observed one.
-  void add_span(std::span<const Cell> span);
+  void mask_and_count(Block& values, Block& mask);
 
   std::vector<Row> rows_;
   std::vector<Block> values_;
@@ -60,5 +62,7 @@ class Footprint {
 /// The footprint of a feature map at a grid heading, with its nadir `offset` from the centre of a cell (cells, each
 /// component within +-0.5): exact to sub-cell by resampling.
 Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
+/// With its nadir in the middle of a cell.
+Footprint footprint_at(const TurnableMap& map, Angle grid_heading);
 
 }  // namespace roadfix

@@ -4,8 +4,6 @@
 #include <atomic>
 #include <limits>
 
-#include "core/grid/resample.hpp"
-
 namespace roadfix {
 
 bool HeadingSectors::turn(const Deadline& deadline) {
@@ -21,7 +19,7 @@ bool HeadingSectors::turn(const Deadline& deadline) {
       return;
     }
     const Angle heading = problem_.heading(at);
-    turned_[at].emplace(rotated(*search.features, heading), heading, problem_.base, hints, problem_.map.span(),
+    turned_[at].emplace(problem_.turnable.at(heading), heading, problem_.base, hints, problem_.map.span(),
                         problem_.map.all_observed());
   });
   if (!whole) return false;

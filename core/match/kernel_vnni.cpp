@@ -59,12 +59,13 @@ ROADFIX_VNNI inline __m512i less_128(__m512i bytes) { return _mm512_xor_si512(by
 struct Place {
   const std::uint8_t* nadir = nullptr;
   __m512i m, mm, ml;
+  __m512i hidden_l, hidden_ll;  ///< where the map has not observed: taken out of what the sums begin with
   IntegerSums sums;
 
-  ROADFIX_VNNI Place() : m(_mm512_setzero_si512()), mm(m), ml(m) {}
+  ROADFIX_VNNI Place() : m(_mm512_setzero_si512()), mm(m), ml(m), hidden_l(m), hidden_ll(m) {}
   ROADFIX_VNNI void start(const std::uint8_t* cell, const Footprint& footprint) {
     nadir = cell;
-    m = mm = ml = _mm512_setzero_si512();
+    m = mm = ml = hidden_l = hidden_ll = _mm512_setzero_si512();
     sums = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
   }
   ROADFIX_VNNI void add(const Piece& piece, const std::uint8_t* values, __m512i l) {
@@ -77,21 +78,21 @@ struct Place {
     mm = _mm512_dpbusd_epi32(mm, cells, signed_cells);
     ml = _mm512_dpbusd_epi32(ml, l, signed_cells);
   }
-  /// Takes cells that the map has not observed out of what the sums began with.
   ROADFIX_VNNI __m512i without(__mmask64 hidden, __m512i cells, const std::uint8_t* values) {
     const __m512i l = _mm512_maskz_loadu_epi8(hidden, values);
-    __m512i l_sum = _mm512_dpbusd_epi32(_mm512_setzero_si512(), l, _mm512_set1_epi8(1));
-    __m512i ll = _mm512_dpbusd_epi32(_mm512_setzero_si512(), l, less_128(l));
-    const std::int64_t hidden_l = emptied(l_sum);
+    hidden_l = _mm512_dpbusd_epi32(hidden_l, l, _mm512_set1_epi8(1));
+    hidden_ll = _mm512_dpbusd_epi32(hidden_ll, l, less_128(l));
     sums.n -= _mm_popcnt_u64(hidden);
-    sums.l -= hidden_l;
-    sums.ll -= emptied(ll) + 128 * hidden_l;
     return _mm512_maskz_mov_epi8(static_cast<__mmask64>(~hidden), cells);
   }
-  ROADFIX_VNNI void flush() {
+  ROADFIX_VNNI void flush(std::int64_t all) {
     sums.m += emptied(m);
     sums.mm += emptied(mm);
     sums.ml += emptied(ml);
+    if (sums.n == all) return;
+    const std::int64_t l = emptied(hidden_l);
+    sums.l -= l;
+    sums.ll -= emptied(hidden_ll) + 128 * l;
   }
 };
 
@@ -108,7 +109,7 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::s
       const __m512i l = _mm512_load_si512(values);
       for (std::size_t k = 0; k < kPlaces; ++k) places[k].add(pieces[i], values, l);
     }
-    for (Place& place : places) place.flush();
+    for (Place& place : places) place.flush(footprint.observed_cells());
   }
   for (std::size_t k = 0; k < kPlaces; ++k) {
     IntegerSums& sums = places[k].sums;

@@ -43,6 +43,7 @@ GridPose Level::pose_of(const LatticePose& pose) const {
 
 LevelFeatures::LevelFeatures(FeatureMap features, double least_share)
     : map(std::move(features)),
+      turnable(map),
       full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
       least_cells(std::max(1.0, least_share * static_cast<double>(full_cells))) {}
 
@@ -94,7 +95,7 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
       return;
     }
     Task& task = tasks[static_cast<std::size_t>(t)];
-    const Footprint footprint = footprint_at(task.features->map, level.bins.heading(task.bin));
+    const Footprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
     for (const std::size_t i : *task.candidates) {
       const std::vector<MatchSums> sums = sums_around(planes[i], footprint, cells);
       LatticePose best{candidates[i].cell, task.bin, 0.0, task.scale};
@@ -128,7 +129,7 @@ Peak peak_around(const Level& level, const LatticePose& pose) {
   Peak peak;
   for (int d = 0; d < kPeakSize; ++d) {
     const Footprint footprint =
-        footprint_at(features.map, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
+        footprint_at(features.turnable, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
     const std::vector<MatchSums> sums = sums_around(plane, footprint, kPeakRadius);
     for (int row = 0; row < kPeakSize; ++row) {
       for (int col = 0; col < kPeakSize; ++col) {

@@ -1,7 +1,8 @@
 #include "core/locate/binned_matches.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <numeric>
+#include <utility>
 
 #include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
@@ -15,6 +16,33 @@ constexpr int kBlockBits = 10;  // poses in a block of 1024 x 1024 cells share o
 
 std::pair<int, int> block_of(const BinnedPose& pose) {
   return {pose.cell.col >> kBlockBits, pose.cell.row >> kBlockBits};
+}
+
+/// In the order of their keys, 0 to keys - 1; those of a key in the order that they had.
+template <typename KeyOf>
+std::vector<BinnedPose> by_key(std::span<const BinnedPose> poses, std::size_t keys, KeyOf key_of) {
+  std::vector<std::size_t> next(keys + 1, 0);
+  for (const BinnedPose& pose : poses) ++next[key_of(pose) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<BinnedPose> result(poses.size());
+  for (const BinnedPose& pose : poses) result[next[key_of(pose)]++] = pose;
+  return result;
+}
+
+/// Block by block, and within a block heading by heading.
+std::vector<BinnedPose> in_order(std::span<const BinnedPose> poses, const HeadingBins& bins) {
+  std::vector<std::pair<int, int>> blocks;
+  for (const BinnedPose& pose : poses) {
+    if (blocks.empty() || block_of(pose) != blocks.back()) blocks.push_back(block_of(pose));
+  }
+  std::ranges::sort(blocks);
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  auto sorted = by_key(poses, static_cast<std::size_t>(bins.count()),
+                       [](const BinnedPose& pose) { return static_cast<std::size_t>(pose.bin); });
+  if (blocks.size() < 2) return sorted;
+  return by_key(sorted, blocks.size(), [&](const BinnedPose& pose) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(blocks, block_of(pose)) - blocks.begin());
+  });
 }
 
 /// Runs of equal neighbours.
@@ -46,20 +74,20 @@ GridGeometry around(std::span<const BinnedPose> poses, double cell_m, int reach)
 }  // namespace
 
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
-                  std::vector<BinnedPose> poses, int threads, const std::stop_token& stop, std::span<MatchSums> sums) {
+                  std::span<const BinnedPose> poses, int threads, const std::stop_token& stop,
+                  std::span<MatchSums> sums) {
   const int reach = footprint_reach(features);
+  const TurnableMap turnable(features);
   const Deadline deadline(stop, {});
-  std::ranges::sort(poses, [](const BinnedPose& a, const BinnedPose& b) {
-    return std::tuple(block_of(a), a.bin, a.index) < std::tuple(block_of(b), b.bin, b.index);
-  });
-  for (const auto block : runs(poses, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
+  const std::vector<BinnedPose> sorted = in_order(poses, bins);
+  for (const auto block : runs(sorted, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
     const GridGeometry window = around(block, features.cell_m, reach);
     const MapPlane plane(map.read(window).cells, 0);
     const auto by_bin = runs(block, [](const auto& a, const auto& b) { return a.bin == b.bin; });
     parallel_for(static_cast<int>(by_bin.size()), threads, [&](int task) {
       deadline.check();
       const auto members = by_bin[static_cast<std::size_t>(task)];
-      const Footprint footprint = footprint_at(features, bins.heading(members.front().bin));
+      const Footprint footprint = footprint_at(turnable, bins.heading(members.front().bin));
       std::vector<PlaneCell> places;
       for (const BinnedPose& pose : members) {
         places.push_back({pose.cell.col - window.origin.col, pose.cell.row - window.origin.row});

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "core/geodesy/local_projection.hpp"
 #include "core/locate/binned_matches.hpp"
@@ -77,7 +76,7 @@ void match_in_bins(const MapView& map, const FeatureMap& features, std::span<con
     const double turned = query.heading.compass_degrees() / 360.0 * bins.count();
     binned.push_back({query.cell, bins.wrapped(static_cast<int>(std::round(turned))), query.index});
   }
-  match_binned(map, features, bins, std::move(binned), options.threads, options.stop, sums);
+  match_binned(map, features, bins, binned, options.threads, options.stop, sums);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::vector<MatchSums> match_particles(const MapView& map, const FeatureMap& fea
     poses.push_back({cell, bins.wrapped(static_cast<int>(std::lround(turned))), i});
   }
   std::vector<MatchSums> sums(p.size());
-  match_binned(map, features, bins, std::move(poses), threads, stop, sums);
+  match_binned(map, features, bins, poses, threads, stop, sums);
   return sums;
 }
 

@@ -30,11 +30,24 @@ double spread_of(const CellArray& cells) {
   return n > 0.0 ? squares / n - (sum / n) * (sum / n) : 0.0;
 }
 
+// 16 patches of 15 m that err independently of each other. On less, one place always fits far better than the others,
+// and what tells chance from more than chance no longer holds.
+constexpr double kLeastGroundM2 = 60.0 * 60.0;
+
 /// Sets status and reason and returns true where the feature map alone tells that there is nothing to search for.
 bool hopeless(const FeatureMap& features, Fix& fix) {
-  if (features.cells.observed_count() == 0) {
+  const double ground_m2 = features.cell_m * features.cell_m * static_cast<double>(features.cells.observed_count());
+  if (ground_m2 == 0.0) {
     fix.reason = "footprint-unobserved";
     fix.explanation = "no cell of the feature map was observed: the frame showed no ground";
+    return true;
+  }
+  if (ground_m2 < kLeastGroundM2) {
+    fix.reason = "footprint-too-small";
+    fix.explanation = fmt::format(
+        "the frame shows {:.0f} m2 of ground, less than the {:.0f} m2 from which roads tell places apart: check its "
+        "scale (metres per pixel or cell), fly higher, or lay several frames together",
+        ground_m2, kLeastGroundM2);
     return true;
   }
   if (spread_of(features.cells) < kLeastSpread) {

@@ -135,6 +135,20 @@ TEST_F(Locate, SaysWhyAFeatureMapCannotTell) {
   EXPECT_TRUE(unseen.modes.empty());
 }
 
+TEST_F(Locate, NeverPlacesAPatchOfGroundAsSmallAsAYard) {
+  for (const int side : {1, 4, 5, 10, 20, 29}) {
+    const GridPose pose = pose_within(view_.extent, 300.0, random_);
+    CellArray cells = cut_out(map_, pose, side, side, 2.0).cells;
+    cells.at(0, 0) = kRoad;
+    const Fix fix = locate(view_, FeatureMap::centred(std::move(cells), 2.0), {}, {});
+    EXPECT_EQ(fix.status, FixStatus::kNoFix) << side;
+    EXPECT_EQ(fix.reason, "footprint-too-small") << side;
+  }
+  CellArray mostly_dark(200, 200);
+  paste(cut_out(map_, pose_within(view_.extent, 300.0, random_), 20, 20, 2.0).cells, mostly_dark, 90, 90);
+  EXPECT_EQ(locate(view_, FeatureMap::centred(std::move(mostly_dark), 2.0), {}, {}).reason, "footprint-too-small");
+}
+
 TEST_F(Locate, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {
   CellArray field(160, 160, kNoRoad);
   for (int row = 60; row < 100; ++row) field.at(80, row) = field.at(81, row) = kRoad;

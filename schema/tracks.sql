@@ -11,7 +11,8 @@ CREATE TABLE IF NOT EXISTS tracks (
   touched_us  INTEGER NOT NULL,        -- created, or the last step
   ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
   counters    TEXT NOT NULL DEFAULT '',-- JSON: the tracker's state beside the particles
-  particles   BLOB                     -- core/filter/particle_bytes
+  particles   BLOB,                    -- core/filter/particle_bytes
+  frames      BLOB                     -- core/locate/recent_frames, since version 2
 ) WITHOUT ROWID;
 
 CREATE TABLE IF NOT EXISTS steps (

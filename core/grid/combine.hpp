@@ -14,11 +14,15 @@ struct BodyOffset {
   double forward_m = 0.0;
   double right_m = 0.0;
   Angle turn;
+
+  friend bool operator==(const BodyOffset&, const BodyOffset&) = default;
 };
 
 struct PlacedFeatures {
   FeatureMap features;
   BodyOffset offset;  ///< zero for the reference frame
+
+  friend bool operator==(const PlacedFeatures&, const PlacedFeatures&) = default;
 };
 
 /// One feature map in the body frame of the reference, its nadir the reference's, just large enough for all parts.

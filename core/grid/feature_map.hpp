@@ -19,6 +19,8 @@ struct FeatureMap {
     const GridGeometry::CellPosition centre{cells.cols() / 2.0, cells.rows() / 2.0};
     return {std::move(cells), cell_m, centre};
   }
+
+  friend bool operator==(const FeatureMap&, const FeatureMap&) = default;
 };
 
 }  // namespace roadfix

@@ -39,6 +39,8 @@ struct GridGeometry {
   struct CellPosition {
     double col = 0.0;
     double row = 0.0;
+
+    friend bool operator==(const CellPosition&, const CellPosition&) = default;
   };
   CellPosition position_of(GridPoint point) const;
   GridPoint point_at(CellPosition position) const;

@@ -147,10 +147,14 @@ class Tracker::Step {
       filter_.start_uniformly(tracker_.start_);
       state_.started = true;
     }
-    if (features_) measure();
+    if (features_) {
+      measure();
+      if (may_search()) state_.recent.keep(*features_);
+    }
     state_.sequence = input_.sequence;
     state_.time_us = input_.time_us;
     describe();
+    if (estimate_.converged) state_.recent.clear();
     state_.filter = filter_.state();
     return {std::move(state_), std::move(estimate_)};
   }
@@ -176,9 +180,21 @@ class Tracker::Step {
     if (seconds() > static_cast<double>(settings_.longest_gap.count())) {
       filter_.start_uniformly(tracker_.region_);
       forget_support();
+      state_.recent.clear();
       return;
     }
     if (!moved()) forget_support();
+  }
+
+  bool may_search() const { return settings_.recovers || settings_.start == TrackStart::kSearch; }
+
+  /// Only where the odometry tells how the ground below goes on.
+  void carry_on(const Odometry& odometry, const OdometryCovariance& covariance) {
+    if (settings_.vehicle.wind_walk > 0.0 || estimate_.missed_steps > 0) {
+      state_.recent.clear();
+    } else {
+      state_.recent.move(odometry, covariance);
+    }
   }
 
   /// False where the belief left the region and began anew.
@@ -187,11 +203,13 @@ class Tracker::Step {
     if (input_.odometry) {
       const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
       const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind_walk);
+      carry_on(*input_.odometry, told);
       if (estimate_.missed_steps == 0) return filter_.predict(as_told);
       const auto [odometry, covariance] =
           with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
       return filter_.predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind_walk));
     }
+    state_.recent.clear();
     if (vehicle.planar) {
       return filter_.predict(
           PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind_walk});
@@ -279,7 +297,7 @@ class Tracker::Step {
     options.calibration = settings_.calibration;
     state_.last_search = state_.measured;
     try {
-      Fix fix = locate(tracker_.map_, *features_, prior, options);
+      Fix fix = locate(tracker_.map_, state_.recent.laid_around(*features_), prior, options);
       if (fix.complete) {
         state_.compared = state_.compared || fix.status != FixStatus::kNoFix;
         return fix;

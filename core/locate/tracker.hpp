@@ -19,6 +19,7 @@
 #include "core/locate/evidence.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/map_view.hpp"
+#include "core/locate/recent_frames.hpp"
 
 namespace roadfix {
 
@@ -84,6 +85,9 @@ struct TrackerState {
   /// Log of the odds that the measurements gave the belief against chance, since they last spoke against it.
   double evidence = 0.0;
   std::optional<std::int64_t> accepted_time_us;
+  /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
+  /// before a kidnapping is not laid with what is seen after it.
+  RecentFrames recent;
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };
 

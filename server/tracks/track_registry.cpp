@@ -178,7 +178,9 @@ std::shared_ptr<TrackRegistry::Live> TrackRegistry::loaded(const StoredTrack& tr
 TrackerState TrackRegistry::stored_state(const std::string& id) const {
   const StoredState stored = store().state(id);
   if (stored.counters.empty()) return {};
-  return api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
+  TrackerState state = api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
+  state.recent = RecentFrames::of_bytes(stored.frames);
+  return state;
 }
 
 std::shared_ptr<TrackRegistry::Live> TrackRegistry::live(const std::string& id) {
@@ -246,8 +248,9 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   answer["track"] = id;
   std::string text = text_of(answer);
   track->doubtful = true;
-  if (!store().add_step(id, now_us(), {text_of(api::counters_json(result.state)), to_bytes(result.state.filter)},
-                        {input.sequence, digest, text})) {
+  const StoredState state{text_of(api::counters_json(result.state)), to_bytes(result.state.filter),
+                          result.state.recent.to_bytes()};
+  if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {
     throw track_ended(id, "finished");
   }
   track->doubtful = false;

@@ -15,7 +15,7 @@ namespace {
 constexpr int kBusyTimeoutMs = 500;
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 /// The map store's names of what SQLite may refuse, in the terms of this store.
@@ -79,6 +79,7 @@ class TrackStore::Impl {
     with([&] {
       sqlite::Transaction transaction(*connection_, sqlite::Transaction::Kind::kWrite);
       connection_->execute(std::string(schema::tracks_sql()).c_str());
+      if (version == 1) connection_->execute("ALTER TABLE tracks ADD COLUMN frames BLOB");
       connection_->execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());  // and sees that it can write
       transaction.commit();
     });
@@ -126,12 +127,14 @@ std::optional<StoredTrack> TrackStore::find(const std::string& id) const {
 
 StoredState TrackStore::state(const std::string& id) const {
   return impl_->with([&] {
-    sqlite::Statement rows(impl_->connection(), "SELECT counters, particles FROM tracks WHERE id = ?1");
+    sqlite::Statement rows(impl_->connection(), "SELECT counters, particles, frames FROM tracks WHERE id = ?1");
     StoredState state;
     if (rows.with(id).step()) {
       state.counters = rows.text(0);
-      const auto bytes = rows.blob(1);
-      state.particles.assign(bytes.begin(), bytes.end());
+      const auto particles = rows.blob(1);
+      state.particles.assign(particles.begin(), particles.end());
+      const auto frames = rows.blob(2);
+      state.frames.assign(frames.begin(), frames.end());
     }
     return state;
   });
@@ -152,10 +155,12 @@ bool TrackStore::add_step(const std::string& id, std::int64_t now_us, const Stor
                           const StoredStep& step) {
   return impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    sqlite::Statement update(impl_->connection(),
-                             "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4 WHERE id = ?1 AND ended "
-                             "= '' RETURNING 1");
-    update.with(id, now_us, state.counters, std::span<const std::byte>(state.particles));
+    sqlite::Statement update(
+        impl_->connection(),
+        "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4, frames = ?5 WHERE id = ?1 "
+        "AND ended = '' RETURNING 1");
+    update.with(id, now_us, state.counters, std::span<const std::byte>(state.particles),
+                std::span<const std::byte>(state.frames));
     if (!update.step()) return false;
     update.reset();
     sqlite::Statement(impl_->connection(),
@@ -199,7 +204,7 @@ void TrackStore::end(const std::string& id, const std::string& how) {
   impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
     sqlite::Statement(impl_->connection(),
-                      "UPDATE tracks SET ended = ?2, counters = '', particles = NULL WHERE id = ?1")
+                      "UPDATE tracks SET ended = ?2, counters = '', particles = NULL, frames = NULL WHERE id = ?1")
         .with(id, how)
         .run();
     sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();

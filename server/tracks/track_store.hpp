@@ -29,6 +29,7 @@ struct StoredTrack {
 struct StoredState {
   std::string counters;  ///< JSON; empty before the first step
   std::vector<std::byte> particles;
+  std::vector<std::byte> frames;
 };
 
 struct StoredStep {

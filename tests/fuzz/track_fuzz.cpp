@@ -1,5 +1,6 @@
 // Tracks: what begins one, their steps, and what a damaged store hands back.
-// The first byte chooses: 't' JSON of a track, 's' JSON of a step, 'c' stored counters, 'p' stored particles.
+// The first byte chooses: 't' JSON of a track, 's' JSON of a step, 'c' stored counters, 'p' stored particles,
+// 'f' stored frames.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "core/filter/particle_bytes.hpp"
+#include "core/locate/recent_frames.hpp"
 #include "core/units/error.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/position_answer.hpp"
@@ -38,6 +40,10 @@ void read(char kind, const std::string& body) {
     // Whatever is taken can be written again as it was.
     const roadfix::FilterState state = roadfix::filter_state_of(bytes);
     if (!std::ranges::equal(roadfix::to_bytes(state), bytes)) std::abort();
+  }
+  if (kind == 'f') {
+    const auto bytes = std::as_bytes(std::span(body));
+    if (!std::ranges::equal(roadfix::RecentFrames::of_bytes(bytes).to_bytes(), bytes)) std::abort();
   }
 }
 

@@ -22,11 +22,12 @@ class Flight {
     input.sequence = sequence_++;
     input.time_us = 1'000'000 * (input.sequence + 1);
     if (input.sequence > 0) input.odometry = move();
-    if (sees) input.features = observed_at(map_, pose_, 128, 128, 2.0, noise, random_);
+    if (sees) input.features = observed_at(map_, pose_, side_cells, side_cells, 2.0, noise, random_);
     return input;
   }
 
   DetectorNoise noise{0.15, 0.15};
+  int side_cells = 128;
 
  private:
   Odometry move() {

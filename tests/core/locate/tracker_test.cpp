@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/grid/resample.hpp"
@@ -213,6 +214,52 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
   }
   EXPECT_GE(recovered, 0);
   EXPECT_LT(recovered, 40);
+}
+
+TEST_F(Track, IsFoundByItsLastFramesTogetherWhereEachShowsTooLittle) {
+  TrackSettings few = settings();
+  few.filter.max_particles = 800;  // too few to find the place without a search
+  const Tracker tracker(view_, few);
+  int found = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    Flight flight(map_, start_, seed);
+    flight.side_cells = 28;
+    TrackerState state;
+    TrackEstimate last;
+    for (int i = 0; i < 40; ++i) {
+      StepResult result = tracker.advance(state, flight.step());
+      state = std::move(result.state);
+      last = std::move(result.estimate);
+      EXPECT_TRUE(!last.converged || error_m(last, flight.pose()) < 25.0) << "seed " << seed << ", step " << i;
+    }
+    found += error_m(last, flight.pose()) < 25.0 ? 1 : 0;
+  }
+  EXPECT_GE(found, 3) << "one, when each search has a single frame";
+}
+
+TEST_F(Track, KeepsItsLastFramesWhileItIsNotPlacedAndKnowsHowItMoved) {
+  const RoadGrid elsewhere = testing::street_map(52, map_.geometry);
+  const auto kept = [&](const RoadGrid& ground, const TrackSettings& s, const std::function<void(StepInput&)>& change) {
+    const Tracker tracker(view_, s);
+    Flight flight(ground, start_, 6);
+    TrackerState state;
+    for (int i = 0; i < 9; ++i) {
+      StepInput step = flight.step();
+      if (i == 8) change(step);
+      state = tracker.advance(state, step).state;
+    }
+    return state.recent.frames().size();
+  };
+  const auto as_it_is = [](StepInput&) {};
+  EXPECT_EQ(kept(elsewhere, settings(), as_it_is), 3U);
+  EXPECT_EQ(kept(map_, settings(), as_it_is), 0U) << "it is placed";
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.odometry.reset(); }), 1U);
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.sequence += 1; }), 1U) << "a step was lost";
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.time_us += 601'000'000; }), 1U);
+  TrackSettings blown = settings();
+  blown.vehicle.wind_walk = 0.1;
+  EXPECT_EQ(kept(elsewhere, blown, as_it_is), 1U) << "the wind may have carried it anywhere";
+  EXPECT_EQ(kept(elsewhere, TrackSettings::paper(500), as_it_is), 0U) << "it never searches";
 }
 
 TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {

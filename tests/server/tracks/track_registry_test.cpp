@@ -110,6 +110,7 @@ TEST_F(TrackRegistryTest, SaysThatTheStoredStateIsDamaged) {
     return code_of([&] { take(*tracks, id, 1); });
   };
   EXPECT_EQ(damaged_by("UPDATE tracks SET particles = zeroblob(200)"), "filter-state-corrupt");
+  EXPECT_EQ(damaged_by("UPDATE tracks SET frames = zeroblob(64)"), "track-frames-corrupt");
   EXPECT_EQ(damaged_by("UPDATE tracks SET counters = '{'"), "track-store-corrupt");
   EXPECT_EQ(damaged_by("UPDATE tracks SET counters = '{}'"), "track-store-corrupt");
   EXPECT_EQ(damaged_by("UPDATE tracks SET request = 'nothing'"), "track-store-corrupt");
@@ -141,6 +142,30 @@ TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
   };
   EXPECT_TRUE(accepted("sure.sqlite", nullptr));
   EXPECT_FALSE(accepted("doubtful.sqlite", std::make_shared<const Calibration>(doubtful)));
+}
+
+TEST_F(TrackRegistryTest, SearchesOverTheSameFramesAfterARestart) {
+  // Of another town, so that the track is never placed: its eleventh frame is searched with those before it.
+  const RoadGrid elsewhere = testing::street_map(99, town_.geometry);
+  const auto flight = [&](const char* file, bool restarts) {
+    std::mt19937_64 random(3);
+    auto tracks = registry({}, file);
+    const std::string id = tracks->create("::1", R"({"map": "town", "particles": 500, "seed": 9})").id;
+    std::vector<std::string> answers;
+    for (int i = 0; i < 12; ++i) {
+      StepInput step = step_of(i);
+      step.features = testing::observed_at(elsewhere, {{600'300.0 + 20.0 * i, 6'399'900.0}, Angle::degrees(90.0)}, 100,
+                                           100, 2.0, {0.1, 0.1}, random);
+      json answer = json::parse(tracks->step(id, step, i, {}));
+      answer.erase("track");
+      answers.push_back(answer.dump());
+      if (!restarts) continue;
+      tracks.reset();
+      tracks = registry({}, file);
+    }
+    return answers;
+  };
+  EXPECT_EQ(flight("undisturbed.sqlite", false), flight("restarted.sqlite", true));
 }
 
 TEST_F(TrackRegistryTest, LimitsTheTracksOfAClientAndOfAll) {

@@ -17,7 +17,7 @@ constexpr std::int64_t kPlenty = std::int64_t{1} << 30;
 
 StoredTrack track(const std::string& id) { return {id, "::1", "{}", "town", "v1", 1, 1, ""}; }
 
-StoredState state(std::size_t bytes) { return {"{}", std::vector<std::byte>(bytes, std::byte{7})}; }
+StoredState state(std::size_t bytes) { return {"{}", std::vector<std::byte>(bytes, std::byte{7}), {}}; }
 
 TEST(TrackStore, KeepsTracksAndStepsWhenItIsOpenedAgain) {
   const testing::TemporaryFolder folder;
@@ -26,19 +26,40 @@ TEST(TrackStore, KeepsTracksAndStepsWhenItIsOpenedAgain) {
     store.add(track("a"));
     store.add(track("b"));
     for (const std::int64_t sequence : {3, 4, 9}) {
-      EXPECT_TRUE(store.add_step("a", 10 + sequence, state(100), {sequence, 77, "answer " + std::to_string(sequence)}));
+      StoredState with_frames = state(100);
+      with_frames.frames.assign(3, std::byte{9});
+      EXPECT_TRUE(
+          store.add_step("a", 10 + sequence, with_frames, {sequence, 77, "answer " + std::to_string(sequence)}));
     }
   }
   const TrackStore store(folder / "tracks.sqlite", kPlenty);
   EXPECT_EQ(store.flying().size(), 2U);
   EXPECT_EQ(store.find("a")->touched_us, 19);
   EXPECT_EQ(store.state("a").particles, state(100).particles);
+  EXPECT_EQ(store.state("a").frames, std::vector<std::byte>(3, std::byte{9}));
   EXPECT_TRUE(store.state("b").counters.empty());
   EXPECT_EQ(store.last_step("a")->answer, "answer 9");
   EXPECT_EQ(store.step("a", 4)->answer, "answer 4");
   EXPECT_FALSE(store.step("a", 5));
   EXPECT_EQ(store.steps_after("a", 3, 10).size(), 2U);
   EXPECT_EQ(store.steps_after("a", -1, 1).front().sequence, 3);
+}
+
+/// As version 0.1 with user_version 1 wrote it.
+TEST(TrackStore, GoesOnWithTracksThatWereStoredWithoutFrames) {
+  const testing::TemporaryFolder folder;
+  sqlite::Connection(folder / "tracks.sqlite", sqlite::Access::kCreate)
+      .execute(
+          "PRAGMA user_version = 1; CREATE TABLE tracks (id TEXT PRIMARY KEY NOT NULL, client TEXT NOT NULL, request "
+          "TEXT NOT NULL, map TEXT NOT NULL, map_version TEXT NOT NULL, created_us INTEGER NOT NULL, touched_us "
+          "INTEGER NOT NULL, ended TEXT NOT NULL DEFAULT '', counters TEXT NOT NULL DEFAULT '', particles BLOB) "
+          "WITHOUT ROWID; INSERT INTO tracks VALUES ('old', '::1', '{}', 'town', 'v1', 1, 1, '', '{}', x'0707')");
+  for (int i = 0; i < 2; ++i) {
+    TrackStore store(folder / "tracks.sqlite", kPlenty);
+    EXPECT_EQ(store.state("old").particles, state(2).particles);
+    EXPECT_TRUE(store.state("old").frames.empty());
+    EXPECT_TRUE(store.add_step("old", 2 + i, state(2), {i, 0, "answer"}));
+  }
 }
 
 TEST(TrackStore, TakesNoStepOfATrackThatEnded) {
@@ -112,7 +133,7 @@ TEST(TrackStore, SaysWhyItCannotBeOpened) {
   std::ofstream(folder / "noise.sqlite") << std::string(8192, 'x');
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "noise.sqlite", kPlenty); }), "track-store-corrupt");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); }), "track-store-unavailable");
-  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 2");
+  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 3");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
 }
 

@@ -31,6 +31,7 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {
   constexpr double kFarthestGroundM = 3000.0;
   if (options.gsd_m > 0.0) {
+    require_roads_visible(options.gsd_m);
     return rectified(frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen));
   }
   constexpr double kAnyGsd = 1.0;  // follows from the camera
@@ -40,7 +41,9 @@ GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, cons
   camera.agl_m = options.agl_m;
   camera.roll = Angle::degrees(options.roll_deg);
   camera.pitch = Angle::degrees(options.pitch_deg);
-  const double gsd_m = std::max(nominal_gsd_m(camera, frame.pixels.size()), 0.5 * detector.preferred_gsd_m());
+  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
+  require_roads_visible(nominal_m);
+  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
   return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(kMostPixels));
 }
 

@@ -130,14 +130,23 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
   return view;
 }
 
+void require_roads_visible(double gsd_m) {
+  if (gsd_m <= kCoarsestGsdM) return;
+  throw InvalidInput("frame-too-coarse",
+                     fmt::format("frame: pixels of {:.3g} m do not show roads, {} m is the most: check the metres per "
+                                 "pixel, or the field of view and the altitude",
+                                 gsd_m, kCoarsestGsdM));
+}
+
 double nominal_gsd_m(const FrameCamera& camera, cv::Size size) {
   validate(camera);
   return camera.agl_m / focal_px(camera, size);
 }
 
-FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed) {
+FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,
+                           const std::stop_token& stop) {
   const double cells_per_px = view.image.gsd_m / cell_m;
-  return {detector.detect(view.image, cell_m, seed),
+  return {detector.detect(view.image, cell_m, seed, stop),
           cell_m,
           {view.nadir_px.x * cells_per_px, view.nadir_px.y * cells_per_px}};
 }

@@ -43,11 +43,17 @@ std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Size size, c
 GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const FrameCamera& camera, double gsd_m,
                    double max_range_m, double max_pixels);
 
+/// Pixels wider than most roads do not show them, and a picture of such pixels is mostly a mistaken number.
+inline constexpr double kCoarsestGsdM = 5.0;
+/// Throws InvalidInput ("frame-too-coarse") above kCoarsestGsdM.
+void require_roads_visible(double gsd_m);
+
 /// Ground sample distance straight below the UAV with the camera level.
 double nominal_gsd_m(const FrameCamera& camera, cv::Size size);
 
-/// The view's roads in cells of `cell_m`.
-FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed);
+/// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.
+FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,
+                           const std::stop_token& stop = {});
 
 /// A frame that is already a metric picture of the ground, seen straight from above.
 GroundView rectified(GroundImage image);

@@ -138,14 +138,17 @@ void NeuralRoadDetector::check_shape(const std::filesystem::path& model) const {
 
 NeuralRoadDetector::~NeuralRoadDetector() = default;
 
-CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t /*seed*/) const {
+CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t /*seed*/,
+                                     const std::stop_token& stop) const {
   const NetworkPicture picture = network_picture(image, network_);
   const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride, network_.multiple};
   cv::Mat mean;
   for (int k = 0; k < options_.orientations; ++k) {
     const cv::Mat pixels = oriented(picture.pixels, k);
-    const cv::Mat answer = blend_tiles(oriented(picture.observed, k), plan,
-                                       [&](const cv::Rect& tile) { return nets_->forward(pixels(tile)); });
+    const cv::Mat answer = blend_tiles(oriented(picture.observed, k), plan, [&](const cv::Rect& tile) {
+      require_time(stop);
+      return nets_->forward(pixels(tile));
+    });
     const cv::Mat back = upright(answer, k);
     mean = mean.empty() ? back.clone() : cv::Mat(mean + back);
   }

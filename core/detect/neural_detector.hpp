@@ -25,7 +25,9 @@ class NeuralRoadDetector : public RoadDetector {
   explicit NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options = {});
   ~NeuralRoadDetector() override;
 
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const override;
+  using RoadDetector::detect;
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                   const std::stop_token& stop) const override;
   double preferred_gsd_m() const override;
   double halo_m() const override;
   std::string describe() const override;

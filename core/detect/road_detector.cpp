@@ -3,7 +3,16 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/units/error.hpp"
+
 namespace roadfix {
+
+void require_time(const std::stop_token& stop) {
+  if (!stop.stop_requested()) return;
+  throw Interrupted("detection-interrupted",
+                    "time was over before the roads of the whole picture were found: send one that shows less ground, "
+                    "or check its metres per pixel");
+}
 
 cv::Mat observed_cells(const GroundImage& image, double cell_m) {
   const double step = cell_m / image.gsd_m;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <stop_token>
 #include <string>
 
 #include "core/grid/cell_array.hpp"
@@ -22,8 +23,13 @@ class RoadDetector {
 
   /// Road probability in cells of `cell_m`: ceil(cols * gsd / cell_m) x ceil(rows * gsd / cell_m) cells, the first at
   /// the image's first corner. A cell is unobserved where less than half of its pixels were seen. Safe to call from
-  /// several threads; equal input and seed give equal cells.
-  virtual CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const = 0;
+  /// several threads; equal input and seed give equal cells. Throws Interrupted ("detection-interrupted") some tenths
+  /// of a second after `stop` is requested.
+  virtual CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                           const std::stop_token& stop) const = 0;
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const {
+    return detect(image, cell_m, seed, {});
+  }
 
   /// Ground sample distance that the detector works best at; callers that resample anyway choose it.
   virtual double preferred_gsd_m() const = 0;
@@ -32,6 +38,9 @@ class RoadDetector {
   /// One line for the provenance of a source: name and all parameters that change the result.
   virtual std::string describe() const = 0;
 };
+
+/// For detectors, between pieces of work: throws Interrupted ("detection-interrupted") once a stop is requested.
+void require_time(const std::stop_token& stop);
 
 /// Cells (in the layout of RoadDetector::detect) that count as observed by the rule above.
 cv::Mat observed_cells(const GroundImage& image, double cell_m);

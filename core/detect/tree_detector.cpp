@@ -61,8 +61,8 @@ CellArray to_cells(const cv::Mat& observed, const auto& cell_at) {
 
 }  // namespace
 
-TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetectorOptions& options,
-                       std::uint64_t seed) {
+TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetectorOptions& options, std::uint64_t seed,
+                       const std::stop_token& stop) {
   const cv::Size cells = observed_cells(image, cell_m).size();
   TreeCounts counts{cv::Mat::zeros(cells, CV_32SC1), cv::Mat::zeros(cells, CV_32SC1)};
   const GroundImage ground = at_gsd(image, options.gsd_m);
@@ -77,6 +77,7 @@ TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetect
   std::mt19937_64 random(seed);
   Tally tally(counts);
   for (int id = 0; id < trees; ++id) {
+    require_time(stop);
     const cv::Point root = open[pick(random, open.size())];
     tally.add(grow_tree(brightness, ground.observed, root, options.tree), id, ground.gsd_m / cell_m);
   }
@@ -92,9 +93,10 @@ TreeRoadDetector::TreeRoadDetector(const TreeDetectorOptions& options) : options
   }
 }
 
-CellArray TreeRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t seed) const {
+CellArray TreeRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                                   const std::stop_token& stop) const {
   const cv::Mat observed = observed_cells(image, cell_m);
-  const TreeCounts counts = count_trees(image, cell_m, options_, seed);
+  const TreeCounts counts = count_trees(image, cell_m, options_, seed, stop);
   if (options_.map == TreeDetectorOptions::Map::kBinary) {
     return to_cells(observed,
                     [&](cv::Point at) { return counts.nodes.at<int>(at) >= options_.min_nodes ? kRoad : kNoRoad; });

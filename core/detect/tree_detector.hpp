@@ -23,7 +23,9 @@ class TreeRoadDetector : public RoadDetector {
  public:
   explicit TreeRoadDetector(const TreeDetectorOptions& options = {});
 
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed) const override;
+  using RoadDetector::detect;
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                   const std::stop_token& stop) const override;
   double preferred_gsd_m() const override { return options_.gsd_m; }
   double halo_m() const override;
   std::string describe() const override;
@@ -38,6 +40,8 @@ struct TreeCounts {
   cv::Mat nodes;
   cv::Mat trees;
 };
-TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetectorOptions& options, std::uint64_t seed);
+/// Throws Interrupted as RoadDetector::detect does.
+TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetectorOptions& options, std::uint64_t seed,
+                       const std::stop_token& stop = {});
 
 }  // namespace roadfix

@@ -110,10 +110,13 @@ GroundView view_of(const Content& content, const RoadDetector& detector, const L
                                         fields.optional_number("gsd_m", kGsd).value_or(1.0), border);
   if (fields.has("gsd_m")) {
     require_straight_down(fields);
+    require_roads_visible(frame.gsd_m);
     return rectified(frame);
   }
   const FrameCamera camera = camera_of(fields);
-  const double gsd_m = std::max(nominal_gsd_m(camera, frame.pixels.size()), 0.5 * detector.preferred_gsd_m());
+  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
+  require_roads_visible(nominal_m);
+  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
   return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(limits.pixels));
 }
 
@@ -136,9 +139,9 @@ const std::vector<std::string>& picture_members() {
   return kMembers;
 }
 
-Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
-                     const Limits& limits) {
-  if (content.fields.word("kind", kKinds) == "frame") return detected(content, detector, default_cell_m, limits);
+Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
+                     const std::stop_token& stop) {
+  if (content.fields.word("kind", kKinds) == "frame") return detected(content, detector, default_cell_m, limits, stop);
   for (const std::string& name : frame_fields()) {
     if (name != "cell_m" && content.fields.has(name)) {
       throw InvalidField(
@@ -149,7 +152,8 @@ Features features_of(const Content& content, const RoadDetector& detector, doubl
   return {given_map(content, limits), std::nullopt};
 }
 
-Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits) {
+Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
+                  const std::stop_token& stop) {
   const double cell_m = content.fields.optional_number("cell_m", {0.1, 100.0}).value_or(default_cell_m);
   const int seed = content.fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1);
   const GroundView view = view_of(content, detector, limits);
@@ -159,7 +163,7 @@ Features detected(const Content& content, const RoadDetector& detector, double d
                                                       cell_m, limits.cells));
   }
   const auto start = std::chrono::steady_clock::now();
-  FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed));
+  FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed), stop);
   return {std::move(map), std::chrono::steady_clock::now() - start};
 }
 

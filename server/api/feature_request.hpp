@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,11 @@ struct Features {
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
 };
 
-/// The feature map, detected if it is a frame. `default_cell_m` is the cell size for frames that name none.
-Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits);
-Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits);
+/// The feature map, detected if it is a frame. `default_cell_m` is the cell size for frames that name none. Detection
+/// ends with Interrupted when a stop is requested.
+Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
+                     const std::stop_token& stop);
+Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
+                  const std::stop_token& stop);
 
 }  // namespace roadfix::api

@@ -62,8 +62,8 @@ const json& others_of(const Content& content, const Limits& limits) {
 }  // namespace
 
 Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
-                            const Limits& limits) {
-  Features first = features_of(content, detector, default_cell_m, limits);
+                            const Limits& limits, const std::stop_token& stop) {
+  Features first = features_of(content, detector, default_cell_m, limits, stop);
   if (!content.fields.has("also")) return first;
   std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
   for (const json& frame : others_of(content, limits)) {
@@ -73,7 +73,7 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
     }
     const BodyOffset offset = offset_of(frame, place);
     const Content other{content.fields, picture_of(frame, place)};
-    Features features = features_of(other, detector, default_cell_m, limits);
+    Features features = features_of(other, detector, default_cell_m, limits, stop);
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();
   }

@@ -5,6 +5,7 @@
 #include "core/detect/image_codec.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/media.hpp"
+#include "server/api/time_limit.hpp"
 #include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -23,7 +24,8 @@ http::Response post_detect(const Service& service, const http::Request& request)
   const std::string format = content.fields.has("format")
                                  ? content.fields.word("format", kNames)
                                  : std::string(api::negotiated(request.header("accept"), kFormats).name);
-  const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits);
+  const api::TimeLimit limit(request.deadline);
+  const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits, limit.token());
   http::Response response;
   if (format == "json") {
     nlohmann::json answer = api::to_json(features.map);

@@ -3,6 +3,7 @@
 #include "server/api/fix_request.hpp"
 #include "server/api/flight_request.hpp"
 #include "server/api/position_answer.hpp"
+#include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -33,7 +34,9 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
-  const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
+  const api::TimeLimit limit(request.deadline);
+  const api::Features features =
+      api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.calibration = service.calibration;
   options.threads = service.search_threads;
   api::shorten(options, request.deadline);

@@ -21,8 +21,9 @@ http::Response post_match(const Service& service, const http::Request& request) 
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
   options.threads = service.search_threads;
-  const api::Features features = api::flight_features_of(content, service.detector, map->view.cell_m, service.limits);
   const api::TimeLimit limit(request.deadline);
+  const api::Features features =
+      api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.stop = limit.token();
   const std::vector<MatchScore> scores = match(map->view, features.map, poses, options);
   return json_response(

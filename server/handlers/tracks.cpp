@@ -91,11 +91,11 @@ http::Response post_step(const Service& service, const http::Request& request) {
     repeated.headers.emplace_back("Roadfix-Repeated", "true");
     return repeated;
   }
+  const api::TimeLimit limit(request.deadline);
   if (!content.image.empty() || content.fields.has("cells")) {
     const auto map = service.maps.find(track.map);
-    input.features = api::features_of(content, service.detector, map->view.cell_m, service.limits).map;
+    input.features = api::features_of(content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
   }
-  const api::TimeLimit limit(request.deadline);
   StepLimits limits;
   limits.threads = service.search_threads;
   // Two searches, and the rest of the step.

@@ -86,7 +86,7 @@ void detect_by_network(benchmark::State& state) {
 /// Sees something of everything, at no cost: what remains of an ingestion is reading and storing.
 class GradientDetector : public RoadDetector {
  public:
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t, const std::stop_token&) const override {
     const cv::Mat observed = observed_cells(image, cell_m);
     CellArray cells(observed.cols, observed.rows);
     for (int row = 0; row < cells.rows(); ++row) {

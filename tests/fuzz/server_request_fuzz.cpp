@@ -21,7 +21,8 @@ namespace http = roadfix::http;
 /// Stands for a detector that costs nothing: what is fuzzed lies before it.
 class NoRoads : public roadfix::RoadDetector {
  public:
-  roadfix::CellArray detect(const roadfix::GroundImage& image, double cell_m, std::uint64_t) const override {
+  roadfix::CellArray detect(const roadfix::GroundImage& image, double cell_m, std::uint64_t,
+                            const std::stop_token&) const override {
     const double cells = image.gsd_m / cell_m;
     return {static_cast<int>(image.pixels.cols * cells) + 1, static_cast<int>(image.pixels.rows * cells) + 1,
             roadfix::kNoRoad};
@@ -65,7 +66,7 @@ void read_body(const std::string& type, std::string_view body, const http::Param
   const api::Content content = api::read_content(request, members(), limits);
   api::parse_prior(content.fields);
   if (content.fields.has("poses")) api::parse_poses(content.fields, limits);
-  api::features_of(content, NoRoads(), 2.0, limits);
+  api::features_of(content, NoRoads(), 2.0, limits, {});
 }
 
 void read_request(char kind, std::string_view text) {

@@ -27,7 +27,7 @@ constexpr double kGsdM = 1.0;
 /// Bright is road.
 class BrightnessDetector : public RoadDetector {
  public:
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t, const std::stop_token&) const override {
     const cv::Mat observed = observed_cells(image, cell_m);
     cv::Mat grey;
     cv::extractChannel(image.pixels, grey, 0);

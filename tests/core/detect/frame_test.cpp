@@ -106,6 +106,11 @@ TEST(Rectify, WithTheHorizonInViewOnlyTheRangeIsObserved) {
   }
 }
 
+TEST(Frame, WithPixelsWiderThanRoadsIsRefused) {
+  EXPECT_NO_THROW(require_roads_visible(kCoarsestGsdM));
+  EXPECT_THROW(require_roads_visible(1.01 * kCoarsestGsdM), InvalidInput);
+}
+
 TEST(Rectify, RefusesWhatCannotBe) {
   const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
   const auto with = [&](auto change) {

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
@@ -244,6 +245,15 @@ TEST_F(NeuralDetector, ThreadsThatShareADetectorGetTheSameAnswer) {
     answers.push_back(std::async(std::launch::async, [&] { return detector.detect(image, 2.0, 1); }));
   }
   for (auto& answer : answers) EXPECT_EQ(answer.get(), alone);
+}
+
+TEST_F(NeuralDetector, EndsWhenAskedTo) {
+  const NeuralRoadDetector detector(model(tiny_description()));
+  std::stop_source stop;
+  EXPECT_EQ(detector.detect(random_image(32, 32), 2.0, 1, stop.get_token()).observed_count(), 16U * 16U);
+  stop.request_stop();
+  EXPECT_EQ(testing::code_of([&] { detector.detect(random_image(32, 32), 2.0, 1, stop.get_token()); }),
+            "detection-interrupted");
 }
 
 TEST_F(NeuralDetector, SaysWhichModelItRuns) {

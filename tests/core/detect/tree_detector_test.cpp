@@ -4,6 +4,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "tests/support/code_of.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -59,6 +61,13 @@ TEST(TreeRoadDetector, DependsOnItsSeedAlone) {
   const TreeRoadDetector detector;
   EXPECT_EQ(detector.detect(crossing(), 3.0, 1), detector.detect(crossing(), 3.0, 1));
   EXPECT_FALSE(detector.detect(crossing(), 3.0, 1) == detector.detect(crossing(), 3.0, 2));
+}
+
+TEST(TreeRoadDetector, EndsWhenAskedTo) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(testing::code_of([&] { TreeRoadDetector().detect(crossing(), 3.0, 1, stop.get_token()); }),
+            "detection-interrupted");
 }
 
 TEST(CountTrees, ATreeReachesACellNoOftenerThanItsNodes) {

@@ -22,7 +22,7 @@ const UtmZone kZone = *UtmZone::from_epsg(32637);
 /// Brightness blurred over 9 x 9 cells: looks as far beyond a cell as it says, and no further.
 class BlurDetector final : public RoadDetector {
  public:
-  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t) const override {
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t, const std::stop_token&) const override {
     const int step = static_cast<int>(std::lround(cell_m / image.gsd_m));
     cv::Mat cells;
     cv::resize(image.pixels, cells, {image.pixels.cols / step, image.pixels.rows / step}, 0, 0, cv::INTER_AREA);

@@ -25,7 +25,8 @@ int widened_for_vectors(int cols) { return cols + kRowOverrun; }
 
 /// Planes that a thread uses again and again.
 struct ScanBuffers {
-  ComplexPlane cross, sums, scratch;
+  Spectrum cross;
+  ComplexPlane sums, scratch;
   FloatPlane correction, gain, scores;
   std::vector<int> peaks;
 
@@ -108,7 +109,7 @@ class Scan {
       directions.push_back(std::move(direction));
     }
     std::unique_ptr<ScanBuffers> buffers = taken_buffers();
-    map_.values().spectrum_of(first.value, last.value, buffers->cross, buffers->scratch);
+    map_.values().spectrum_of(first.value, last.value, buffers->sums, buffers->scratch, buffers->cross);
     Found found;
     const float floor = current_floor();
     for (const Direction& direction : directions) {

@@ -15,14 +15,16 @@ int tiles_along(int cells, int patch, int overlap, int side) {
 
 /// The side of the tiles that take the least work.
 int best_side(const FloatPlane& plane, int patch, int overlap) {
-  constexpr int kBeyondCache = 512;  // its transforms wait for memory
+  constexpr int kLongest = 512;  // unless the patch asks for more
+  // Measured: what a cell of a tile costs grows with the tile's side about as this plus the side, as caches run over.
+  constexpr double kCellCost = 160.0;
   int best = 0;
   double least = 0.0;
-  for (int side = FourierTransform::kLeastSide; best == 0 || side <= kBeyondCache; side *= 2) {
-    if (side < patch + overlap) continue;
+  for (int side = FourierTransform::kLeastSide; best == 0 || side <= kLongest; side += kStripCols) {
+    if (!FourierTransform::is_side(side) || side < patch + overlap) continue;
     const double tiles =
         double{1} * tiles_along(plane.cols, patch, overlap, side) * tiles_along(plane.rows, patch, overlap, side);
-    const double work = tiles * side * side * (2.0 + std::log2(side)) * (side >= kBeyondCache ? 1.5 : 1.0);
+    const double work = tiles * side * side * (kCellCost + side);
     if (best != 0 && work >= least) continue;
     best = side;
     least = work;
@@ -64,24 +66,26 @@ Correlator::Correlator(const FloatPlane& first, const FloatPlane& second, int pa
   assert(!pair_ || (second.cols == cols_ && second.rows == rows_));
   const int side = fourier_.side();
   const int step = side - patch + 1 - overlap;
+  ComplexPlane tile(side);
   ComplexPlane scratch(side);
   for (int i = 0; i < tiles_along(rows_, patch, overlap, side); ++i) {
     for (int k = 0; k < tiles_along(cols_, patch, overlap, side); ++k) {
-      tiles_.push_back(tile_at(first, second, k * step - kLead, i * step - kLead, scratch));
+      tiles_.push_back(tile_at(first, second, k * step - kLead, i * step - kLead, tile, scratch));
     }
   }
 }
 
 Correlator::Tile Correlator::tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row,
-                                     ComplexPlane& scratch) const {
+                                     ComplexPlane& plane, ComplexPlane& scratch) const {
   const int side = fourier_.side();
   const auto only_first = only_value(first, col, row, side);
   const auto only_second = only_value(second, col, row, side);
   if (only_first && only_second) return {col, row, std::nullopt, *only_first, *only_second};
-  Tile tile{col, row, ComplexPlane(side), 0.0F, 0.0F};
-  fill(first, col, row, side, tile.spectrum->re(), tile.spectrum->stride());
-  if (pair_) fill(second, col, row, side, tile.spectrum->im(), tile.spectrum->stride());
-  fourier_.forward(*tile.spectrum, scratch);
+  Tile tile{col, row, Spectrum(side), 0.0F, 0.0F};
+  plane.clear(side);
+  fill(first, col, row, side, plane.re(), plane.stride());
+  if (pair_) fill(second, col, row, side, plane.im(), plane.stride());
+  fourier_.forward(plane, {side, side}, scratch, *tile.spectrum);
   return tile;
 }
 
@@ -91,24 +95,26 @@ std::size_t Correlator::bytes() const {
   return bytes;
 }
 
-ComplexPlane Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
-  ComplexPlane spectrum(fourier_.side());
+Spectrum Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
+  Spectrum spectrum(fourier_.side());
+  ComplexPlane plane(fourier_.side());
   ComplexPlane scratch(fourier_.side());
-  spectrum_of(first, second, spectrum, scratch);
+  spectrum_of(first, second, plane, scratch, spectrum);
   return spectrum;
 }
 
-void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& spectrum,
-                             ComplexPlane& scratch) const {
+void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& plane,
+                             ComplexPlane& scratch, Spectrum& spectrum) const {
   assert(first.cols <= patch_ && first.rows <= patch_);
   assert(second.values.empty() || !pair_);
-  spectrum.clear();
-  fill(first, 0, 0, fourier_.side(), spectrum.re(), spectrum.stride());
-  if (!second.values.empty()) fill(second, 0, 0, fourier_.side(), spectrum.im(), spectrum.stride());
-  fourier_.forward(spectrum, scratch);
+  const Filled filled{std::max(first.cols, second.cols), std::max(first.rows, second.rows)};
+  plane.clear(filled.rows);
+  fill(first, 0, 0, fourier_.side(), plane.re(), plane.stride());
+  if (!second.values.empty()) fill(second, 0, 0, fourier_.side(), plane.im(), plane.stride());
+  fourier_.forward(plane, filled, scratch, spectrum);
 }
 
-Correlator::TileSums Correlator::correlate_tile(std::size_t index, const ComplexPlane& patch_spectrum, bool half_turn,
+Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectrum& patch_spectrum, bool half_turn,
                                                 ComplexPlane& sums, ComplexPlane& scratch) const {
   const Tile& tile = tiles_[index];
   const int side = fourier_.side();
@@ -126,22 +132,20 @@ Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Complex
   result.second = sums.im(inset) + inset;
   if (!tile.spectrum) {
     // The patches' own sums are what their spectrum begins with.
-    const float patch_first = patch_spectrum.re()[0];
-    const float patch_second = patch_spectrum.im()[0];
+    const float patch_first = patch_spectrum.sum_re();
+    const float patch_second = patch_spectrum.sum_im();
     sums.fill(tile.first * patch_first, pair_ ? tile.second * patch_first : tile.first * patch_second);
     return result;
   }
   const Columns wanted{inset, inset + result.cols};
   fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, sums, scratch);
-  result.first = sums.re(inset) + inset;  // the planes have been exchanged
-  result.second = sums.im(inset) + inset;
   result.first_scale = 1.0F / (static_cast<float>(side) * static_cast<float>(side));
   // The conjugate of a pair of patches is the pair with its second one negative.
   result.second_scale = pair_ || half_turn ? result.first_scale : -result.first_scale;
   return result;
 }
 
-FloatPlanes Correlator::correlate(const ComplexPlane& patch_spectrum, bool half_turn) const {
+FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn) const {
   FloatPlanes result{FloatPlane(sum_cols(), sum_rows()), FloatPlane(sum_cols(), sum_rows())};
   ComplexPlane sums(fourier_.side());
   ComplexPlane scratch(fourier_.side());

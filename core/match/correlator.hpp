@@ -22,9 +22,10 @@ class Correlator {
   Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap = 0);
 
   /// Of a patch, or of two where there is one plane; `second` is empty for one.
-  ComplexPlane spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
-  void spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& spectrum,
-                   ComplexPlane& scratch) const;
+  Spectrum spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
+  /// The planes are of side(), their content is lost.
+  void spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& plane, ComplexPlane& scratch,
+                   Spectrum& spectrum) const;
 
   /// Size of the planes that correlate() returns.
   int sum_cols() const { return cols_ + 2 * kLead; }
@@ -32,7 +33,7 @@ class Correlator {
   /// Sum over each patch (or over the patch in each plane) at each place where it stays within the plane and its lead,
   /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
   /// patch's last cell, counted in the turned patch.
-  FloatPlanes correlate(const ComplexPlane& patch_spectrum, bool half_turn) const;
+  FloatPlanes correlate(const Spectrum& patch_spectrum, bool half_turn) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.
   struct TileSums {
@@ -49,7 +50,7 @@ class Correlator {
   int side() const { return fourier_.side(); }
   std::size_t tiles() const { return tiles_.size(); }
   /// `sums` and `scratch` are of side(); the result points into them. Without places where the tile has none.
-  TileSums correlate_tile(std::size_t tile, const ComplexPlane& patch_spectrum, bool half_turn, ComplexPlane& sums,
+  TileSums correlate_tile(std::size_t tile, const Spectrum& patch_spectrum, bool half_turn, ComplexPlane& sums,
                           ComplexPlane& scratch) const;
 
   std::size_t bytes() const;
@@ -58,12 +59,13 @@ class Correlator {
   struct Tile {
     int col = 0;  ///< of the plane, of its first cell
     int row = 0;
-    std::optional<ComplexPlane> spectrum;  ///< none where all its cells are alike: their sums are known without
-    float first = 0.0F;                    ///< what they are then
+    std::optional<Spectrum> spectrum;  ///< none where all its cells are alike: their sums are known without
+    float first = 0.0F;                ///< what they are then
     float second = 0.0F;
   };
 
-  Tile tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row, ComplexPlane& scratch) const;
+  Tile tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row, ComplexPlane& plane,
+               ComplexPlane& scratch) const;
 
   int cols_;
   int rows_;

@@ -51,7 +51,7 @@ class ScanMeansPatch {
 
  private:
   const ScanMap& map_;
-  ComplexPlane observed_and_value_, square_, observed_;
+  Spectrum observed_and_value_, square_, observed_;
 };
 
 }  // namespace roadfix

@@ -72,7 +72,7 @@ TEST(Correlator, SumsPairsOfPatchesAndPairsOfPlanesAsPlainLoopsDo) {
 TEST(Correlator, KnowsTheSumsWhereAllCellsAreAlike) {
   std::mt19937_64 random(2);
   for (const bool pair : {false, true}) {
-    FloatPlane plane(90, 80);
+    FloatPlane plane(290, 280);
     std::ranges::fill(plane.values, 0.7F);
     plane.at(3, 2) = -1.0F;  // beside it, and at the plane's edges, transforms are needed
     FloatPlane other = plane;
@@ -81,7 +81,7 @@ TEST(Correlator, KnowsTheSumsWhereAllCellsAreAlike) {
     const FloatPlane patch = noise(side, side, random);
     const FloatPlane second = noise(side, side, random);
     const Correlator correlator(plane, pair ? other : FloatPlane(), side, 2);
-    EXPECT_LT(correlator.bytes(), correlator.tiles() * ComplexPlane(correlator.side()).bytes());
+    EXPECT_LT(correlator.bytes(), correlator.tiles() * Spectrum(correlator.side()).bytes());
     for (const bool half_turn : {false, true}) {
       const FloatPlanes sums =
           correlator.correlate(correlator.spectrum_of(patch, pair ? FloatPlane() : second), half_turn);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <complex>
 #include <numbers>
 #include <random>
@@ -26,14 +28,28 @@ std::complex<double> at(const ComplexPlane& plane, int col, int row) {
   return {static_cast<double>(plane.re(row)[col]), static_cast<double>(plane.im(row)[col])};
 }
 
+constexpr std::array<int, 10> kSides{16, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+
+Spectrum spectrum_of(const ComplexPlane& plane) {
+  Spectrum spectrum(plane.side());
+  ComplexPlane scratch(plane.side());
+  FourierTransform(plane.side()).forward(plane, {plane.side(), plane.side()}, scratch, spectrum);
+  return spectrum;
+}
+
+TEST(FourierTransform, TakesPowersOfTwoAndThreeTimesThoseForASide) {
+  for (const int side : kSides) EXPECT_TRUE(FourierTransform::is_side(side)) << side;
+  for (const int side : {0, 8, 24, 40, 80, 144, 9}) EXPECT_FALSE(FourierTransform::is_side(side)) << side;
+}
+
 TEST(FourierTransform, BackwardBringsBackWhatForwardTook) {
-  for (const int side : {16, 32, 64, 128, 256}) {
-    const FourierTransform fourier(side);
+  for (const int side : kSides) {
     const ComplexPlane before = noise(side, 1);
-    ComplexPlane plane = before;
+    ComplexPlane one(side);
+    one.re(0)[0] = 1.0F;
+    ComplexPlane plane(side);
     ComplexPlane scratch(side);
-    fourier.forward(plane, scratch);
-    fourier.backward(plane, scratch);
+    FourierTransform(side).backward_of_product(spectrum_of(before), spectrum_of(one), false, {0, side}, plane, scratch);
     const double cells = double{1} * side * side;
     for (int row = 0; row < side; ++row) {
       for (int col = 0; col < side; ++col) {
@@ -44,7 +60,7 @@ TEST(FourierTransform, BackwardBringsBackWhatForwardTook) {
 }
 
 TEST(FourierTransform, TakesAWaveToOneNumber) {
-  for (const int side : {16, 32, 64}) {
+  for (const int side : kSides) {
     ComplexPlane plane(side);
     for (int row = 0; row < side; ++row) {
       for (int col = 0; col < side; ++col) {
@@ -53,22 +69,42 @@ TEST(FourierTransform, TakesAWaveToOneNumber) {
         plane.im(row)[col] = static_cast<float>(std::sin(angle));
       }
     }
-    ComplexPlane scratch(side);
-    FourierTransform(side).forward(plane, scratch);
+    const Spectrum spectrum = spectrum_of(plane);
     const double cells = double{1} * side * side;
     int ones = 0;
-    for (int row = 0; row < side; ++row) {
-      for (int col = 0; col < side; ++col) {
-        const double size = std::abs(at(plane, col, row)) / cells;
-        if (size > 0.5) {
-          ++ones;
-          EXPECT_NEAR(at(plane, col, row).real() / cells, 1.0, 1e-5);
-        } else {
-          ASSERT_LT(size, 1e-5);
+    for (int strip = 0; strip < side / kStripCols; ++strip) {
+      const float* values = spectrum.strip(strip);
+      for (int row = 0; row < side; ++row, values += std::ptrdiff_t{2} * kStripCols) {
+        for (int col = 0; col < kStripCols; ++col) {
+          const std::complex<double> value(static_cast<double>(values[col]) / cells,
+                                           static_cast<double>(values[kStripCols + col]) / cells);
+          if (std::abs(value) > 0.5) {
+            ++ones;
+            EXPECT_NEAR(value.real(), 1.0, 1e-5);
+          } else {
+            ASSERT_LT(std::abs(value), 1e-5);
+          }
         }
       }
     }
-    EXPECT_EQ(ones, 1);
+    EXPECT_EQ(ones, 1) << side;
+  }
+}
+
+TEST(FourierTransform, MindsOnlyThePartThatIsFilled) {
+  constexpr int kSide = 96;
+  ComplexPlane part = noise(kSide, 4);
+  ComplexPlane scratch = noise(kSide, 5);
+  Spectrum spectrum(kSide);
+  FourierTransform(kSide).forward(part, {32, 21}, scratch, spectrum);
+  ComplexPlane whole(kSide);
+  for (int row = 0; row < 21; ++row) {
+    std::copy_n(part.re(row), 32, whole.re(row));
+    std::copy_n(part.im(row), 32, whole.im(row));
+  }
+  const Spectrum expected = spectrum_of(whole);
+  for (int strip = 0; strip < kSide / kStripCols; ++strip) {
+    for (int i = 0; i < 2 * kStripCols * kSide; ++i) ASSERT_EQ(spectrum.strip(strip)[i], expected.strip(strip)[i]);
   }
 }
 
@@ -84,35 +120,38 @@ std::complex<double> cyclic_sum(const ComplexPlane& a, const ComplexPlane& b, in
   return sum;
 }
 
-TEST(FourierTransform, ProductsOfSpectraAreCyclicSums) {
-  constexpr int kSide = 32;
-  const FourierTransform fourier(kSide);
-  const ComplexPlane a = noise(kSide, 2);
-  const ComplexPlane b = noise(kSide, 3);
-  ComplexPlane scratch(kSide);
-  ComplexPlane spectrum_a = a;
-  ComplexPlane spectrum_b = b;
-  fourier.forward(spectrum_a, scratch);
-  fourier.forward(spectrum_b, scratch);
-  ComplexPlane sums(kSide);
-  fourier.backward_of_product(spectrum_a, spectrum_b, false, {0, kSide}, sums, scratch);
+void expect_cyclic_sums(int side) {
+  const FourierTransform fourier(side);
+  const ComplexPlane a = noise(side, 2);
+  const ComplexPlane b = noise(side, 3);
+  const Spectrum spectrum_a = spectrum_of(a);
+  const Spectrum spectrum_b = spectrum_of(b);
+  ComplexPlane scratch(side);
+  ComplexPlane sums(side);
+  fourier.backward_of_product(spectrum_a, spectrum_b, false, {0, side}, sums, scratch);
   ComplexPlane conjugate_b = b;
-  for (int row = 0; row < kSide; ++row) {
-    for (int col = 0; col < kSide; ++col) conjugate_b.im(row)[col] *= -1.0F;
+  for (int row = 0; row < side; ++row) {
+    for (int col = 0; col < side; ++col) conjugate_b.im(row)[col] *= -1.0F;
   }
-  ComplexPlane others(kSide);
-  fourier.backward_of_product(spectrum_a, spectrum_b, true, {0, kSide}, others, scratch);
-  ComplexPlane some(kSide);
+  ComplexPlane others(side);
+  fourier.backward_of_product(spectrum_a, spectrum_b, true, {0, side}, others, scratch);
+  ComplexPlane some(side);
   fourier.backward_of_product(spectrum_a, spectrum_b, true, {9, 19}, some, scratch);
-  for (int row = 0; row < kSide; ++row) {
+  for (int row = 0; row < side; ++row) {
     for (int col = 9; col < 19; ++col) EXPECT_EQ(at(some, col, row), at(others, col, row));
   }
-  constexpr double kCells = kSide * kSide;
-  for (const int place : {0, 1, 17, 31}) {
-    const int other = (place * 7) % kSide;
-    EXPECT_LT(std::abs(at(sums, place, other) / kCells - cyclic_sum(a, b, place, other, -1)), 1e-3);
-    EXPECT_LT(std::abs(at(others, place, other) / kCells - cyclic_sum(a, conjugate_b, place, other, 1)), 1e-3);
+  const double cells = double{1} * side * side;
+  for (const int place : {0, 1, 17, side - 1}) {
+    const int other = (place * 7) % side;
+    EXPECT_LT(std::abs(at(sums, place, other) / cells - cyclic_sum(a, b, place, other, -1)), 1e-3);
+    EXPECT_LT(std::abs(at(others, place, other) / cells - cyclic_sum(a, conjugate_b, place, other, 1)), 1e-3);
   }
+}
+
+TEST(FourierTransform, ProductsOfSpectraAreCyclicSums) {
+  expect_cyclic_sums(32);
+  expect_cyclic_sums(48);
+  expect_cyclic_sums(64);
 }
 
 }  // namespace

@@ -1,0 +1,319 @@
+#include "core/match/fourier_kernel.hpp"
+
+#include <algorithm>
+
+// clang-format off: foreach_target compiles this file once per instruction set, and must come before highway.h
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/match/fourier_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace roadfix {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kCachedRows = 128;  // of a strip, beside what it is read from
+
+constexpr hn::CappedTag<float, kStripCols> kFloats;
+using Floats = hn::Vec<decltype(kFloats)>;
+
+struct Complex {
+  Floats re, im;
+};
+
+HWY_INLINE HWY_ATTR Complex operator+(Complex a, Complex b) { return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)}; }
+HWY_INLINE HWY_ATTR Complex operator-(Complex a, Complex b) { return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)}; }
+HWY_INLINE HWY_ATTR Complex times(Complex a, Complex b) {
+  return {hn::NegMulAdd(a.im, b.im, hn::Mul(a.re, b.re)), hn::MulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
+}
+HWY_INLINE HWY_ATTR Complex times_conjugate(Complex a, Complex b) {
+  return {hn::MulAdd(a.im, b.im, hn::Mul(a.re, b.re)), hn::NegMulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
+}
+HWY_INLINE HWY_ATTR Complex times_i(Complex a) { return {hn::Neg(a.im), a.re}; }
+HWY_INLINE HWY_ATTR Complex turn_at(const float* turn) {
+  return {hn::Set(kFloats, turn[0]), hn::Set(kFloats, turn[1])};
+}
+HWY_INLINE HWY_ATTR Complex load(const float* re, const float* im) {
+  return {hn::Load(kFloats, re), hn::Load(kFloats, im)};
+}
+
+/// As many columns of a plane as a vector holds numbers.
+struct Strip {
+  float* re;
+  float* im;
+  std::ptrdiff_t stride;
+
+  HWY_INLINE HWY_ATTR Complex at(int row) const { return load(re + row * stride, im + row * stride); }
+  HWY_INLINE HWY_ATTR void put(int row, Complex value) const {
+    hn::Store(value.re, kFloats, re + row * stride);
+    hn::Store(value.im, kFloats, im + row * stride);
+  }
+};
+
+/// The transform of three numbers; backward it is the conjugate's.
+HWY_INLINE HWY_ATTR void three(Complex a0, Complex a1, Complex a2, bool forward, Complex out[3]) {
+  const Floats half = hn::Set(kFloats, 0.5F);
+  const Floats height = hn::Set(kFloats, 0.8660254037844386F);  // sine of 60 degrees
+  const Complex sum = a1 + a2;
+  const Complex difference = forward ? a2 - a1 : a1 - a2;
+  const Complex middle{hn::NegMulAdd(half, sum.re, a0.re), hn::NegMulAdd(half, sum.im, a0.im)};
+  const Complex across = times_i({hn::Mul(height, difference.re), hn::Mul(height, difference.im)});
+  out[0] = a0 + sum;
+  out[1] = middle + across;
+  out[2] = middle - across;
+}
+
+/// The same of four.
+HWY_INLINE HWY_ATTR void four(Complex a0, Complex a1, Complex a2, Complex a3, bool forward, Complex out[4]) {
+  const Complex even = a0 + a2;
+  const Complex odd = a1 + a3;
+  const Complex difference = a0 - a2;
+  const Complex turned = times_i(forward ? a3 - a1 : a1 - a3);
+  out[0] = even + odd;
+  out[1] = difference + turned;
+  out[2] = even - odd;
+  out[3] = difference - turned;
+}
+
+HWY_ATTR void forward_strip(const Strip& strip, int side, const float* turns) {
+  int length = side;
+  Complex out[4];
+  if (side % 3 == 0) {
+    length /= 3;
+    for (int j = 0; j < length; ++j, turns += 4) {
+      three(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true, out);
+      strip.put(j, out[0]);
+      for (int k = 1; k < 3; ++k) strip.put(j + k * length, times(out[k], turn_at(turns + 2 * (k - 1))));
+    }
+  }
+  for (; length >= 4; length /= 4) {
+    const int quarter = length / 4;
+    for (int j = 0; j < quarter; ++j, turns += 6) {
+      for (int row = j; row < side; row += length) {
+        four(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter), strip.at(row + 3 * quarter), true,
+             out);
+        strip.put(row, out[0]);
+        for (int k = 1; k < 4; ++k) strip.put(row + k * quarter, times(out[k], turn_at(turns + 2 * (k - 1))));
+      }
+    }
+  }
+  for (int row = 0; length == 2 && row < side; row += 2) {
+    const Complex a0 = strip.at(row);
+    const Complex a1 = strip.at(row + 1);
+    strip.put(row, a0 + a1);
+    strip.put(row + 1, a0 - a1);
+  }
+}
+
+/// Undoes the last stage, which has no turns, or the last two where the last one is of two parts: in one go, from
+/// wherever `at(row)` takes the numbers. `turns` points behind those of the stages undone.
+template <typename At>
+HWY_INLINE HWY_ATTR void first_backward(const At& at, bool eights, const Strip& strip, int first, int last,
+                                        const float* turns) {
+  Complex out[4];
+  if (!eights) {
+    for (int row = first; row < last; row += 4) {
+      four(at(row), at(row + 1), at(row + 2), at(row + 3), false, out);
+      for (int k = 0; k < 4; ++k) strip.put(row + k, out[k]);
+    }
+    return;
+  }
+  const Complex turn1 = turn_at(turns - 6);
+  const Complex turn2 = turn_at(turns - 4);
+  const Complex turn3 = turn_at(turns - 2);
+  for (int row = first; row < last; row += 8) {
+    Complex a[8];
+    for (int k = 0; k < 8; ++k) a[k] = at(row + k);
+    four(a[0] + a[1], a[2] + a[3], a[4] + a[5], a[6] + a[7], false, out);
+    for (int k = 0; k < 4; ++k) strip.put(row + 2 * k, out[k]);
+    four(a[0] - a[1], times_conjugate(a[2] - a[3], turn1), times_conjugate(a[4] - a[5], turn2),
+         times_conjugate(a[6] - a[7], turn3), false, out);
+    for (int k = 0; k < 4; ++k) strip.put(row + 2 * k + 1, out[k]);
+  }
+}
+
+/// Undoes a stage of four parts for the rows [first, last).
+HWY_INLINE HWY_ATTR void fours_backward(const Strip& strip, int length, int first, int last, const float* turn) {
+  const int quarter = length / 4;
+  Complex out[4];
+  for (int j = first; j < first + quarter; ++j, turn += 6) {
+    const Complex turn1 = turn_at(turn);
+    const Complex turn2 = turn_at(turn + 2);
+    const Complex turn3 = turn_at(turn + 4);
+    for (int row = j; row < last; row += length) {
+      four(strip.at(row), times_conjugate(strip.at(row + quarter), turn1),
+           times_conjugate(strip.at(row + 2 * quarter), turn2), times_conjugate(strip.at(row + 3 * quarter), turn3),
+           false, out);
+      for (int k = 0; k < 4; ++k) strip.put(row + k * quarter, out[k]);
+    }
+  }
+}
+
+/// The stages of forward_strip() undone, last one first; `turns` points behind the last ones.
+template <typename At>
+HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int side, const float* turns) {
+  const int whole = side % 3 == 0 ? side / 3 : side;
+  int twos = whole;
+  while (twos > 2) twos /= 4;
+  const int shortest = twos == 2 ? 8 : 4;
+  // What the first cache holds goes through all stages that it can.
+  int block = shortest;
+  while (block * 4 <= std::min(kCachedRows, whole)) block *= 4;
+  const float* turn = turns;
+  for (int first = 0; first < side; first += block) {
+    turn = turns;
+    first_backward(at, twos == 2, strip, first, first + block, turn);
+    turn -= twos == 2 ? 12 : 6;
+    for (int length = 4 * shortest; length <= block; length *= 4) {
+      turn -= 6 * (length / 4);
+      fours_backward(strip, length, first, first + block, turn);
+    }
+  }
+  for (int length = 4 * block; length <= whole; length *= 4) {
+    turn -= 6 * (length / 4);
+    fours_backward(strip, length, 0, side, turn);
+  }
+  if (whole == side) return;
+  turn -= std::ptrdiff_t{4} * whole;
+  Complex out[3];
+  for (int j = 0; j < whole; ++j, turn += 4) {
+    three(strip.at(j), times_conjugate(strip.at(j + whole), turn_at(turn)),
+          times_conjugate(strip.at(j + 2 * whole), turn_at(turn + 2)), false, out);
+    for (int k = 0; k < 3; ++k) strip.put(j + k * whole, out[k]);
+  }
+}
+
+/// Rows [first, last) of some columns, each kept in_stride after the one before, become columns; all multiples of four.
+HWY_ATTR void transpose(const float* in, std::ptrdiff_t in_stride, int first, int last, int cols, float* out,
+                        std::ptrdiff_t out_stride) {
+#if HWY_TARGET == HWY_SCALAR
+  for (int row = first; row < last; ++row) {
+    for (int col = 0; col < cols; ++col) out[col * out_stride + row] = in[row * in_stride + col];
+  }
+#else
+  constexpr hn::FixedTag<float, 4> kFour;
+  constexpr hn::FixedTag<double, 2> kPairs;
+  for (int col = 0; col < cols; col += 4) {
+    for (int row = first; row < last; row += 4) {
+      const float* from = in + row * in_stride + col;
+      const auto r0 = hn::Load(kFour, from);
+      const auto r1 = hn::Load(kFour, from + in_stride);
+      const auto r2 = hn::Load(kFour, from + 2 * in_stride);
+      const auto r3 = hn::Load(kFour, from + 3 * in_stride);
+      const auto low01 = hn::BitCast(kPairs, hn::InterleaveLower(kFour, r0, r1));
+      const auto low23 = hn::BitCast(kPairs, hn::InterleaveLower(kFour, r2, r3));
+      const auto high01 = hn::BitCast(kPairs, hn::InterleaveUpper(kFour, r0, r1));
+      const auto high23 = hn::BitCast(kPairs, hn::InterleaveUpper(kFour, r2, r3));
+      float* to = out + col * out_stride + row;
+      hn::Store(hn::BitCast(kFour, hn::InterleaveLower(kPairs, low01, low23)), kFour, to);
+      hn::Store(hn::BitCast(kFour, hn::InterleaveUpper(kPairs, low01, low23)), kFour, to + out_stride);
+      hn::Store(hn::BitCast(kFour, hn::InterleaveLower(kPairs, high01, high23)), kFour, to + 2 * out_stride);
+      hn::Store(hn::BitCast(kFour, hn::InterleaveUpper(kPairs, high01, high23)), kFour, to + 3 * out_stride);
+    }
+  }
+#endif
+}
+
+/// The first rows of some columns of a plane; the others are 0.
+HWY_INLINE HWY_ATTR void copy_rows(const ComplexPlane& from, int col, int filled_rows, const Strip& to) {
+  const int side = from.side();
+  for (int row = 0; row < filled_rows; ++row) to.put(row, load(from.re(row) + col, from.im(row) + col));
+  for (int row = filled_rows; row < side; ++row) to.put(row, {hn::Zero(kFloats), hn::Zero(kFloats)});
+}
+
+HWY_ATTR void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* turns,
+                      Spectrum& spectrum) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloats));
+  const int side = plane.side();
+  const std::ptrdiff_t stride = plane.stride();
+  const auto strip_at = [&](int col) HWY_ATTR {
+    float* strip = spectrum.strip(col / kStripCols) + col % kStripCols;
+    return Strip{strip, strip + kStripCols, std::ptrdiff_t{2} * kStripCols};
+  };
+  int filled_cols = 0;
+  for (; filled_cols < filled.cols; filled_cols += lanes) {
+    const Strip strip = strip_at(0);
+    copy_rows(plane, filled_cols, filled.rows, strip);
+    forward_strip(strip, side, turns);
+    transpose(strip.re, strip.stride, 0, side, lanes, scratch.re(filled_cols), stride);
+    transpose(strip.im, strip.stride, 0, side, lanes, scratch.im(filled_cols), stride);
+  }
+  for (int col = 0; col < side; col += lanes) {
+    const Strip strip = strip_at(col);
+    copy_rows(scratch, col, filled_cols, strip);
+    forward_strip(strip, side, turns);
+  }
+}
+
+/// Of some columns of the product of two spectra.
+template <bool kConjugate>
+struct ProductStrip {
+  const float* a;
+  const float* b;
+
+  HWY_INLINE HWY_ATTR Complex operator()(int row) const {
+    const std::ptrdiff_t at = std::ptrdiff_t{2} * kStripCols * row;
+    const Complex x = load(a + at, a + at + kStripCols);
+    const Complex y = load(b + at, b + at + kStripCols);
+    return kConjugate ? times_conjugate(x, y) : times(x, y);
+  }
+};
+
+template <bool kConjugate>
+HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* turns, Columns wanted, ComplexPlane& sums,
+                       ComplexPlane& scratch) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloats));
+  const int side = a.side();
+  const int first = wanted.first / kStripCols * kStripCols;
+  const int last = (wanted.last + kStripCols - 1) / kStripCols * kStripCols;
+  // Half of the transform in a strip that the first cache holds; then its wanted rows become columns.
+  const Strip strip{scratch.re(), scratch.im(), lanes};
+  for (int col = 0; col < side; col += lanes) {
+    const ProductStrip<kConjugate> product{a.strip(col / kStripCols) + col % kStripCols,
+                                           b.strip(col / kStripCols) + col % kStripCols};
+    backward_strip(product, strip, side, turns);
+    transpose(strip.re, lanes, first, last, lanes, sums.re(col), sums.stride());
+    transpose(strip.im, lanes, first, last, lanes, sums.im(col), sums.stride());
+  }
+  for (int col = first; col < last; col += lanes) {
+    const Strip rows{sums.re() + col, sums.im() + col, sums.stride()};
+    backward_strip([&](int row) HWY_ATTR { return rows.at(row); }, rows, side, turns);
+  }
+}
+
+HWY_ATTR void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* turns,
+                                  Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
+  if (conjugate) {
+    backward<true>(a, b, turns, wanted, sums, scratch);
+  } else {
+    backward<false>(a, b, turns, wanted, sums, scratch);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace roadfix
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace roadfix {
+
+HWY_EXPORT(forward);
+HWY_EXPORT(backward_of_product);
+
+void forward_transform(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* turns,
+                       Spectrum& spectrum) {
+  HWY_DYNAMIC_DISPATCH(forward)(plane, filled, scratch, turns, spectrum);
+}
+
+void backward_transform_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* turns,
+                                   Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
+  HWY_DYNAMIC_DISPATCH(backward_of_product)(a, b, conjugate, turns, wanted, sums, scratch);
+}
+
+}  // namespace roadfix
+
+#endif  // HWY_ONCE

@@ -26,11 +26,17 @@ int widened_for_vectors(int cols) { return cols + kRowOverrun; }
 /// Planes that a thread uses again and again.
 struct ScanBuffers {
   Spectrum cross;
-  ComplexPlane sums, scratch;
+  Correlator::Room room;
+  ScanMeansRoom means_room;
+  std::array<ScanMeans, 2> means;  ///< of the headings as they are, and turned by half a turn
   FloatPlane correction, gain, scores;
   std::vector<int> peaks;
 
-  explicit ScanBuffers(int side) : cross(side), sums(side), scratch(side), scores(widened_for_vectors(side), side) {}
+  explicit ScanBuffers(const ScanMap& map)
+      : cross(map.values().side()),
+        room(map.values().side()),
+        means_room(map),
+        scores(widened_for_vectors(map.values().side()), map.values().side()) {}
 };
 
 /// What scans of some headings found.
@@ -88,14 +94,13 @@ class Scan {
   struct Direction {
     bool half_turn = false;
     std::array<int, kSharing> bins{-1, -1};
-    ScanMeans means;
   };
 
   void scan_pairs(std::span<const int> bases) {
     if (deadline_.over()) return;
-    const ScanPlanes first = patch_at(bases.front());
-    const ScanPlanes last = bases.size() > 1 ? patch_at(bases.back()) : ScanPlanes{};
-    const ScanMeansPatch means(map_, means_grid_, first);
+    std::unique_ptr<ScanBuffers> buffers = taken_buffers();
+    const CellArray first = patch_at(bases.front());
+    const ScanMeansPatch means(map_, means_grid_.block_means(first, feature_mean_), buffers->means_room);
     std::vector<Direction> directions;
     for (const bool half_turn : {false, true}) {
       Direction direction;
@@ -105,11 +110,13 @@ class Scan {
         if (std::ranges::binary_search(request_.headings, bin)) direction.bins[i] = bin;
       }
       if (std::ranges::all_of(direction.bins, [](int bin) { return bin < 0; })) continue;
-      direction.means = means.at(half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_));
-      directions.push_back(std::move(direction));
+      means.at(half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_),
+               buffers->means[half_turn ? 1 : 0]);
+      directions.push_back(direction);
     }
-    std::unique_ptr<ScanBuffers> buffers = taken_buffers();
-    map_.values().spectrum_of(first.value, last.value, buffers->sums, buffers->scratch, buffers->cross);
+    map_.values().spectrum_of(values_of(first, feature_mean_),
+                              bases.size() > 1 ? values_of(patch_at(bases.back()), feature_mean_) : FloatPlane(),
+                              buffers->room, buffers->cross);
     Found found;
     const float floor = current_floor();
     for (const Direction& direction : directions) {
@@ -122,13 +129,13 @@ class Scan {
     add(std::move(found), std::move(buffers));
   }
 
-  /// Planes of the footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
-  ScanPlanes patch_at(int bin) const {
+  /// The footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
+  CellArray patch_at(int bin) const {
     const FeatureMap turned = features_.at(request_.bins.heading(bin));
     CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
     paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
           reach_ - static_cast<int>(turned.nadir.row));
-    return planes_of(square, feature_mean_);
+    return square;
   }
 
   /// Positions of a tile: from -1 to cols or rows, so that every position of the request is within some tile's inner
@@ -141,7 +148,7 @@ class Scan {
 
   void scan_tile(std::size_t tile, const Direction& direction, float floor, ScanBuffers& buffers, Found& found) const {
     const Correlator::TileSums sums =
-        map_.values().correlate_tile(tile, buffers.cross, direction.half_turn, buffers.sums, buffers.scratch);
+        map_.values().correlate_tile(tile, buffers.cross, direction.half_turn, buffers.room);
     // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
     const int shift = (direction.half_turn ? reach_ : -reach_) + Correlator::kLead;
     const auto positions = [&](int place, int count, int lead, int size) {
@@ -165,24 +172,23 @@ class Scan {
 
   /// The means at the columns of a tile, for the rows of blocks that its rows lie between.
   void widen_means(const Direction& direction, Range cols, Range rows, ScanBuffers& buffers) const {
-    const auto& of_cols = means_grid_.cols(direction.half_turn);
-    const auto& of_rows = means_grid_.rows(direction.half_turn);
-    const auto mix_cols =
-        std::span(of_cols).subspan(static_cast<std::size_t>(cols.first + 1), static_cast<std::size_t>(cols.count()));
-    const Range blocks{of_rows[static_cast<std::size_t>(rows.first + 1)].first,
-                       of_rows[static_cast<std::size_t>(rows.last)].second + 1};
-    widen(direction.means.correction, mix_cols, blocks, buffers.correction);
-    widen(direction.means.gain, mix_cols, blocks, buffers.gain);
+    const BlockMixes& of_rows = means_grid_.rows(direction.half_turn);
+    const Range blocks{of_rows.first[static_cast<std::size_t>(rows.first + 1)],
+                       of_rows.second[static_cast<std::size_t>(rows.last)] + 1};
+    const ScanMeans& means = buffers.means[direction.half_turn ? 1 : 0];
+    const BlockMixes& mixes = means_grid_.cols(direction.half_turn);
+    widen(means.correction, mixes, cols, blocks, buffers.correction);
+    widen(means.gain, mixes, cols, blocks, buffers.gain);
   }
 
-  static void widen(const FloatPlane& blocks, std::span<const BlockMix> cols, Range rows, FloatPlane& out) {
-    out.cols = widened_for_vectors(static_cast<int>(cols.size()));
+  static void widen(const FloatPlane& blocks, const BlockMixes& mixes, Range cols, Range rows, FloatPlane& out) {
+    out.cols = widened_for_vectors(cols.count());
     out.rows = rows.count();
     out.values.resize(static_cast<std::size_t>(out.cols) * static_cast<std::size_t>(out.rows));
+    const std::ptrdiff_t from = cols.first + 1;
     for (int row = 0; row < out.rows; ++row) {
-      const float* in = blocks.row(rows.first + row);
-      float* to = out.row(row);
-      for (std::size_t i = 0; i < cols.size(); ++i) to[i] = cols[i].of(in[cols[i].first], in[cols[i].second]);
+      mix_blocks(blocks.row(rows.first + row), mixes.first.data() + from, mixes.second.data() + from,
+                 mixes.share.data() + from, cols.count(), out.row(row));
     }
   }
 
@@ -193,18 +199,18 @@ class Scan {
   };
 
   void score(const Direction& direction, Range cols, Range rows, const Cross& cross, ScanBuffers& buffers) const {
-    const auto& of_rows = means_grid_.rows(direction.half_turn);
-    const int first_block = of_rows[static_cast<std::size_t>(rows.first + 1)].first;
+    const BlockMixes& of_rows = means_grid_.rows(direction.half_turn);
+    const int first_block = of_rows.first[static_cast<std::size_t>(rows.first + 1)];
     for (int row = rows.first; row < rows.last; ++row) {
-      const BlockMix& down = of_rows[static_cast<std::size_t>(row + 1)];
-      const int above = down.first - first_block;
-      const int below = down.second - first_block;
+      const auto at = static_cast<std::size_t>(row + 1);
+      const int above = of_rows.first[at] - first_block;
+      const int below = of_rows.second[at] - first_block;
       ScoreRow scored;
       scored.sums = cross.sums + (row - rows.first) * cross.stride;
       scored.scale = cross.scale;
       scored.correction = {buffers.correction.row(above), buffers.correction.row(below)};
       scored.gain = {buffers.gain.row(above), buffers.gain.row(below)};
-      scored.share = down.share;
+      scored.share = of_rows.share[at];
       scored.eligible = eligible_.row(row + 1) + cols.first + 1;
       score_row(scored, cols.count(), buffers.scores.row(row - rows.first));
     }
@@ -246,7 +252,7 @@ class Scan {
 
   std::unique_ptr<ScanBuffers> taken_buffers() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<ScanBuffers>(map_.values().side());
+    if (idle_.empty()) return std::make_unique<ScanBuffers>(map_);
     std::unique_ptr<ScanBuffers> buffers = std::move(idle_.back());
     idle_.pop_back();
     return buffers;

@@ -96,61 +96,69 @@ std::size_t Correlator::bytes() const {
 }
 
 Spectrum Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
-  Spectrum spectrum(fourier_.side());
-  ComplexPlane plane(fourier_.side());
-  ComplexPlane scratch(fourier_.side());
-  spectrum_of(first, second, plane, scratch, spectrum);
+  Spectrum spectrum(side());
+  Room room(side());
+  spectrum_of(first, second, room, spectrum);
   return spectrum;
 }
 
-void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& plane,
-                             ComplexPlane& scratch, Spectrum& spectrum) const {
+void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, Room& room, Spectrum& spectrum) const {
   assert(first.cols <= patch_ && first.rows <= patch_);
   assert(second.values.empty() || !pair_);
   const Filled filled{std::max(first.cols, second.cols), std::max(first.rows, second.rows)};
+  ComplexPlane& plane = room.sums;
   plane.clear(filled.rows);
-  fill(first, 0, 0, fourier_.side(), plane.re(), plane.stride());
-  if (!second.values.empty()) fill(second, 0, 0, fourier_.side(), plane.im(), plane.stride());
-  fourier_.forward(plane, filled, scratch, spectrum);
+  fill(first, 0, 0, side(), plane.re(), plane.stride());
+  if (!second.values.empty()) fill(second, 0, 0, side(), plane.im(), plane.stride());
+  fourier_.forward(plane, filled, room.scratch, spectrum);
 }
 
 Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectrum& patch_spectrum, bool half_turn,
-                                                ComplexPlane& sums, ComplexPlane& scratch) const {
+                                                Room& room) const {
   const Tile& tile = tiles_[index];
-  const int side = fourier_.side();
   // Where a tile's cyclic sums do not wrap around.
   const int inset = half_turn ? patch_ - 1 : 0;
-  const int size = side - patch_ + 1;
+  const int size = side() - patch_ + 1;
   TileSums result;
   result.col = tile.col + kLead + inset;
   result.row = tile.row + kLead + inset;
   result.cols = std::min(size, sum_cols() - result.col);
   result.rows = std::min(size, sum_rows() - result.row);
   if (result.cols <= 0 || result.rows <= 0) return {};
-  result.stride = sums.stride();
-  result.first = sums.re(inset) + inset;
-  result.second = sums.im(inset) + inset;
+  result.first = room.sums.re(inset) + inset;
+  result.second = room.sums.im(inset) + inset;
   if (!tile.spectrum) {
-    // The patches' own sums are what their spectrum begins with.
+    // The patches' own sums are known; one row of them stands for all.
     const float patch_first = patch_spectrum.sum_re();
     const float patch_second = patch_spectrum.sum_im();
-    sums.fill(tile.first * patch_first, pair_ ? tile.second * patch_first : tile.first * patch_second);
+    std::fill_n(room.sums.re(inset), side(), tile.first * patch_first);
+    std::fill_n(room.sums.im(inset), side(), pair_ ? tile.second * patch_first : tile.first * patch_second);
     return result;
   }
   const Columns wanted{inset, inset + result.cols};
-  fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, sums, scratch);
-  result.first_scale = 1.0F / (static_cast<float>(side) * static_cast<float>(side));
+  fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, room.sums, room.scratch);
+  result.stride = room.sums.stride();
+  result.first_scale = 1.0F / (static_cast<float>(side()) * static_cast<float>(side()));
   // The conjugate of a pair of patches is the pair with its second one negative.
   result.second_scale = pair_ || half_turn ? result.first_scale : -result.first_scale;
   return result;
 }
 
 FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn) const {
-  FloatPlanes result{FloatPlane(sum_cols(), sum_rows()), FloatPlane(sum_cols(), sum_rows())};
-  ComplexPlane sums(fourier_.side());
-  ComplexPlane scratch(fourier_.side());
+  FloatPlanes result;
+  Room room(side());
+  correlate(patch_spectrum, half_turn, room, result);
+  return result;
+}
+
+void Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn, Room& room, FloatPlanes& result) const {
+  for (FloatPlane* plane : {&result.first, &result.second}) {
+    plane->cols = sum_cols();
+    plane->rows = sum_rows();
+    plane->values.assign(static_cast<std::size_t>(plane->cols) * static_cast<std::size_t>(plane->rows), 0.0F);
+  }
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, sums, scratch);
+    const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, room);
     for (int r = 0; r < tile.rows; ++r) {
       float* first = result.first.row(tile.row + r) + tile.col;
       float* second = result.second.row(tile.row + r) + tile.col;
@@ -160,7 +168,6 @@ FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn
       }
     }
   }
-  return result;
 }
 
 }  // namespace roadfix

@@ -21,11 +21,15 @@ class Correlator {
   /// one. Patches have at most patch x patch cells. The sums of neighbouring tiles share `overlap` rows or columns.
   Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap = 0);
 
+  /// Planes of side() that are used again and again; what they held is lost.
+  struct Room {
+    ComplexPlane sums, scratch;
+    explicit Room(int side) : sums(side), scratch(side) {}
+  };
+
   /// Of a patch, or of two where there is one plane; `second` is empty for one.
   Spectrum spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
-  /// The planes are of side(), their content is lost.
-  void spectrum_of(const FloatPlane& first, const FloatPlane& second, ComplexPlane& plane, ComplexPlane& scratch,
-                   Spectrum& spectrum) const;
+  void spectrum_of(const FloatPlane& first, const FloatPlane& second, Room& room, Spectrum& spectrum) const;
 
   /// Size of the planes that correlate() returns.
   int sum_cols() const { return cols_ + 2 * kLead; }
@@ -34,6 +38,8 @@ class Correlator {
   /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
   /// patch's last cell, counted in the turned patch.
   FloatPlanes correlate(const Spectrum& patch_spectrum, bool half_turn) const;
+  /// The same.
+  void correlate(const Spectrum& patch_spectrum, bool half_turn, Room& room, FloatPlanes& result) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.
   struct TileSums {
@@ -49,9 +55,8 @@ class Correlator {
   };
   int side() const { return fourier_.side(); }
   std::size_t tiles() const { return tiles_.size(); }
-  /// `sums` and `scratch` are of side(); the result points into them. Without places where the tile has none.
-  TileSums correlate_tile(std::size_t tile, const Spectrum& patch_spectrum, bool half_turn, ComplexPlane& sums,
-                          ComplexPlane& scratch) const;
+  /// The result points into the room, which is of side(). Without places where the tile has none.
+  TileSums correlate_tile(std::size_t tile, const Spectrum& patch_spectrum, bool half_turn, Room& room) const;
 
   std::size_t bytes() const;
 

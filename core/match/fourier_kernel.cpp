@@ -86,7 +86,8 @@ HWY_ATTR void forward_strip(const Strip& strip, int side, const float* turns) {
     for (int j = 0; j < length; ++j, turns += 4) {
       three(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true, out);
       strip.put(j, out[0]);
-      for (int k = 1; k < 3; ++k) strip.put(j + k * length, times(out[k], turn_at(turns + 2 * (k - 1))));
+      for (int k = 1; k < 3; ++k)
+        strip.put(j + k * length, times(out[k], turn_at(turns + std::ptrdiff_t{2} * (k - 1))));
     }
   }
   for (; length >= 4; length /= 4) {
@@ -96,7 +97,8 @@ HWY_ATTR void forward_strip(const Strip& strip, int side, const float* turns) {
         four(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter), strip.at(row + 3 * quarter), true,
              out);
         strip.put(row, out[0]);
-        for (int k = 1; k < 4; ++k) strip.put(row + k * quarter, times(out[k], turn_at(turns + 2 * (k - 1))));
+        for (int k = 1; k < 4; ++k)
+          strip.put(row + k * quarter, times(out[k], turn_at(turns + std::ptrdiff_t{2} * (k - 1))));
       }
     }
   }
@@ -168,12 +170,12 @@ HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int si
     first_backward(at, twos == 2, strip, first, first + block, turn);
     turn -= twos == 2 ? 12 : 6;
     for (int length = 4 * shortest; length <= block; length *= 4) {
-      turn -= 6 * (length / 4);
+      turn -= std::ptrdiff_t{6} * (length / 4);
       fours_backward(strip, length, first, first + block, turn);
     }
   }
   for (int length = 4 * block; length <= whole; length *= 4) {
-    turn -= 6 * (length / 4);
+    turn -= std::ptrdiff_t{6} * (length / 4);
     fours_backward(strip, length, 0, side, turn);
   }
   if (whole == side) return;

@@ -59,6 +59,51 @@ RowTotals summarize(const float* above, const float* row, const float* below, in
   return totals;
 }
 
+struct Means {
+  Floats correction, gain;
+};
+
+HWY_INLINE HWY_ATTR Means means_at(Floats n, Floats l, Floats ll, Floats m, Floats mm, const MeansLimits& limits) {
+  const Floats one = hn::Set(kFloats, 1.0F);
+  const auto enough = hn::Ge(n, hn::Set(kFloats, limits.least_cells));
+  const Floats per_cell = hn::Div(one, hn::IfThenElse(enough, n, one));
+  const Floats map_spread = hn::NegMulAdd(hn::Mul(m, m), per_cell, mm);
+  const Floats feature_spread = hn::NegMulAdd(hn::Mul(l, l), per_cell, ll);
+  const Floats least = hn::Mul(n, hn::Set(kFloats, limits.least_spread));
+  const auto scored = hn::And(enough, hn::And(hn::Ge(map_spread, least), hn::Ge(feature_spread, least)));
+  const Floats spreads = hn::IfThenElse(scored, hn::Mul(map_spread, feature_spread), one);
+  const Floats share = hn::Mul(n, hn::Set(kFloats, 1.0F / limits.full_cells));
+  return {hn::IfThenElseZero(scored, hn::Mul(hn::Mul(m, l), per_cell)),
+          hn::IfThenElseZero(scored, hn::Sqrt(hn::Div(hn::Max(share, hn::Zero(kFloats)), spreads)))};
+}
+
+void block_means(const BlockRow& sums, const MeansLimits& limits, int count, float* correction, float* gain) {
+  const int step = static_cast<int>(hn::Lanes(kFloats));
+  int i = 0;
+  for (; i + step <= count; i += step) {
+    const auto load = [i](const float* from) HWY_ATTR { return hn::LoadU(kFloats, from + i); };
+    const Means means = means_at(load(sums.n), load(sums.l), load(sums.ll), load(sums.m), load(sums.mm), limits);
+    hn::StoreU(means.correction, kFloats, correction + i);
+    hn::StoreU(means.gain, kFloats, gain + i);
+  }
+  for (; i < count; ++i) {
+    const auto load = [i](const float* from) HWY_ATTR { return hn::Set(kFloats, from[i]); };
+    const Means means = means_at(load(sums.n), load(sums.l), load(sums.ll), load(sums.m), load(sums.mm), limits);
+    correction[i] = hn::GetLane(means.correction);
+    gain[i] = hn::GetLane(means.gain);
+  }
+}
+
+void mix(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share, int count,
+         float* out) {
+  constexpr hn::RebindToSigned<decltype(kFloats)> kInts;
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(kFloats))) {
+    const Floats a = hn::GatherIndex(kFloats, blocks, hn::LoadU(kInts, first + i));
+    const Floats b = hn::GatherIndex(kFloats, blocks, hn::LoadU(kInts, second + i));
+    hn::StoreU(hn::MulAdd(hn::LoadU(kFloats, share + i), hn::Sub(b, a), a), kFloats, out + i);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace roadfix
 HWY_AFTER_NAMESPACE();
@@ -69,12 +114,23 @@ namespace roadfix {
 
 HWY_EXPORT(score);
 HWY_EXPORT(summarize);
+HWY_EXPORT(block_means);
+HWY_EXPORT(mix);
 
 void score_row(const ScoreRow& row, int cols, float* out) { HWY_DYNAMIC_DISPATCH(score)(row, cols, out); }
 
 RowTotals summarize_row(const float* above, const float* row, const float* below, int first, int last, float floor,
                         std::vector<int>& peaks) {
   return HWY_DYNAMIC_DISPATCH(summarize)(above, row, below, first, last, floor, peaks);
+}
+
+void means_of_blocks(const BlockRow& sums, const MeansLimits& limits, int count, float* correction, float* gain) {
+  HWY_DYNAMIC_DISPATCH(block_means)(sums, limits, count, correction, gain);
+}
+
+void mix_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
+                int count, float* out) {
+  HWY_DYNAMIC_DISPATCH(mix)(blocks, first, second, share, count, out);
 }
 
 }  // namespace roadfix

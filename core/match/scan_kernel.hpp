@@ -32,4 +32,24 @@ struct RowTotals {
 RowTotals summarize_row(const float* above, const float* row, const float* below, int first, int last, float floor,
                         std::vector<int>& peaks);
 
+/// Sums over a footprint, block by block: cells observed in both, values and squares of the feature map there, values
+/// and squares of the map.
+struct BlockRow {
+  const float *n, *l, *ll, *m, *mm;
+};
+/// Where fewer than least_cells of full_cells are observed, or the variance is less than least_spread, there is no
+/// score.
+struct MeansLimits {
+  float full_cells = 1.0F;
+  float least_cells = 1.0F;
+  float least_spread = 0.0F;
+};
+/// correction = m l / n, gain = sqrt(n / full_cells / ((mm - m m / n) (ll - l l / n))); both 0 where there is no score.
+/// Nothing is read or written beyond `count`.
+void means_of_blocks(const BlockRow& sums, const MeansLimits& limits, int count, float* correction, float* gain);
+
+/// out[i] = blocks[first[i]] + share[i] (blocks[second[i]] - blocks[first[i]]).
+void mix_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
+                int count, float* out);
+
 }  // namespace roadfix

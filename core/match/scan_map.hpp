@@ -4,6 +4,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
 #include "core/match/correlator.hpp"
+#include "core/match/scan_planes.hpp"
 
 namespace roadfix {
 
@@ -25,6 +26,9 @@ class ScanMap {
   std::size_t bytes() const { return values_.bytes() + block_observed_.bytes() + block_values_.bytes(); }
 
  private:
+  ScanMap(const RoadGrid& map, double mean, int reach, int block);
+  ScanMap(const RoadGrid& map, const FloatPlane& values, const BlockSumPlanes& blocks, int reach, int block);
+
   GridGeometry geometry_;
   int reach_;
   int block_;

@@ -1,7 +1,6 @@
 #include "core/match/scan_means.hpp"
 
-#include <cmath>
-
+#include "core/match/scan_kernel.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
@@ -22,36 +21,37 @@ ScanMeansGrid::ScanMeansGrid(const ScanMap& map, const Positions& positions) : r
   }
 }
 
-FloatPlane ScanMeansGrid::block_means(const FloatPlane& cells) const {
-  FloatPlane sums = block_sums(cells, q_, block_lead());
-  for (float& sum : sums.values) sum /= static_cast<float>(q_ * q_);
+BlockSumPlanes ScanMeansGrid::block_means(const CellArray& cells, double mean) const {
+  BlockSumPlanes sums = block_sums(cells, mean, q_, block_lead());
+  for (FloatPlane* plane : {&sums.observed, &sums.value, &sums.square}) {
+    for (float& sum : plane->values) sum /= static_cast<float>(q_ * q_);
+  }
   return sums;
 }
 
-ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const ScanMeansGrid& grid, const ScanPlanes& patch)
-    : map_(map),
-      observed_and_value_(
-          map.block_observed().spectrum_of(grid.block_means(patch.observed), grid.block_means(patch.value))),
-      square_(map.block_observed().spectrum_of(grid.block_means(patch.square), {})),
-      observed_(map.block_values().spectrum_of(grid.block_means(patch.observed), {})) {}
+ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansRoom& room)
+    : map_(map), room_(room) {
+  map.block_observed().spectrum_of(blocks.observed, blocks.value, room.observed, room.observed_and_value);
+  map.block_observed().spectrum_of(blocks.square, {}, room.observed, room.square);
+  map.block_values().spectrum_of(blocks.observed, {}, room.values, room.observed_of_patch);
+}
 
-ScanMeans ScanMeansPatch::at(bool half_turn, double full_cells, double least_cells) const {
-  const auto [n, l] = map_.block_observed().correlate(observed_and_value_, half_turn);
-  const FloatPlane ll = map_.block_observed().correlate(square_, half_turn).first;
-  const auto [m, mm] = map_.block_values().correlate(observed_, half_turn);
-  ScanMeans means{FloatPlane(n.cols, n.rows), FloatPlane(n.cols, n.rows)};
-  for (std::size_t i = 0; i < n.values.size(); ++i) {
-    const auto cells = static_cast<double>(n.values[i]);
-    if (cells < least_cells) continue;
-    const auto m_sum = static_cast<double>(m.values[i]);
-    const auto l_sum = static_cast<double>(l.values[i]);
-    const double map_spread = static_cast<double>(mm.values[i]) - m_sum * m_sum / cells;
-    const double feature_spread = static_cast<double>(ll.values[i]) - l_sum * l_sum / cells;
-    if (map_spread < kLeastSpread * cells || feature_spread < kLeastSpread * cells) continue;
-    means.correction.values[i] = static_cast<float>(m_sum * l_sum / cells);
-    means.gain.values[i] = static_cast<float>(std::sqrt(cells / full_cells / (map_spread * feature_spread)));
+void ScanMeansPatch::at(bool half_turn, double full_cells, double least_cells, ScanMeans& means) const {
+  map_.block_observed().correlate(room_.observed_and_value, half_turn, room_.observed, room_.counts_and_values);
+  map_.block_observed().correlate(room_.square, half_turn, room_.observed, room_.squares);
+  map_.block_values().correlate(room_.observed_of_patch, half_turn, room_.values, room_.of_map);
+  const FloatPlane& n = room_.counts_and_values.first;
+  for (FloatPlane* plane : {&means.correction, &means.gain}) {
+    plane->cols = n.cols;
+    plane->rows = n.rows;
+    plane->values.resize(n.values.size());
   }
-  return means;
+  const BlockRow sums{n.values.data(), room_.counts_and_values.second.values.data(), room_.squares.first.values.data(),
+                      room_.of_map.first.values.data(), room_.of_map.second.values.data()};
+  const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(least_cells),
+                           static_cast<float>(kLeastSpread)};
+  means_of_blocks(sums, limits, static_cast<int>(n.values.size()), means.correction.values.data(),
+                  means.gain.values.data());
 }
 
 }  // namespace roadfix

@@ -26,10 +26,10 @@ class ScanMeansGrid {
   ScanMeansGrid(const ScanMap& map, const Positions& positions);
 
   /// Position i (from -1 on) lies between these rows or columns of ScanMeans.
-  const std::vector<BlockMix>& cols(bool half_turn) const { return cols_[half_turn ? 1 : 0]; }
-  const std::vector<BlockMix>& rows(bool half_turn) const { return rows_[half_turn ? 1 : 0]; }
+  const BlockMixes& cols(bool half_turn) const { return cols_[half_turn ? 1 : 0]; }
+  const BlockMixes& rows(bool half_turn) const { return rows_[half_turn ? 1 : 0]; }
   /// Of the patch's cells (2 reach + 1 of them, the nadir in the middle): means over each block.
-  FloatPlane block_means(const FloatPlane& cells) const;
+  BlockSumPlanes block_means(const CellArray& cells, double mean) const;
 
  private:
   /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
@@ -39,19 +39,33 @@ class ScanMeansGrid {
 
   int reach_;
   int q_;  ///< cells per block, an edge
-  std::array<std::vector<BlockMix>, 2> cols_, rows_;
+  std::array<BlockMixes, 2> cols_, rows_;
+};
+
+/// What a thread uses again and again for means.
+struct ScanMeansRoom {
+  Correlator::Room observed, values;
+  Spectrum observed_and_value, square, observed_of_patch;
+  FloatPlanes counts_and_values, squares, of_map;
+  explicit ScanMeansRoom(const ScanMap& map)
+      : observed(map.block_observed().side()),
+        values(map.block_values().side()),
+        observed_and_value(observed.sums.side()),
+        square(observed.sums.side()),
+        observed_of_patch(values.sums.side()) {}
 };
 
 /// A footprint's side of the means, at one heading and its opposite.
 class ScanMeansPatch {
  public:
-  ScanMeansPatch(const ScanMap& map, const ScanMeansGrid& grid, const ScanPlanes& patch);
+  /// `blocks`: ScanMeansGrid::block_means(). All outlive this.
+  ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansRoom& room);
   /// No score where less than `least_cells` of `full_cells` are observed in both, or too little road.
-  ScanMeans at(bool half_turn, double full_cells, double least_cells) const;
+  void at(bool half_turn, double full_cells, double least_cells, ScanMeans& means) const;
 
  private:
   const ScanMap& map_;
-  Spectrum observed_and_value_, square_, observed_;
+  ScanMeansRoom& room_;
 };
 
 }  // namespace roadfix

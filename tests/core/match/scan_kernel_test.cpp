@@ -4,6 +4,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -72,6 +73,57 @@ TEST_P(ScanRowsOnEachTarget, HavePeaksWhereNoNeighbourIsHigher) {
     EXPECT_EQ(peaks, expected);
     EXPECT_EQ(totals.poses, poses);
     EXPECT_NEAR(totals.squares, squares, 1e-5 * cols);
+  }
+}
+
+TEST_P(ScanRowsOnEachTarget, HaveMeansOnlyWhereEnoughIsObservedAndVaries) {
+  std::mt19937_64 random(3);
+  for (std::size_t count = 1; count < 70; ++count) {
+    auto n = noise(count, random);
+    for (float& value : n) value = 100.0F * value + 60.0F;
+    const auto l = noise(count, random);
+    const auto m = noise(count, random);
+    const auto ll = noise(count, random);  // squares below 0 stand for a spread that is too small
+    const auto mm = noise(count, random);
+    std::vector<float> correction(count, -1.0F);
+    std::vector<float> gain(count, -1.0F);
+    means_of_blocks({n.data(), l.data(), ll.data(), m.data(), mm.data()}, {150.0F, 30.0F, 1e-3F},
+                    static_cast<int>(count), correction.data(), gain.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double cells = static_cast<double>(n[i]);
+      const double map_spread =
+          static_cast<double>(mm[i]) - static_cast<double>(m[i]) * static_cast<double>(m[i]) / cells;
+      const double feature_spread =
+          static_cast<double>(ll[i]) - static_cast<double>(l[i]) * static_cast<double>(l[i]) / cells;
+      const double least = std::min(map_spread, feature_spread) - 1e-3 * cells;
+      if (cells >= 30.0 && std::abs(least) < 1e-4) continue;  // may fall either way
+      const bool scored = cells >= 30.0 && least > 0.0;
+      const double product = static_cast<double>(m[i]) * static_cast<double>(l[i]) / cells;
+      EXPECT_NEAR(correction[i], scored ? product : 0.0, 1e-5) << i << " of " << count;
+      const double expected = scored ? std::sqrt(cells / 150.0 / (map_spread * feature_spread)) : 0.0;
+      EXPECT_NEAR(gain[i], expected, 1e-3 * (1.0 + expected)) << i << " of " << count;
+    }
+  }
+}
+
+TEST_P(ScanRowsOnEachTarget, LieBetweenTheirBlocks) {
+  std::mt19937_64 random(4);
+  const auto blocks = noise(9, random);
+  for (std::size_t count = 1; count < 40; ++count) {
+    std::vector<std::int32_t> first(count + kRowOverrun);
+    std::vector<std::int32_t> second(count + kRowOverrun);
+    for (std::size_t i = 0; i < count; ++i) {
+      first[i] = static_cast<std::int32_t>(random() % 9);
+      second[i] = static_cast<std::int32_t>(random() % 9);
+    }
+    const auto share = noise(count, random);
+    std::vector<float> out(count + kRowOverrun);
+    mix_blocks(blocks.data(), first.data(), second.data(), share.data(), static_cast<int>(count), out.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const float a = blocks[static_cast<std::size_t>(first[i])];
+      const float b = blocks[static_cast<std::size_t>(second[i])];
+      EXPECT_NEAR(out[i], a + share[i] * (b - a), 1e-5F) << i << " of " << count;
+    }
   }
 }
 

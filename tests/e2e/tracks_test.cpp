@@ -1,13 +1,10 @@
-// Tracks as a client meets them: flights over real sockets, and the service killed amid them.
+// Tracks as a client meets them: flights over real sockets.
 #include <gmock/gmock.h>
-#include <signal.h>
 
 #include <atomic>
-#include <fstream>
 #include <thread>
 
-#include "tests/e2e/service_fixture.hpp"
-#include "tests/support/flight.hpp"
+#include "tests/e2e/tracks_fixture.hpp"
 
 namespace roadfix {
 namespace {
@@ -15,62 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-struct Request {
-  std::string query;
-  std::string picture;
-};
-
-/// A step as its query and its picture; without a picture it has to be sent as JSON.
-Request request_of(const StepInput& step) {
-  Request request;
-  request.query =
-      "?sequence=" + std::to_string(step.sequence) + "&time_us=" + std::to_string(step.time_us) + "&cell_m=2";
-  if (step.odometry) {
-    request.query += "&forward_m=" + std::to_string(step.odometry->forward_m) +
-                     "&right_m=" + std::to_string(step.odometry->right_m) +
-                     "&turn_deg=" + std::to_string(step.odometry->turn.degrees());
-  }
-  if (step.features) request.picture = testing::text_of(encode_feature_map(step.features->cells));
-  return request;
-}
-
-class Tracks : public ::testing::Test {
- protected:
-  Tracks() { testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0); }
-
-  /// With time for everything: a loaded machine may take minutes.
-  std::unique_ptr<testing::ServiceProcess> service(std::vector<std::string> options = {}) const {
-    options.insert(options.end(), {"--request-time", "600"});
-    return std::make_unique<testing::ServiceProcess>(folder_.path(), options);
-  }
-  json asked() const {
-    return {{"map", "town"},   {"lat", town_.place.lat_deg}, {"lon", town_.place.lon_deg},
-            {"radius_m", 200}, {"particles", 2000},          {"seed", 7}};
-  }
-  static httplib::Client client_of(const testing::ServiceProcess& service) {
-    httplib::Client client = testing::client_of(service);
-    client.set_read_timeout(600);
-    return client;
-  }
-  std::string begin(httplib::Client& client) const {
-    const auto answer = client.Post("/v1/tracks", asked().dump(), "application/json");
-    EXPECT_EQ(answer->status, 201) << answer->body;
-    return testing::json_of(answer)["id"];
-  }
-  static httplib::Result send(httplib::Client& client, const std::string& id, const Request& request) {
-    return client.Post(("/v1/tracks/" + id + "/steps" + request.query).c_str(), request.picture, "image/png");
-  }
-  std::vector<Request> flight(int steps) const {
-    testing::Flight flight(town_.roads, town_.pose, 21);
-    std::vector<Request> requests;
-    for (int i = 0; i < steps; ++i) requests.push_back(request_of(flight.step()));
-    return requests;
-  }
-
-  const testing::Town town_;
-  const testing::TemporaryFolder folder_;
-};
 
 TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
   const auto running = service();
@@ -157,60 +98,6 @@ TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   EXPECT_EQ(refused(json::object()), "429 too-many-tracks");
 }
 
-TEST_F(Tracks, LoseNoAnsweredStepWhenTheServiceIsKilledAtAnyMoment) {
-  const std::vector<Request> steps = flight(24);
-  const auto without_track = [](const httplib::Result& answer) {
-    json body = testing::json_of(answer);
-    body.erase("track");
-    return body.dump();
-  };
-  std::vector<std::string> expected;
-  {
-    const auto undisturbed = service({"--tracks", (folder_ / "undisturbed.sqlite").string()});
-    httplib::Client client = client_of(*undisturbed);
-    const std::string id = begin(client);
-    for (const Request& step : steps) expected.push_back(without_track(send(client, id, step)));
-  }
-  auto running = service();
-  std::string id;
-  {
-    httplib::Client client = client_of(*running);
-    id = begin(client);
-  }
-  std::vector<std::string> answers;
-  std::mt19937_64 random(5);
-  while (answers.size() < steps.size()) {
-    // After one to four answers, and then at any moment of the next steps. The step that was cut off is sent again: it
-    // may have been taken, but must not be taken twice.
-    std::atomic<std::size_t> answered = answers.size();
-    const std::size_t kill_after = answers.size() + 1 + random() % 4;
-    const std::chrono::microseconds moment(random() % 30'000);
-    std::jthread killer([&] {
-      for (std::size_t now = answered; now < kill_after && now < steps.size(); now = answered) answered.wait(now);
-      std::this_thread::sleep_for(moment);
-      running->send_signal(SIGKILL);
-    });
-    httplib::Client client = client_of(*running);
-    while (answers.size() < steps.size()) {
-      const auto answer = send(client, id, steps[answers.size()]);
-      if (!answer) break;
-      EXPECT_EQ(answer->status, 200) << answer->body;
-      answers.push_back(without_track(answer));
-      answered = answers.size();
-      answered.notify_one();
-    }
-    answered = steps.size();
-    answered.notify_one();
-    killer.join();
-    ASSERT_NE(running->wait(10min), -1);
-    running = service();
-    httplib::Client after = client_of(*running);
-    const json track = testing::json_of(after.Get(("/v1/tracks/" + id).c_str()));
-    ASSERT_GE(track["last"]["sequence"].get<std::size_t>() + 1, answers.size()) << "an answered step was lost";
-  }
-  EXPECT_EQ(answers, expected);
-}
-
 TEST_F(Tracks, PutStepsThatOvertakeEachOtherInOrder) {
   const auto running = service({"--searches", "8", "--step-wait", "600"});
   httplib::Client client = client_of(*running);
@@ -284,31 +171,6 @@ TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   EXPECT_THAT(rest, HasSubstr("event: end\ndata: {\"reason\":\"finished\"}\n"));
 }
 
-TEST_F(Tracks, EndEventsInOrderWhenTheServiceStopsAndLimitTheirNumber) {
-  const auto running = service({"--max-streams", "1"});
-  httplib::Client client = client_of(*running);
-  const std::string id = begin(client);
-  std::atomic<bool> connected = false;
-  std::string text;
-  bool whole = false;
-  std::jthread listener([&] {
-    httplib::Client other = client_of(*running);
-    const auto answer = other.Get(("/v1/tracks/" + id + "/events").c_str(), [&](const char* data, std::size_t size) {
-      text.append(data, size);
-      connected = true;
-      return true;
-    });
-    whole = static_cast<bool>(answer);
-  });
-  while (!connected) std::this_thread::sleep_for(5ms);
-  EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + id + "/events").c_str())), "503 server-busy");
-  running->send_signal(SIGTERM);
-  EXPECT_EQ(running->wait(10min), 0);
-  listener.join();
-  EXPECT_TRUE(whole) << "the stream ends as a whole answer";
-  EXPECT_THAT(text, Not(HasSubstr("event: end"))) << "the track goes on with the next service";
-}
-
 TEST_F(Tracks, AnswerInTheWordsOfAutopilots) {
   const auto running = service();
   httplib::Client client = client_of(*running);
@@ -337,65 +199,6 @@ TEST_F(Tracks, AnswerInTheWordsOfAutopilots) {
   EXPECT_EQ(packet.substr(0, 1), "\xfd");
   EXPECT_EQ(packet.substr(4, 3), std::string("\x07\x07\xc5")) << "sequence, system, component";
   EXPECT_THAT(as(7, "&format=nmea")->body, ::testing::StartsWith("$GPGGA,,"));
-}
-
-TEST_F(Tracks, EndWhenNothingComes) {
-  const auto running = service({"--track-idle", "0.2"});
-  httplib::Client client = client_of(*running);
-  const std::string idle = begin(client);
-  while (client.Get(("/v1/tracks/" + idle).c_str())->status == 200) std::this_thread::sleep_for(20ms);
-  EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + idle).c_str())), "410 track-ended");
-  EXPECT_EQ(testing::refusal(send(client, idle, flight(1)[0])), "410 track-ended");
-  EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
-}
-
-TEST_F(Tracks, RefuseStepsOverAMapThatWasReplaced) {
-  const auto running = service();
-  httplib::Client client = client_of(*running);
-  const std::string id = begin(client);
-  const std::string version = testing::json_of(client.Get("/v1/maps/town"))["version"];
-  {
-    MapWriter writer(folder_ / "town.gpkg", {town_.zone, 2.0});
-    writer.remove_source("town");
-  }
-  while (testing::json_of(client.Get("/v1/maps/town"))["version"] == version) std::this_thread::sleep_for(20ms);
-  EXPECT_EQ(testing::refusal(send(client, id, flight(1)[0])), "409 map-replaced");
-  const json track = testing::json_of(client.Get(("/v1/tracks/" + id).c_str()));
-  EXPECT_TRUE(track["last"].is_null()) << "nothing was taken";
-}
-
-TEST_F(Tracks, SayWhyTheyCannotBeKeptWhileMapsAreServed) {
-  std::ofstream(folder_ / "broken.sqlite") << std::string(4096, 'x');
-  const auto refusal_with = [&](const std::string& store) {
-    const auto running = service({"--tracks", store});
-    httplib::Client client = client_of(*running);
-    EXPECT_EQ(client.Get("/v1/maps/town")->status, 200);
-    const json ready = testing::json_of(client.Get("/readyz"));
-    EXPECT_EQ(ready["status"], "ready");
-    EXPECT_EQ(ready["tracks"], "unavailable");
-    EXPECT_THAT(ready["tracks_problem"].get<std::string>(), HasSubstr(store));
-    return testing::refusal(client.Post("/v1/tracks", asked().dump(), "application/json"));
-  };
-  EXPECT_EQ(refusal_with((folder_ / "broken.sqlite").string()), "503 track-store-corrupt");
-  EXPECT_EQ(refusal_with((folder_ / "no/such/folder.sqlite").string()), "503 track-store-unavailable");
-}
-
-TEST_F(Tracks, FlySixteenVehiclesAtOnce) {
-  const auto running = service();
-  const std::vector<Request> steps = flight(6);
-  std::atomic<int> converged = 0;
-  std::vector<std::jthread> vehicles;
-  for (int i = 0; i < 16; ++i) {
-    vehicles.emplace_back([&] {
-      httplib::Client client = client_of(*running);
-      const std::string id = begin(client);
-      json last;
-      for (const Request& step : steps) last = testing::json_of(send(client, id, step));
-      if (last["status"] == "converged") ++converged;
-    });
-  }
-  vehicles.clear();
-  EXPECT_EQ(converged, 16);
 }
 
 }  // namespace

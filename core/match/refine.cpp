@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/grid/resample.hpp"
@@ -16,23 +18,107 @@
 namespace roadfix {
 namespace {
 
-/// The map around a pose, wide enough for the footprint at the poses up to `cells` away.
-MapPlane plane_around(const Level& level, const LatticePose& pose, int cells) {
+/// The ground around a pose, wide enough for the footprint at the poses up to `cells` away.
+GridGeometry window_around(const Level& level, const LatticePose& pose, int cells) {
   const int reach = level.reach(std::min(pose.scale + 1, level.scales.reach())) + cells;
-  const LatticeIndex cell = pose.cell;
-  const GridGeometry window{level.cell_m(), {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
-  return MapPlane(level.read(window).cells, 0);
+  return framed({level.cell_m(), pose.cell, 1, 1}, reach);
 }
 
-/// Sums at the (2 cells + 1)^2 places around the centre of the plane, row by row.
-std::vector<MatchSums> sums_around(const MapPlane& plane, const Footprint& footprint, int cells) {
-  std::vector<PlaneCell> places;
-  for (int row = -cells; row <= cells; ++row) {
-    for (int col = -cells; col <= cells; ++col) places.push_back({plane.cols() / 2 + col, plane.rows() / 2 + row});
+std::int64_t cells_of(const GridGeometry& window) { return std::int64_t{window.cols} * window.rows; }
+
+GridGeometry joined(const GridGeometry& a, const GridGeometry& b) {
+  const LatticeIndex first{std::min(a.origin.col, b.origin.col), std::min(a.origin.row, b.origin.row)};
+  return {a.cell_m, first, std::max(a.origin.col + a.cols, b.origin.col + b.cols) - first.col,
+          std::max(a.origin.row + a.rows, b.origin.row + b.rows) - first.row};
+}
+
+/// The map around candidates: one plane for all where they lie so close together that it is no larger than one for
+/// each.
+class GroundAround {
+ public:
+  /// `whole()` is false, and the rest must not be used, if time was over before.
+  GroundAround(const Level& level, int cells, const Deadline& deadline, const std::vector<LatticePose>& candidates) {
+    std::vector<GridGeometry> windows;
+    std::int64_t apart = 0;
+    for (const LatticePose& pose : candidates) {
+      windows.push_back(window_around(level, pose, cells));
+      apart += cells_of(windows.back());
+    }
+    if (windows.empty()) return;
+    const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
+    if (cells_of(all) <= apart) windows.assign(1, all);
+    for (const GridGeometry& window : windows) {
+      if (deadline.over()) return;
+      planes_.push_back({window.origin, MapPlane(level.read(window).cells, 0)});
+    }
+    whole_ = true;
   }
+
+  bool whole() const { return whole_; }
+  bool shared() const { return planes_.size() == 1; }
+  const MapPlane& plane(std::size_t candidate) const { return at(candidate).plane; }
+  PlaneCell place(std::size_t candidate, LatticeIndex cell) const {
+    const LatticeIndex origin = at(candidate).origin;
+    return {cell.col - origin.col, cell.row - origin.row};
+  }
+
+ private:
+  struct Plane {
+    LatticeIndex origin;
+    MapPlane plane;
+  };
+  const Plane& at(std::size_t candidate) const { return planes_[shared() ? 0 : candidate]; }
+
+  std::vector<Plane> planes_;
+  bool whole_ = false;
+};
+
+/// The places up to `cells` around one, row by row.
+void add_places_around(PlaneCell place, int cells, std::vector<PlaneCell>& places) {
+  for (int row = -cells; row <= cells; ++row) {
+    for (int col = -cells; col <= cells; ++col) places.push_back({place.col + col, place.row + row});
+  }
+}
+
+/// Those candidates that ask for a scale and bin: turning the feature map is expensive, so they share it.
+struct RefineTask {
+  int scale;
+  int bin;
+  const LevelFeatures* features;
+  std::vector<std::size_t> candidates;
+  std::vector<LatticePose> best;  ///< of each candidate
+};
+
+/// The best of the poses around a candidate; `sums` are theirs, in the order of add_places_around().
+LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, std::span<const MatchSums> sums) {
+  LatticePose best{cell, task.bin, 0.0, task.scale};
+  const int width = 2 * cells + 1;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const double score = score_of(sums[k], task.features->full_cells, task.features->least_cells);
+    if (score <= best.score) continue;
+    const int index = static_cast<int>(k);
+    best.cell = {cell.col + index % width - cells, cell.row + index / width - cells};
+    best.score = score;
+  }
+  return best;
+}
+
+void run(RefineTask& task, const Level& level, int cells, const GroundAround& ground,
+         const std::vector<LatticePose>& poses) {
+  const Footprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
+  std::vector<PlaneCell> places;
+  for (const std::size_t i : task.candidates) add_places_around(ground.place(i, poses[i].cell), cells, places);
   std::vector<MatchSums> sums(places.size());
-  match_sums(plane, footprint, places, sums);
-  return sums;
+  const std::size_t each = places.size() / task.candidates.size();
+  const std::size_t together = ground.shared() ? places.size() : each;
+  for (std::size_t first = 0; first < places.size(); first += together) {
+    match_sums(ground.plane(task.candidates[first / each]), footprint, std::span(places).subspan(first, together),
+               std::span(sums).subspan(first, together));
+  }
+  for (std::size_t k = 0; k < task.candidates.size(); ++k) {
+    task.best.push_back(
+        best_around(poses[task.candidates[k]].cell, cells, task, std::span(sums).subspan(k * each, each)));
+  }
 }
 
 }  // namespace
@@ -59,14 +145,17 @@ int Level::reach(int scale) const {
   return scale == 0 ? reach : static_cast<int>(std::ceil(scales.factor(scale) * reach)) + 1;
 }
 
+GridGeometry framed(const GridGeometry& geometry, int cells) {
+  return {geometry.cell_m,
+          {geometry.origin.col - cells, geometry.origin.row - cells},
+          geometry.cols + 2 * cells,
+          geometry.rows + 2 * cells};
+}
+
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
-  std::vector<MapPlane> planes;
-  planes.reserve(candidates.size());
-  // Turning the feature map is the expensive part, so all candidates that ask for a bin share it.
+  const GroundAround ground(level, cells, deadline, candidates);
   std::map<std::pair<int, int>, std::vector<std::size_t>> candidates_of;  // scale and bin
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (deadline.over()) return false;
-    planes.push_back(plane_around(level, candidates[i], cells));
     for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
       if (std::abs(scale) > level.scales.reach()) continue;
       for (int d = -bins; d <= bins; ++d)
@@ -74,48 +163,27 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
     }
   }
   std::map<int, LevelFeatures> features;
-  struct Task {
-    int scale;
-    int bin;
-    const LevelFeatures* features;
-    const std::vector<std::size_t>* candidates;
-    std::vector<LatticePose> best;
-  };
-  std::vector<Task> tasks;
-  for (const auto& [key, members] : candidates_of) {
+  std::vector<RefineTask> tasks;
+  for (auto& [key, members] : candidates_of) {
+    if (deadline.over() || !ground.whole()) return false;
     const auto [scale, bin] = key;
-    if (deadline.over()) return false;
     if (!features.contains(scale)) features.emplace(scale, level.at_scale(scale));
-    tasks.push_back({scale, bin, &features.at(scale), &members, {}});
+    tasks.push_back({scale, bin, &features.at(scale), std::move(members), {}});
   }
   std::atomic<bool> whole{true};
   parallel_for(static_cast<int>(tasks.size()), level.threads, [&](int t) {
     if (deadline.over()) {
       whole = false;
-      return;
-    }
-    Task& task = tasks[static_cast<std::size_t>(t)];
-    const Footprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
-    for (const std::size_t i : *task.candidates) {
-      const std::vector<MatchSums> sums = sums_around(planes[i], footprint, cells);
-      LatticePose best{candidates[i].cell, task.bin, 0.0, task.scale};
-      for (std::size_t k = 0; k < sums.size(); ++k) {
-        const double score = score_of(sums[k], task.features->full_cells, task.features->least_cells);
-        if (score <= best.score) continue;
-        const int index = static_cast<int>(k);
-        const int width = 2 * cells + 1;
-        best.cell = {candidates[i].cell.col + index % width - cells, candidates[i].cell.row + index / width - cells};
-        best.score = score;
-      }
-      task.best.push_back(best);
+    } else {
+      run(tasks[static_cast<std::size_t>(t)], level, cells, ground, candidates);
     }
   });
   if (!whole) return false;
   std::vector<LatticePose> refined = candidates;
   for (LatticePose& pose : refined) pose.score = 0.0;
-  for (const Task& task : tasks) {
+  for (const RefineTask& task : tasks) {
     for (std::size_t k = 0; k < task.best.size(); ++k) {
-      LatticePose& pose = refined[(*task.candidates)[k]];
+      LatticePose& pose = refined[task.candidates[k]];
       if (task.best[k].score > pose.score) pose = task.best[k];
     }
   }
@@ -125,12 +193,15 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
 
 Peak peak_around(const Level& level, const LatticePose& pose) {
   const LevelFeatures features = level.at_scale(pose.scale);
-  const MapPlane plane = plane_around(level, pose, kPeakRadius);
+  const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells, 0);
+  std::vector<PlaneCell> places;
+  add_places_around({plane.cols() / 2, plane.rows() / 2}, kPeakRadius, places);
+  std::vector<MatchSums> sums(places.size());
   Peak peak;
   for (int d = 0; d < kPeakSize; ++d) {
     const Footprint footprint =
         footprint_at(features.turnable, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
-    const std::vector<MatchSums> sums = sums_around(plane, footprint, kPeakRadius);
+    match_sums(plane, footprint, places, sums);
     for (int row = 0; row < kPeakSize; ++row) {
       for (int col = 0; col < kPeakSize; ++col) {
         const auto at = static_cast<std::size_t>(row * kPeakSize + col);

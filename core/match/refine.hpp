@@ -41,6 +41,9 @@ struct Level {
   GridPose pose_of(const LatticePose& pose) const;
 };
 
+/// So many cells more on every side.
+GridGeometry framed(const GridGeometry& geometry, int cells);
+
 /// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it. False if
 /// time was over before: then they are left as they were.
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);

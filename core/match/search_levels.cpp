@@ -99,13 +99,6 @@ std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, 
   return kept;
 }
 
-GridGeometry framed(const GridGeometry& geometry, int cells) {
-  return {geometry.cell_m,
-          {geometry.origin.col - cells, geometry.origin.row - cells},
-          geometry.cols + 2 * cells,
-          geometry.rows + 2 * cells};
-}
-
 void descend(std::vector<LatticePose>& candidates) {
   for (LatticePose& pose : candidates) {
     pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};

@@ -43,8 +43,6 @@ class SearchLevels {
   std::vector<Level> levels_;  ///< finest first
 };
 
-/// So many cells more on every side.
-GridGeometry framed(const GridGeometry& geometry, int cells);
 /// From the cells of one level to those of the next finer one.
 void descend(std::vector<LatticePose>& candidates);
 

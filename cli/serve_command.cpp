@@ -30,6 +30,7 @@ struct ServeOptions {
   std::size_t search_cache_mib = service.search_cache_bytes / kMiB;
   std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
   double request_time_s = 30.0;
+  double turn_time_s = 0.0;  ///< 0: as long as the request time
   double idle_time_s = 15.0;
   double watch_s = 1.0;
   double track_idle_s = 3600.0;
@@ -53,6 +54,7 @@ server::Configuration configuration(const ServeOptions& options) {
   result.search_cache_bytes = options.search_cache_mib * kMiB;
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
   result.http.request_time = milliseconds(options.request_time_s);
+  result.http.turn_time = options.turn_time_s > 0.0 ? milliseconds(options.turn_time_s) : result.http.request_time;
   result.http.idle_time = milliseconds(options.idle_time_s);
   result.watch_interval = milliseconds(options.watch_s);
   result.track_limits.idle = milliseconds(options.track_idle_s);
@@ -98,7 +100,12 @@ void add_limits(CLI::App& command, ServeOptions& o) {
   add("--max-poses", limits.poses, "Poses of a match");
   add("--max-search", limits.search_km2, "Area of a search in km2");
   add("--max-particles", limits.particles, "Particles of a track");
-  add("--request-time", o.request_time_s, "Seconds that an answer may take");
+  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on");
+  command
+      .add_option("--turn-time", o.turn_time_s,
+                  "Seconds that a search or detection may wait for its turn; as many as --request-time unless given")
+      ->check(CLI::PositiveNumber)
+      ->group("Limits of one request");
 }
 
 void add_resources(CLI::App& command, ServeOptions& o) {

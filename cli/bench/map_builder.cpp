@@ -100,7 +100,8 @@ MapView build_map(const ManifestMap& map, const MapBuilding& building) {
              building.stop);
     }
   }
-  return view_of(std::make_shared<const MapReader>(file), map.name);
+  constexpr std::size_t kSearchCacheBytes = std::size_t{256} << 20;  // all queries search the same map
+  return view_of(std::make_shared<const MapReader>(file), map.name, kSearchCacheBytes);
 }
 
 std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone) {

@@ -30,9 +30,8 @@ bool is_known_to_client(const http::Request& request, const std::string& tag) {
   return known == "*" || known.find(tag) != std::string::npos;
 }
 
-std::chrono::microseconds time_spent(const http::Request& request, const http::ServerSettings& settings) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(http::Clock::now() -
-                                                               (request.deadline - settings.request_time));
+std::chrono::microseconds time_spent(const http::Request& request) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(http::Clock::now() - request.received);
 }
 
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {

@@ -22,7 +22,7 @@ std::string entity_tag(const std::string& version, const std::string& variation)
 bool is_known_to_client(const http::Request& request, const std::string& tag);
 
 /// Since the request was read.
-std::chrono::microseconds time_spent(const http::Request& request, const http::ServerSettings& settings);
+std::chrono::microseconds time_spent(const http::Request& request);
 
 /// The query and the JSON members that a route takes.
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);

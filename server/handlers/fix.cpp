@@ -18,8 +18,8 @@ std::vector<std::string> query_fields() {
 }
 
 /// The frame was captured at time_us, or when the request came.
-api::PositionTime time_of(const Service& service, const http::Request& request, const api::Fields& fields) {
-  const auto spent = time_spent(request, service.http);
+api::PositionTime time_of(const http::Request& request, const api::Fields& fields) {
+  const auto spent = time_spent(request);
   if (const auto time_us = fields.optional_number("time_us", {0.0, kMostExact})) {
     return {static_cast<std::int64_t>(*time_us), spent};
   }
@@ -42,7 +42,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   api::shorten(options, request.deadline);
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
   if (format.is_json()) return json_response(answer);
-  return api::position_response(answer, format, time_of(service, request, content.fields));
+  return api::position_response(answer, format, time_of(request, content.fields));
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ http::Response limits(const Service& service) {
                         {"track_idle_s", std::chrono::duration<double>(service.tracks.limits().idle).count()},
                         {"frames", service.limits.frames},
                         {"request_time_ms", service.http.request_time.count()},
+                        {"turn_time_ms", service.http.turn_time.count()},
                         {"searches_at_once", service.http.heavy_running},
                         {"searches_waiting", service.http.heavy_waiting}});
 }

@@ -72,12 +72,12 @@ http::Response post_track(const Service& service, const http::Request& request) 
   return response;
 }
 
-http::Response step_response(const Service& service, const http::Request& request, const api::PositionFormat& format,
-                             const StepInput& input, std::string answer) {
+http::Response step_response(const http::Request& request, const api::PositionFormat& format, const StepInput& input,
+                             std::string answer) {
   if (format.is_json()) return {200, "application/json", std::move(answer)};
   api::PositionFormat numbered = format;
   numbered.sender.sequence = static_cast<std::uint8_t>(input.sequence & 0xff);
-  return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request, service.http)});
+  return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request)});
 }
 
 http::Response post_step(const Service& service, const http::Request& request) {
@@ -87,7 +87,7 @@ http::Response post_step(const Service& service, const http::Request& request) {
   StepInput input = api::parse_step(content.fields);
   const std::int64_t digest = digest_of(request);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
-    http::Response repeated = step_response(service, request, format, input, std::move(*answer));
+    http::Response repeated = step_response(request, format, input, std::move(*answer));
     repeated.headers.emplace_back("Roadfix-Repeated", "true");
     return repeated;
   }
@@ -101,7 +101,7 @@ http::Response post_step(const Service& service, const http::Request& request) {
   // Two searches, and the rest of the step.
   limits.search_time = std::max(api::time_left(request.deadline) / 3, std::chrono::milliseconds(1));
   limits.stop = limit.token();
-  return step_response(service, request, format, input, service.tracks.step(track.id, input, digest, limits));
+  return step_response(request, format, input, service.tracks.step(track.id, input, digest, limits));
 }
 
 http::Response list_tracks(const Service& service, const http::Request& request) {

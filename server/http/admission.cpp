@@ -25,7 +25,7 @@ Admission::Ticket Admission::enter(std::chrono::steady_clock::time_point deadlin
       turn_.wait_until(lock, deadline, [&] { return place == queue_.begin() && running_ < max_running_; });
   queue_.erase(place);
   turn_.notify_all();
-  if (!mine) throw Busy("the request's time ended before its turn came; try again", kRetryAfter);
+  if (!mine) throw Busy("its turn did not come in the time that a request may wait; try again", kRetryAfter);
   ++running_;
   return Ticket(*this);
 }

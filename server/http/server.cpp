@@ -252,10 +252,13 @@ Response Server::Impl::answered(Exchange& exchange) {
   const Counted in_flight(metrics_.in_flight);
   try {
     const Route& route = *exchange.match.route;
-    exchange.request.deadline = Clock::now() + settings_.request_time;
-    if (!route.heavy) return route.handler(exchange.request);
-    const Admission::Ticket ticket = admission_.enter(exchange.request.deadline);
-    return route.handler(exchange.request);
+    Request& request = exchange.request;
+    request.received = Clock::now();
+    request.deadline = request.received + settings_.request_time;
+    if (!route.heavy) return route.handler(request);
+    const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time);
+    request.deadline = Clock::now() + settings_.request_time;
+    return route.handler(request);
   } catch (...) {
     return on_error_(std::current_exception());
   }

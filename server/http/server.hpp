@@ -24,7 +24,9 @@ struct ServerSettings {
   std::chrono::milliseconds head_time{10'000};
   std::chrono::milliseconds body_time{60'000};
   std::chrono::milliseconds write_time{30'000};
-  std::chrono::milliseconds request_time{30'000};  ///< from the end of the body to the answer: Request::deadline
+  /// From the end of the body to the answer, or for what waits its turn from its turn on: Request::deadline.
+  std::chrono::milliseconds request_time{30'000};
+  std::chrono::milliseconds turn_time{30'000};  ///< that a heavy request waits for its turn
   std::size_t head_bytes = 64 << 10;
   std::size_t target_bytes = 4096;
   std::size_t body_bytes = std::size_t{64} << 20;  ///< after unpacking

@@ -159,7 +159,7 @@ TEST(ServiceLife, EndsARequestWhoseTimeIsOver) {
   const testing::TemporaryFolder folder;
   const testing::Town town;
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
-  const testing::ServiceProcess service(folder.path(), {"--request-time", "0.005"});
+  const testing::ServiceProcess service(folder.path(), {"--request-time", "0.001"});
   const auto answer = testing::client_of(service).Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png");
   // Before the search it is a refusal, in the search an answer that says how far it came.
   if (answer->status != 503) {

@@ -41,6 +41,10 @@ class HttpServer : public ::testing::Test {
                    while (!go_) std::this_thread::sleep_for(1ms);
                    return Response{200, "text/plain", "waited"};
                  }});
+    router_.add({"POST", "/times", {}, true, [this](const Request& request) {
+                   times_ = {request.received, request.deadline};
+                   return Response{200, "text/plain", "done"};
+                 }});
     router_.add({"GET", "/throw", {}, false, [](const Request&) -> Response { throw std::logic_error("a mistake"); }});
     router_.add({"GET", "/stream", {}, false, [](const Request&) {
                    Response response{200, "text/plain", {}};
@@ -84,6 +88,7 @@ class HttpServer : public ::testing::Test {
   int port_ = 0;
   std::atomic<int> waiting_ = 0;
   std::atomic<bool> go_ = false;
+  std::pair<Clock::time_point, Clock::time_point> times_;  ///< received, deadline
 };
 
 TEST_F(HttpServer, AnswersManyClientsAtOnceEachWithItsOwn) {
@@ -168,6 +173,38 @@ TEST_F(HttpServer, TellsConnectionsBeyondItsQueueToComeBack) {
   EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 503"));
   EXPECT_THAT(answer, ::testing::HasSubstr("Retry-After: 1"));
   go_ = true;
+}
+
+TEST_F(HttpServer, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
+  settings_.heavy_running = 1;
+  settings_.request_time = 10min;
+  settings_.turn_time = 20min;
+  const auto server = started();
+  Clock::time_point released;
+  {
+    std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    std::jthread second([&] { client().Post("/times", "", "text/plain"); });
+    while (metrics_.text().find("roadfix_heavy_waiting 1") == std::string::npos) std::this_thread::sleep_for(1ms);
+    released = Clock::now();
+    go_ = true;
+  }
+  EXPECT_LE(times_.first, released);
+  EXPECT_GE(times_.second, released + settings_.request_time);
+}
+
+TEST_F(HttpServer, SendsAwayWhatHasWaitedTooLongForItsTurn) {
+  settings_.heavy_running = 1;
+  settings_.request_time = 10min;
+  settings_.turn_time = 1ms;
+  const auto server = started();
+  std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  const auto answer = client().Post("/times", "", "text/plain");
+  go_ = true;
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 503);
+  EXPECT_EQ(answer->body, "server-busy");
 }
 
 TEST_F(HttpServer, SaysWhenItsAddressIsTaken) {

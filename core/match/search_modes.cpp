@@ -38,6 +38,12 @@ SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& backgro
   return mode;
 }
 
+/// Whether one lies among the scores that tell the other's shape.
+bool on_one_peak(const Level& finest, const SearchMode& a, const SearchMode& b) {
+  return distance_m(a.pose.position, b.pose.position) <= kPeakRadius * finest.cell_m() &&
+         angular_distance(a.pose.heading, b.pose.heading) <= double{kPeakRadius} * finest.bins.halved().step();
+}
+
 double poses_of(const SearchRegion& region) {
   return region.area_km2() * std::min(1.0, region.heading_half_width.degrees() / 180.0);
 }
@@ -67,7 +73,14 @@ void rank(const SearchLevels& levels, const SearchRegion& scanned, const SearchO
       result.refined = false;
       break;
     }
-    result.modes.push_back(mode_at(finest, pose, result.background));
+    const SearchMode mode = mode_at(finest, pose, result.background);
+    const auto known =
+        std::ranges::find_if(result.modes, [&](const SearchMode& other) { return on_one_peak(finest, mode, other); });
+    if (known == result.modes.end()) {
+      result.modes.push_back(mode);
+    } else if (mode.score > known->score) {
+      *known = mode;
+    }
   }
   std::ranges::stable_sort(result.modes, std::ranges::greater{}, &SearchMode::score);
 }

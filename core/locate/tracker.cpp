@@ -19,8 +19,11 @@ const double kEvidenceForConvergence = std::log(100.0);
 // So that a track that has long been right does not go on for long when it is not any more.
 const double kMostEvidence = 2.0 * kEvidenceForConvergence;
 constexpr std::int64_t kMeasurementsBetweenSearches = 10;
+constexpr double kProbabilityForClaim = 0.95;         // of a search at the place that the measurements bear out
+constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, where a claim waits for a search
 constexpr double kDoubtForSearch = 0.4;
 constexpr double kRecoveryShare = 0.3;
+constexpr double kMostOfAFix = 0.9;  // of the particles; the others begin anew
 constexpr double kRecoveryRadiusM = 3000.0;
 constexpr double kStaleAfterS = 60.0;
 
@@ -28,6 +31,12 @@ AcceptanceRegion acceptance_of(const SearchRegion& region) {
   AcceptanceRegion result{region.box, std::nullopt, region.heading, region.heading_half_width};
   if (region.circle) result.circle = AcceptanceRegion::Circle{region.circle->centre, region.circle->radius_m};
   return result;
+}
+
+bool is_same_place(const GridPose& a, const GridPose& b) {
+  constexpr double kNearM = 25.0;
+  const Angle near = Angle::degrees(15.0);
+  return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
 }
 
 /// Modes of a search as places to draw from; wider than they say, since particles move on before they are weighted.
@@ -239,9 +248,9 @@ class Tracker::Step {
     } else {
       weigh(sums, frame_cells);
     }
-    if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= kMeasurementsBetweenSearches) {
-      recover();
-    }
+    const std::int64_t wait =
+        has_evidence() && !state_.compared ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
+    if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= wait) recover();
   }
 
   void weigh(const std::vector<MatchSums>& sums, std::int64_t frame_cells) {
@@ -261,7 +270,10 @@ class Tracker::Step {
 
   /// Particles gather somewhere also where nothing speaks for it. A sum that begins anew at 0 (Page's test) says
   /// whether something does, and forgets what came before a kidnapping.
-  void weigh_belief(double log_odds) { state_.evidence = std::clamp(state_.evidence + log_odds, 0.0, kMostEvidence); }
+  void weigh_belief(double log_odds) {
+    state_.evidence = std::clamp(state_.evidence + log_odds, 0.0, kMostEvidence);
+    if (state_.evidence == 0.0) state_.compared = false;
+  }
 
   /// Nothing has spoken for the belief for long, be it that nothing could.
   bool stale() const { return since_accepted_s().value_or(0.0) >= kStaleAfterS; }
@@ -298,10 +310,7 @@ class Tracker::Step {
     state_.last_search = state_.measured;
     try {
       Fix fix = locate(tracker_.map_, state_.recent.laid_around(*features_), prior, options);
-      if (fix.complete) {
-        state_.compared = state_.compared || fix.status != FixStatus::kNoFix;
-        return fix;
-      }
+      if (fix.complete) return fix;
       // What it has depends on the machine, and a track must come out the same.
       if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);
       return std::nullopt;
@@ -332,26 +341,40 @@ class Tracker::Step {
     if (!fix || fix->modes.empty()) return false;
     double known = 0.0;
     for (const FixMode& mode : fix->modes) known += mode.weight;
-    filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 0.1, 0.9),
+    filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
                          first ? tracker_.start_ : tracker_.region_);
     estimate_.measurement = Measurement::kSearched;
-    if (fix->status == FixStatus::kFix) {
-      accept();
-      weigh_belief(std::log(fix->probability / (1.0 - fix->probability)));
-    }
+    if (fix->status == FixStatus::kFix) believe(*fix);
     return true;
   }
 
+  void believe(const Fix& fix) {
+    accept();
+    weigh_belief(std::log(fix.probability / (1.0 - fix.probability)));
+    state_.compared = true;
+  }
+
   void recover() {
+    const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
     std::optional<Fix> fix = searched({});
     if (!fix) {
-      const auto clusters = clusters_of(filter_.particles(), settings_.clusters);
-      const GridPoint at = clusters.front().mean.position;
       Prior near;
-      near.circle = GeoCircle{tracker_.map_.zone.unproject(at), kRecoveryRadiusM};
+      near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
       fix = searched(near);
     }
-    if (fix) filter_.inject(proposals_of(tracker_.map_, *fix), kRecoveryShare);
+    if (!fix || fix->modes.empty()) return;
+    const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
+    if (agrees && fix->probability >= kProbabilityForClaim) {
+      state_.compared = true;
+    } else if (fix->status != FixStatus::kFix) {
+      filter_.inject(proposals_of(tracker_.map_, *fix), kRecoveryShare);
+    } else {
+      filter_.start_from(proposals_of(tracker_.map_, *fix), 1.0 - kMostOfAFix, tracker_.region_);
+      estimate_.measurement = Measurement::kSearched;
+      forget_support();
+      state_.searched = true;
+      believe(*fix);
+    }
   }
 
   void describe() {

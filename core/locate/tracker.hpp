@@ -75,7 +75,8 @@ struct TrackerState {
   FilterState filter;
   bool started = false;
   bool searched = false;  ///< the search of the start has been tried
-  /// A search has weighed the belief against all other places, and found more than chance. See TrackSettings::recovers.
+  /// A search has told the belief from all other places: a fix, or nearly one at the place that was believed before
+  /// it. Until measurements speak against it. See TrackSettings::recovers.
   bool compared = false;
   std::int64_t sequence = -1;
   std::int64_t time_us = 0;

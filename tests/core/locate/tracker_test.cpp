@@ -184,6 +184,20 @@ TEST_F(Track, ClaimsNoPlaceWhereOneBrightStrokeHidesFaintRoads) {
   }
 }
 
+TEST_F(Track, ClaimsNoPlaceAmongManyThatFitAlike) {
+  // Particles gather at one of them by and by, the frames agree with it, and a search finds more than chance.
+  const RoadGrid grid = testing::grid_city(map_.geometry, 120.0);
+  const MapView view = testing::view_of(grid);
+  const Tracker tracker(view, settings());
+  Flight flight(grid, start_, 13);
+  TrackerState state;
+  for (int i = 0; i < 40; ++i) {
+    StepResult result = tracker.advance(state, flight.step());
+    state = std::move(result.state);
+    EXPECT_FALSE(result.estimate.converged) << "step " << i;
+  }
+}
+
 TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);
@@ -308,7 +322,7 @@ class TrackBeyondTheMap : public Track {
     for (int i = 0; i < 28; ++i) {
       last = fly(tracker, {{600'650.0 + 20.0 * i, 6'399'400.0}, Angle::degrees(90.0)}, 1.0);
       if (i == 8) {
-        EXPECT_TRUE(last.converged);
+        EXPECT_LT(error_m(last, {{600'650.0 + 20.0 * i, 6'399'400.0}, Angle::degrees(90.0)}), 25.0);
       }
     }
     return last;

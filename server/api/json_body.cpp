@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
 
@@ -36,12 +40,29 @@ void check_shape(std::string_view text, const JsonLimits& limits) {
   }
 }
 
+/// Throws at a name that an object has twice: one of the two values is a mistake, and nothing tells which.
+class NamesOnce {
+ public:
+  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) seen_.emplace_back();
+    if (event == json::parse_event_t::object_end) seen_.pop_back();
+    if (event == json::parse_event_t::key && !seen_.back().insert(parsed.get<std::string>()).second) {
+      const auto& name = parsed.get_ref<const std::string&>();
+      throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
+    }
+    return true;
+  }
+
+ private:
+  std::vector<std::set<std::string>> seen_;  ///< of the objects that are open, outermost first
+};
+
 }  // namespace
 
 json parse_json(std::string_view text, const JsonLimits& limits) {
   check_shape(text, limits);
   try {
-    return json::parse(text);
+    return json::parse(text, NamesOnce());
   } catch (const json::parse_error& error) {
     throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", error.what()), error.byte);
   } catch (const json::exception& error) {

@@ -12,8 +12,8 @@ struct JsonLimits {
   std::size_t values = 1'000'000;  ///< numbers, strings, objects and arrays together
 };
 
-/// Throws InvalidField ("bad-json" with the byte, "json-too-deep") or LimitExceeded ("too-many-poses"), the only thing
-/// that makes a request's JSON that long.
+/// Throws InvalidField ("bad-json" with the byte, "json-too-deep", "duplicate-parameter" with the name) or
+/// LimitExceeded ("too-many-poses"), the only thing that makes a request's JSON that long.
 nlohmann::json parse_json(std::string_view text, const JsonLimits& limits);
 
 }  // namespace roadfix::api

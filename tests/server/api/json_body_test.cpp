@@ -26,6 +26,20 @@ TEST(JsonBody, RefusesMoreValuesThanAllowedBeforeBuildingThem) {
   EXPECT_THROW(parse_json(poses + "]}", {16, 1000}), LimitExceeded);
 }
 
+TEST(JsonBody, RefusesAFieldThatIsGivenTwice) {
+  for (const char* text : {R"({"cell_m":2,"cell_m":3})", R"({"a":[{"cell_m":1},{"cell_m":2,"cell_m":2}]})",
+                           R"({"b":{"cell_m":{"b":1},"cell_m":1}})"}) {
+    try {
+      parse_json(text, {});
+      FAIL() << text;
+    } catch (const http::InvalidField& error) {
+      EXPECT_EQ(error.code(), "duplicate-parameter") << text;
+      EXPECT_EQ(error.field(), "cell_m");
+    }
+  }
+  EXPECT_NO_THROW(parse_json(R"({"a":{"b":1},"b":{"a":[{"b":1},{"b":2}]}})", {}));
+}
+
 TEST(JsonBody, SaysWhereJsonIsBroken) {
   for (const char* text :
        {"", "{", R"({"a":NaN})", R"({"a":1e999})", "{\"a\":\"\xff\"}", R"({"a":1}x)", R"({"a":"\)"}) {

@@ -268,6 +268,8 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
   response.headers.emplace_back("X-Request-Id", exchange.request.id);
   if (!settings_.cors_origin.empty()) {
     response.headers.emplace_back("Access-Control-Allow-Origin", settings_.cors_origin);
+    // Without this a page reads nothing but the body: neither Roadfix-Status nor Roadfix-Pose, ETag or Retry-After.
+    response.headers.emplace_back("Access-Control-Expose-Headers", "*");
     if (settings_.cors_origin != "*") response.headers.emplace_back("Vary", "Origin");
   }
   if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");

@@ -317,6 +317,7 @@ TEST_F(Service, EchoesTheRequestIdAndMakesOneUp) {
 
 TEST_F(Service, AnswersBrowsersOfOtherOrigins) {
   EXPECT_EQ(client_.Get("/healthz")->get_header_value("Access-Control-Allow-Origin"), "*");
+  EXPECT_EQ(client_.Get("/healthz")->get_header_value("Access-Control-Expose-Headers"), "*");
   const auto preflight = client_.Options("/v1/maps/town/fix");
   EXPECT_EQ(preflight->status, 204);
   EXPECT_EQ(preflight->get_header_value("Allow"), "OPTIONS, POST");

@@ -157,6 +157,29 @@ TEST_F(IngestCommand, ATruncatedImageKeepsItsSourceIncompleteUntilTheFileIsWhole
   EXPECT_EQ(tiles(map("a.gpkg")), tiles(map("b.gpkg")));
 }
 
+TEST_F(IngestCommand, ANewMapAroundTheEquatorHoldsBothSides) {
+  std::ofstream(folder / "quito.geojson")
+      << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"primary"},)"
+      << R"("geometry":{"type":"LineString","coordinates":[[33.0,-0.004],[33.01,0.012]]}}]})";
+  const std::string roads = folder / "quito.geojson";
+  const ChildResult both = ingest({roads, "--map", map("both.gpkg")});
+  EXPECT_EQ(both.code, 0) << both.err;
+  const ChildResult info = run_child(ROADFIX_PROGRAM, {"info", map("both.gpkg")}, folder.path());
+  EXPECT_THAT(info.out, ::testing::AllOf(::testing::HasSubstr("EPSG:32736"), ::testing::HasSubstr("latitude -0.00")));
+  const ChildResult north = ingest({roads, "--zone", "EPSG:32636", "--map", map("north.gpkg")});
+  EXPECT_EQ(north.code, 0) << north.err;
+  EXPECT_THAT(north.err, ::testing::AllOf(::testing::HasSubstr("south of the equator is left out"),
+                                          ::testing::HasSubstr("--zone EPSG:32736")));
+}
+
+TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {
+  const std::string image =
+      write_raster(folder / "empty.tif", RasterSpec{.nodata = 0.0}, [](int, int, int) { return 0; });
+  const ChildResult result = ingest({image, "--as", "roads", "--map", map("a.gpkg")});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, ::testing::HasSubstr("nothing of " + image + " was observed"));
+}
+
 TEST_F(IngestCommand, ADryRunPrintsThePlanAndWritesNothing) {
   const ChildResult result = ingest({picture(600, 0.5), "--detector", "tree", "--dry-run", "--map", map("a.gpkg")});
   EXPECT_EQ(result.code, 0) << result.err;

@@ -1,0 +1,111 @@
+#include "cli/ingest_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <thread>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+RoadRules rules_of(const IngestArguments& arguments) {
+  RoadRules rules;
+  if (!arguments.rules_file.empty()) {
+    std::ifstream file(arguments.rules_file);
+    if (!file) throw NotFound("rules-not-found", fmt::format("{}: cannot be read", arguments.rules_file));
+    rules = RoadRules::parse(std::string(std::istreambuf_iterator<char>(file), {}));
+  }
+  if (!arguments.classes.empty()) rules.select(arguments.classes);
+  if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);
+  if (!arguments.width_attribute.empty()) rules.set_width_attribute(arguments.width_attribute);
+  if (arguments.width_m > 0.0) rules.set_width_m(arguments.width_m);
+  return rules;
+}
+
+UtmZone zone_of(const IngestArguments& arguments, const SourceRequest& first) {
+  if (arguments.zone.empty()) return UtmZone::containing(centre_of_source(first));
+  std::string digits = arguments.zone;
+  if (digits.starts_with("EPSG:")) digits.erase(0, 5);
+  const bool number =
+      !digits.empty() && digits.size() <= 5 && std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
+  const std::optional<UtmZone> zone = number ? UtmZone::from_epsg(std::stoi(digits)) : std::nullopt;
+  if (!zone) {
+    throw InvalidInput("zone-unknown",
+                       fmt::format("--zone {}: write the EPSG code of a UTM zone on WGS 84, EPSG:32601 to "
+                                   "32660 in the north, 32701 to 32760 in the south",
+                                   arguments.zone));
+  }
+  return *zone;
+}
+
+void add_content_options(CLI::App& command, IngestArguments& a) {
+  command.add_option("--as", a.meaning,
+                     "What the sources are: auto (vectors are roads, rasters imagery), imagery, roads");
+  command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
+  command.add_option("--crs", a.crs, "Reference system of the sources where the files do not say it, or say it wrong");
+  command.add_option("--nodata-color", a.collar, "Colour of the collar around the imagery: white, black or R,G,B");
+  command.add_option("--layer", a.vectors.layer, "Only this layer of vector files");
+  command.add_option("--extent", a.vectors.extent,
+                     "Ground that road lines cover: W,S,E,N in degrees or a polygon file");
+  command.add_option("--classes", a.classes, "Draw exactly these road classes, comma-separated");
+  command.add_option("--rules", a.rules_file, "Table of road classes: lines 'class width_m yes|no'");
+  command.add_option("--class-attribute", a.class_attribute, "Attribute that holds the road class; default: highway");
+  command.add_option("--width-attribute", a.width_attribute, "Attribute that holds the width in metres");
+  command.add_option("--width", a.width_m, "Width of all roads in metres")->check(CLI::Range(0.5, 100.0));
+}
+
+void add_provenance_options(CLI::App& command, IngestArguments& a) {
+  command.add_option("--date", a.record.date, "Date of the content, ISO 8601");
+  command.add_option("--licence", a.record.licence, "Licence of the content");
+  command.add_option("--attribution", a.record.attribution, "Whom to name");
+  command.add_option("--registration-sigma", a.registration_sigma_m,
+                     "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors");
+}
+
+}  // namespace
+
+SourceRequest request_of(const IngestArguments& arguments, const std::string& source) {
+  SourceRequest request;
+  request.files = find_source(source, parse_meaning(arguments.meaning));
+  if (!arguments.name.empty()) request.files.name = arguments.name;
+  request.raster.crs = arguments.crs;
+  if (!arguments.collar.empty()) request.raster.collar = parse_colour(arguments.collar);
+  request.vectors = arguments.vectors;
+  request.vectors.crs = arguments.crs;
+  request.rules = rules_of(arguments);
+  return request;
+}
+
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given) {
+  std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map);
+  if (!existing) return {zone_of(arguments, first), arguments.cell_m};
+  if (cell_given) existing->cell_m = arguments.cell_m;
+  if (!arguments.zone.empty()) existing->zone = zone_of(arguments, first);
+  return *existing;
+}
+
+CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
+  command.add_option("SOURCE", a.sources, "Files, or folders of images or vector files (one source each)")->required();
+  command.add_option("--map", a.map, "The map file to create or extend")->required();
+  CLI::Option* cell =
+      command.add_option("--cell", a.cell_m, "Cell size of a new map in metres, a power of two; default: 2");
+  command.add_option("--zone", a.zone, "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
+  add_content_options(command, a);
+  add_detector_options(command, a.detector);
+  add_provenance_options(command, a);
+  a.options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command.add_option("--jobs", a.options.jobs, "Blocks in work at a time; default: number of processors")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1");
+  command.add_flag("--replace", a.options.replace, "Replace a source of the same name");
+  command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");
+  command.add_flag("--json", a.json, "Print one line of JSON for each source");
+  return cell;
+}
+
+}  // namespace roadfix::cli

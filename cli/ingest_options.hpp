@@ -1,0 +1,46 @@
+// What `roadfix ingest` is asked for, and what follows from it for a source and a map.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/detector_options.hpp"
+#include "tiles/pipeline/ingest.hpp"
+#include "tiles/pipeline/open_source.hpp"
+
+namespace roadfix::cli {
+
+struct IngestArguments {
+  std::vector<std::string> sources;
+  std::string map;
+  std::string name;
+  std::string meaning = "auto";
+  double cell_m = 2.0;
+  std::string zone;
+  std::string crs;
+  std::string collar;
+  std::string rules_file;
+  std::string classes;
+  std::string class_attribute;
+  std::string width_attribute;
+  double width_m = 0.0;
+  VectorOptions vectors;
+  DetectorChoice detector;
+  double registration_sigma_m = 0.0;
+  SourceRecord record;  ///< date, licence and attribution
+  IngestOptions options;
+  bool dry_run = false;
+  bool json = false;
+};
+
+/// `arguments` must live as long as the command. Returns the option --cell, to tell whether it was given.
+CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& arguments);
+
+/// The source named `source` on the command line. Throws NotFound and InvalidInput about files and options.
+SourceRequest request_of(const IngestArguments& arguments, const std::string& source);
+
+/// Those of the map, if it is there: then --cell and --zone must not contradict.
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given);
+
+}  // namespace roadfix::cli

@@ -1,0 +1,76 @@
+#include "cli/ingest_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace roadfix::cli {
+
+nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& summary, std::int64_t blocks,
+                            const MapSettings& settings) {
+  const double side_km = kTileCells * settings.cell_m / 1e3;
+  nlohmann::json json{{"source", record.name},
+                      {"kind", record.kind},
+                      {"files_crs", summary.crs},
+                      {"map_crs", fmt::format("EPSG:{}", settings.zone.epsg())},
+                      {"cell_m", settings.cell_m},
+                      {"blocks", blocks},
+                      {"blocks_km2", static_cast<double>(blocks) * side_km * side_km},
+                      {"method", record.method}};
+  if (summary.native_gsd_m > 0.0) {
+    json["native_gsd_m"] = summary.native_gsd_m;
+    json["chosen_gsd_m"] = summary.chosen_gsd_m;
+  } else {
+    json["features"] = summary.features;
+    json["left_out"] = summary.left_out;
+  }
+  if (!summary.notes.empty()) json["notes"] = summary.notes;
+  return json;
+}
+
+void print_plan(nlohmann::json json, bool as_json) {
+  constexpr double kBytesPerBlock = 30'000.0;  // evidence and fused tile with overviews, of a city
+  json["expected_bytes"] = static_cast<std::int64_t>(kBytesPerBlock * json["blocks"].get<double>());
+  if (as_json) {
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  for (const auto& [key, value] : json.items()) {
+    fmt::print("{:14} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+}
+
+void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json) {
+  const double fresh = static_cast<double>(report.blocks - report.blocks_before);
+  json["blocks_done_before"] = report.blocks_before;
+  json["observed_cells"] = report.observed_cells;
+  json["reading_s"] = report.reading_s;
+  json["fusing_s"] = report.fusing_s;
+  const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
+  const bool lines = json.contains("features");
+  const double amount =
+      lines ? share * json["features"].get<double>() : static_cast<double>(report.observed_cells) * cell_mp;
+  const double rate = report.reading_s > 0.0 ? amount / report.reading_s : 0.0;
+  json[lines ? "features_per_s" : "megapixels_per_s"] = rate;
+  if (as_json) {
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} {}/s), {:.1f} s fusing\n",
+             json["source"].get<std::string>(), report.blocks, report.blocks_before, report.reading_s, rate,
+             lines ? "features" : "MP", report.fusing_s);
+}
+
+void print_notes(const SourceFiles& files, const SourceSummary& summary) {
+  for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
+  if (files.left_out.empty()) return;
+  fmt::print(stderr,
+             "note: a folder is one source, {} one of images; left out are {}: ingest vectors by their own paths\n",
+             files.location, fmt::join(files.left_out, ", "));
+}
+
+}  // namespace roadfix::cli

@@ -1,0 +1,25 @@
+// What `roadfix ingest` prints of a source: notes, the plan of a dry run, the report.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "tiles/pipeline/ingest.hpp"
+#include "tiles/sources/cell_source.hpp"
+#include "tiles/sources/source_files.hpp"
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix::cli {
+
+nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& summary, std::int64_t blocks,
+                            const MapSettings& settings);
+
+/// What a dry run prints: nothing is read but headers (all features, of vectors), nothing is written.
+void print_plan(nlohmann::json json, bool as_json);
+
+/// Rates count the source's own pixels, of its observed ground; `cell_mp` is how many megapixels a cell has.
+void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json);
+
+/// On stderr, so that --json stays clean.
+void print_notes(const SourceFiles& files, const SourceSummary& summary);
+
+}  // namespace roadfix::cli

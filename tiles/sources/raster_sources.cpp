@@ -6,7 +6,11 @@
 #include <cassert>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
+#include "core/detect/frame.hpp"
+#include "core/units/error.hpp"
+#include "tiles/sources/collar_note.hpp"
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/mosaic.hpp"
 #include "tiles/sources/road_rules.hpp"
@@ -38,6 +42,7 @@ class Imagery final : public CellSource {
         detector_(detector),
         cell_m_(cell_m),
         gsd_m_(detection_gsd_m(cell_m, detector.preferred_gsd_m(), mosaic_.gsd_m())) {
+    require_fine_enough(paths);
     summary_.kind = "imagery";
     summary_.method = fmt::format("{}; pixels of {} m, values {}..{}{}", detector.describe(), gsd_m_,
                                   mosaic_.range().low, mosaic_.range().high, settings_of(options));
@@ -46,6 +51,7 @@ class Imagery final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     summary_.registration_sigma_m = kImagerySigmaM;
+    if (auto note = note_on_collar(paths, options)) summary_.notes.push_back(std::move(*note));
   }
 
   SourceSummary summary() const override { return summary_; }
@@ -70,6 +76,15 @@ class Imagery final : public CellSource {
   }
 
  private:
+  void require_fine_enough(const std::vector<std::string>& paths) const {
+    if (mosaic_.gsd_m() <= kCoarsestGsdM) return;
+    throw InvalidInput(
+        "imagery-too-coarse",
+        fmt::format("{}: pixels of {:.3g} m do not show roads, and a map of them would deny every road; {} m is the "
+                    "most. A raster of roads is ingested with --as roads",
+                    paths.front(), mosaic_.gsd_m(), kCoarsestGsdM));
+  }
+
   void detect(const GridGeometry& part, int pixels, std::uint64_t seed, CellArray& result, cv::Point at) const {
     const auto halo = static_cast<int>(std::ceil(detector_.halo_m() / cell_m_));
     const GridGeometry wide{

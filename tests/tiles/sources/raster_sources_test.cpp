@@ -7,8 +7,10 @@
 #include <string>
 
 #include "core/geodesy/utm.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/collar.hpp"
 #include "tiles/sources/road_rules.hpp"
 
 namespace roadfix {
@@ -88,6 +90,39 @@ TEST(Imagery, NodataIsUnobservedNeverNoRoad) {
   for (int row = 0; row < cells.rows(); ++row) {
     for (int col = 0; col < cells.cols(); ++col) ASSERT_EQ(is_observed(cells.at(col, row)), col >= 50) << col;
   }
+}
+
+TEST(Imagery, OfPixelsWiderThanRoadsIsRefused) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  for (const double gsd_m : {4.9, 5.1, 60.0}) {
+    const RasterSpec spec{.transform = {{400000.0, gsd_m, 0.0, 4200064.0, 0.0, -gsd_m}}};
+    const std::string path = write_raster(folder / "a.tif", spec, [](int, int col, int) { return 100 + col; });
+    EXPECT_EQ(testing::code_of([&] { open_imagery({path}, {}, kZone, 4.0, detector); }),
+              gsd_m < 5.0 ? "no error" : "imagery-too-coarse");
+  }
+}
+
+TEST(Imagery, WithAPaintedCollarGetsANoteUnlessTheUserNamedIt) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const RasterSpec spec{.width = 256, .height = 256, .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}}};
+  for (const auto& [collar, colour] : {std::pair{0.0, "black"}, {255.0, "white"}}) {
+    const std::string path = write_raster(folder / "a.tif", spec, [collar = collar](int, int col, int row) {
+      return col < 64 ? collar : 60.0 + (col + row) % 100;
+    });
+    const auto notes = [&](const RasterOptions& options) {
+      return open_imagery({path}, options, kZone, 2.0, detector)->summary().notes;
+    };
+    ASSERT_EQ(notes({}).size(), 1U);
+    EXPECT_NE(notes({}).front().find(std::string("--nodata-color ") + colour), std::string::npos) << notes({}).front();
+    RasterOptions named;
+    named.collar = parse_colour(colour);
+    EXPECT_TRUE(notes(named).empty());
+  }
+  const std::string plain =
+      write_raster(folder / "b.tif", spec, [](int, int col, int row) { return (col + row) % 250 + 3; });
+  EXPECT_TRUE(open_imagery({plain}, {}, kZone, 2.0, detector)->summary().notes.empty());
 }
 
 class RoadRaster : public ::testing::Test {

@@ -1,0 +1,18 @@
+// Ground without imagery that is painted black or white and marked by nothing: worth a word before it becomes "no
+// road".
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tiles/sources/raster_file.hpp"
+
+namespace roadfix {
+
+/// A note that names the first of the images of which at least a fiftieth of the samples are pure black or white, and
+/// the option that helps; nullopt where none is, where the user named a colour, and for images of more than 8 bits.
+/// Looks into some of many images, and into 256 windows of each.
+std::optional<std::string> note_on_collar(const std::vector<std::string>& paths, const RasterOptions& options);
+
+}  // namespace roadfix

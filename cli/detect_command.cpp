@@ -45,7 +45,7 @@ struct Picture {
 
 Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
   if (options.frame.given()) {
-    return {ground_seen(options.frame, decode_image(bytes_of(options.image), kMostPixels), detector), {}};
+    return {ground_seen(options.frame, picture_in(options.image), detector), {}};
   }
   const UtmZone zone = zone_of_image(options.image);
   Orthoimage ortho = read_orthoimage(options.image, zone);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
-#include "core/detect/image_codec.hpp"
 #include "core/grid/combine.hpp"
 #include "core/units/error.hpp"
 
@@ -51,9 +50,8 @@ Another parse_also(const std::string& text) {
 /// `detector` is null for feature maps.
 FeatureMap features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
                        double map_cell_m) {
-  const std::vector<std::uint8_t> bytes = bytes_of(path);
-  if (detector == nullptr) return FeatureMap::centred(decode_feature_map(bytes, kMostPixels), options.cell_m);
-  const GroundView view = ground_seen(options.frame, decode_image(bytes, kMostPixels), *detector);
+  if (detector == nullptr) return FeatureMap::centred(feature_map_in(path), options.cell_m);
+  const GroundView view = ground_seen(options.frame, picture_in(path), *detector);
   return detect_features(*detector, view, map_cell_m, options.seed);
 }
 

@@ -8,9 +8,32 @@
 #include <iterator>
 
 #include "core/detect/frame_image.hpp"
+#include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const std::string& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+auto decoded(const std::string& path, const auto& decode) {
+  const std::vector<std::uint8_t> bytes = bytes_of(path);
+  try {
+    return decode(bytes);
+  } catch (const InvalidInput& error) {
+    const char* advice = error.code() == "image-format" ? "; gdal_translate -of PNG makes one" : "";
+    throw InvalidInput(error.code(), fmt::format("{}: {}{}", path, error.what(), advice));
+  }
+}
+
+}  // namespace
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
   auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
@@ -47,13 +70,12 @@ GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, cons
   return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(kMostPixels));
 }
 
-std::vector<std::uint8_t> bytes_of(const std::string& path) {
-  if (std::filesystem::is_directory(path)) {
-    throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
-  return {std::istreambuf_iterator<char>(in), {}};
+cv::Mat picture_in(const std::string& path) {
+  return decoded(path, [](const auto& bytes) { return decode_image(bytes, kMostPixels); });
+}
+
+CellArray feature_map_in(const std::string& path) {
+  return decoded(path, [](const auto& bytes) { return decode_feature_map(bytes, kMostPixels); });
 }
 
 }  // namespace roadfix::cli

@@ -31,7 +31,10 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& opt
 /// Throws what frame_image and rectify throw. options.given() must hold.
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector);
 
-/// Throws InvalidInput "not-a-file" or NotFound "file-not-found".
-std::vector<std::uint8_t> bytes_of(const std::string& path);
+/// The picture in a file, see decode_image; what that throws names the file here. Also throws InvalidInput "not-a-file"
+/// and NotFound "file-not-found".
+cv::Mat picture_in(const std::string& path);
+/// Likewise, see decode_feature_map.
+CellArray feature_map_in(const std::string& path);
 
 }  // namespace roadfix::cli

@@ -13,6 +13,7 @@
 namespace roadfix {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::ProgramResult;
 using testing::run_program;
@@ -77,6 +78,13 @@ TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
             "min_score=0.01");
   EXPECT_THAT(detect("--gsd 0.5 --tree-beta 0.7").err, HasSubstr("[tree-parameter]"));
   EXPECT_EQ(detect("--gsd 0.5 --tree-map sharp").code, 2);
+}
+
+TEST_F(DetectCommand, NamesTheFileThatIsNoPicture) {
+  std::ofstream(folder / "frame.png") << "II*, says a TIFF";
+  const ProgramResult result = detect("--gsd 0.5");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("frame.png: "), HasSubstr("gdal_translate"), HasSubstr("[image-format]")));
 }
 
 TEST_F(DetectCommand, SaysWhatIsMissing) {

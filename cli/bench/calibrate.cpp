@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFigures = 3;
+constexpr std::size_t kFigures = 4;
 constexpr int kFewest = 50;
 constexpr double kWithin95OfPosition = 5.991;  // of chi^2 with two degrees
 constexpr double kWithin95OfHeading = 3.841;   // with one
@@ -133,7 +133,7 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
     if (!outcome.answer.evidence || !outcome.position_nees) continue;
     const SearchEvidence& evidence = *outcome.answer.evidence;
     const bool right = *outcome.position_nees <= region * region;
-    examples.push_back({{evidence.surprise, evidence.lead, evidence.gap}, right});
+    examples.push_back({{evidence.surprise, evidence.lead, evidence.gap, evidence.ground}, right});
     report.right += right ? 1 : 0;
     report.elsewhere += outcome.truth ? 0 : 1;
   }
@@ -147,7 +147,7 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   const Weights weights = logistic(examples);
   Calibration& c = report.calibration;
   c.bias = weights[0];
-  const std::array<Calibration::Term*, kFigures> terms{&c.surprise, &c.lead, &c.gap};
+  const std::array<Calibration::Term*, kFigures> terms{&c.surprise, &c.lead, &c.gap, &c.ground};
   for (std::size_t i = 0; i < kFigures; ++i) {
     *terms[i] = {weights[i + 1] / scaling.spread[i], scaling.most[i]};
     c.bias -= weights[i + 1] * scaling.mean[i] / scaling.spread[i];
@@ -161,12 +161,14 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
 json to_json(const CalibrationReport& report, const json& origin) {
   const Calibration& c = report.calibration;
   const auto term = [](const Calibration::Term& t) { return json{{"weight", t.weight}, {"most", t.most}}; };
-  json document{{"format", "roadfix-calibration-1"},
-                {"bias", c.bias},
-                {"terms", {{"surprise", term(c.surprise)}, {"lead", term(c.lead)}, {"gap", term(c.gap)}}},
-                {"highest", c.highest},
-                {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
-                {"origin", origin}};
+  json document{
+      {"format", "roadfix-calibration-2"},
+      {"bias", c.bias},
+      {"terms",
+       {{"surprise", term(c.surprise)}, {"lead", term(c.lead)}, {"gap", term(c.gap)}, {"ground", term(c.ground)}}},
+      {"highest", c.highest},
+      {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
+      {"origin", origin}};
   document["origin"]["examples"] = report.examples;
   document["origin"]["right"] = report.right;
   document["origin"]["elsewhere"] = report.elsewhere;

@@ -26,7 +26,8 @@ json evidence_json(const std::optional<SearchEvidence>& evidence) {
   return {{"surprise", evidence->surprise},
           {"lead", evidence->lead},
           {"gap", evidence->gap},
-          {"agreement", evidence->agreement}};
+          {"agreement", evidence->agreement},
+          {"ground", evidence->ground}};
 }
 
 json outcome_json(const Outcome& outcome) {

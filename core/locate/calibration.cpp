@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSureByExamples = 0.9;  ///< more needs evidence that chance explains nothing
+constexpr double kSureByExamples = 0.5;  ///< more needs evidence that chance explains nothing
 
-constexpr const char* kFormat = "roadfix-calibration-1";
+constexpr const char* kFormat = "roadfix-calibration-2";
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
   throw InvalidInput("calibration-field", fmt::format("calibration file: {} {}; write a new one with roadfix bench "
@@ -49,8 +49,8 @@ json parsed(std::string_view text) {
 
 double Calibration::probability(const SearchEvidence& evidence) const {
   const auto counted = [](const Term& t, double figure) { return t.weight * std::min(figure, t.most); };
-  const double sum =
-      bias + counted(surprise, evidence.surprise) + counted(lead, evidence.lead) + counted(gap, evidence.gap);
+  const double sum = bias + counted(surprise, evidence.surprise) + counted(lead, evidence.lead) +
+                     counted(gap, evidence.gap) + counted(ground, evidence.ground);
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
   const double not_by_chance = std::exp(-std::exp(-evidence.surprise));
@@ -69,6 +69,7 @@ Calibration parse_calibration(std::string_view text) {
   calibration.surprise = term(terms, "surprise");
   calibration.lead = term(terms, "lead");
   calibration.gap = term(terms, "gap");
+  calibration.ground = term(terms, "ground");
   calibration.highest = number(document, "highest", 0.0, 1.0 - 1e-9);
   const json scale = document.value("sigma_scale", json());
   calibration.position_sigma_scale = number(scale, "position", 0.1, 100.0);

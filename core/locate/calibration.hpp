@@ -1,6 +1,6 @@
 // From what a search says about its best place to the probability that it is the true one, learned from queries with
 // known truth (docs/calibration.md). Monotone in every figure, and never surer than the examples it was learned from:
-// beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`. Above 0.9
+// beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`. Above 0.5
 // it is no surer than the search itself that no other place fits as well by chance, whatever the examples say.
 #pragma once
 
@@ -22,6 +22,7 @@ struct Calibration {
   Term surprise;
   Term lead;
   Term gap;
+  Term ground;
   double highest = 0.0;  ///< what the number of examples can vouch for, below 1
   // Factors on the standard deviations that the shape of the peak gives, so that ellipses hold what they should.
   double position_sigma_scale = 1.0;

@@ -30,9 +30,8 @@ double mean_excess(std::span<const double> rivals) {
   return sum / static_cast<double>(rivals.size() - 1);
 }
 
-double agreement_of(const SearchMode& mode, double cell_m) {
-  const double samples = static_cast<double>(mode.observed_cells) * cell_m * cell_m / kSampleM2;
-  return mode.pearson * std::sqrt(samples);
+double ground_m2(const SearchMode& mode, double cell_m) {
+  return static_cast<double>(mode.observed_cells) * cell_m * cell_m;
 }
 
 double second_of(const SearchResult& found) {
@@ -49,7 +48,11 @@ SearchEvidence evidence_of(const SearchResult& found) {
   const ScoreBackground& background = found.background;
   const double best = fisher(found.modes.front().score);
   const double ahead = best - fisher(second_of(found));
-  SearchEvidence evidence{kUnknown, 0.0, 0.0, agreement_of(found.modes.front(), found.cell_m)};
+  const double ground = ground_m2(found.modes.front(), found.cell_m);
+  SearchEvidence evidence;
+  evidence.surprise = kUnknown;
+  evidence.agreement = found.modes.front().pearson * std::sqrt(ground / kSampleM2);
+  evidence.ground = std::log(std::max(ground, 1.0));
   if (background.sd > 0.0) evidence.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
   if (background.rivals.size() < kFewestRivals) return evidence;
   const double scale = mean_excess(background.rivals);

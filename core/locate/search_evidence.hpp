@@ -19,6 +19,9 @@ struct SearchEvidence {
   /// Pearson's correlation at the best place in standard deviations of independent samples: of itself, whatever the
   /// other places say.
   double agreement = 0.0;
+  /// ln of the ground in m2 that took part at the best place. The fewer the samples, the more by chance fits well and
+  /// the less the tail of the others says of it.
+  double ground = 0.0;
 };
 
 /// `found` holds a mode.

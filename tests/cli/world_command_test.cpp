@@ -21,7 +21,7 @@ TEST(WorldCommand, LeavesAManifestThatBenchRunsAsItIs) {
   const ProgramResult bench = run_program(
       folder.path(), "bench " + town + "/bench.json --detector tree --map-cache " + (folder / "cache").string());
   EXPECT_EQ(bench.code, 0) << bench.err;
-  for (const char* method : {"roads  before", "sift   before", "orb    before"}) {
+  for (const char* method : {"roads   before", "sift    before", "orb     before"}) {
     EXPECT_THAT(bench.out, HasSubstr(method));
   }
 }

@@ -82,11 +82,11 @@ TEST(ServiceLife, IsAsSureAsTheCalibrationItIsGiven) {
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
   const auto term = [](double weight) { return json{{"weight", weight}, {"most", 10.0}}; };
   std::ofstream(folder / "doubtful.json")
-      << json{{"format", "roadfix-calibration-1"},
+      << json{{"format", "roadfix-calibration-2"},
               {"bias", 0.0},
               {"highest", 0.9},
               {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}},
-              {"terms", {{"surprise", term(0.0)}, {"lead", term(0.0)}, {"gap", term(0.0)}}}};
+              {"terms", {{"surprise", term(0.0)}, {"lead", term(0.0)}, {"gap", term(0.0)}, {"ground", term(0.0)}}}};
   const testing::ServiceProcess service(
       folder.path(), {"--calibration", (folder / "doubtful.json").string(), "--request-time", "600"});
   httplib::Client client = testing::client_of(service);

@@ -35,7 +35,8 @@ std::vector<Outcome> drawn(int n, std::uint64_t seed) {
 
 TEST(LearnCalibration, FindsTheLogisticFunctionBelowTheMedianOfTheRight) {
   const CalibrationReport report = learn_calibration(drawn(4000, 1), default_calibration());
-  for (const double surprise : {-2.0, -1.0, 0.0, 1.0}) {
+  // Above one half the chance that other places fit bounds it.
+  for (const double surprise : {-2.0, -1.0, -0.5, 0.0}) {
     // The spread of a logistic regression on 4000 examples is about 0.02 here; the cut-off bends it a little.
     EXPECT_NEAR(report.calibration.probability({surprise, 0.0, 0.0}), 1.0 / (1.0 + std::exp(-1.5 * surprise)), 0.06);
   }

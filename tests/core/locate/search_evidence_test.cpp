@@ -47,6 +47,7 @@ TEST(SearchEvidence, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
   result.modes[0].pearson = 0.5;
   result.modes[0].observed_cells = 22'500;  // 90,000 m2, 400 samples
   EXPECT_NEAR(evidence_of(result).agreement, 0.5 * 20.0, 1e-9);
+  EXPECT_NEAR(evidence_of(result).ground, std::log(20.0 * 20.0 * 15.0 * 15.0), 1e-9);
 }
 
 TEST(SearchEvidence, ASmallerRegionLeavesChanceLessRoom) {

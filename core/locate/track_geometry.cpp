@@ -1,0 +1,58 @@
+#include "core/locate/track_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/locate/ellipse.hpp"
+
+namespace roadfix {
+
+AcceptanceRegion acceptance_of(const SearchRegion& region) {
+  AcceptanceRegion result{region.box, std::nullopt, region.heading, region.heading_half_width};
+  if (region.circle) result.circle = AcceptanceRegion::Circle{region.circle->centre, region.circle->radius_m};
+  return result;
+}
+
+bool is_same_place(const GridPose& a, const GridPose& b) {
+  constexpr double kNearM = 25.0;
+  const Angle near = Angle::degrees(15.0);
+  return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
+}
+
+std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
+  constexpr double kWiden = 4.0;
+  constexpr double kLeastWeight = 0.02;
+  std::vector<Proposal> proposals;
+  for (const FixMode& mode : fix.modes) {
+    const GridPose at = on_grid(mode.pose, map.zone);
+    const double axis = map.zone.grid_from_true(mode.ellipse_heading, at.position).radians();
+    const double along2 = kWiden * mode.sigma_m[0] * mode.sigma_m[0] + 1.0;
+    const double across2 = kWiden * mode.sigma_m[1] * mode.sigma_m[1] + 1.0;
+    const double s = std::sin(axis);
+    const double c = std::cos(axis);
+    const double shared = (along2 - across2) * s * c;
+    const double turn2 = kWiden * std::pow(mode.heading_sigma.radians(), 2.0) + 1e-4;
+    proposals.push_back({at,
+                         {{{along2 * s * s + across2 * c * c, shared, 0.0},
+                           {shared, along2 * c * c + across2 * s * s, 0.0},
+                           {0.0, 0.0, turn2}}},
+                         std::max(mode.weight, kLeastWeight)});
+  }
+  return proposals;
+}
+
+TrackCluster to_geographic(const MapView& map, const Cluster& cluster) {
+  const GridPoint at = cluster.mean.position;
+  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
+  const auto& c = cluster.covariance;
+  const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
+  const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
+  return {{map.zone.unproject(at), map.zone.true_from_grid(cluster.mean.heading, at).wrapped()},
+          cluster.weight,
+          ellipse.sigma_m,
+          Angle::degrees(std::fmod(major_deg, 180.0)),
+          Angle::radians(std::sqrt(c[2][2])),
+          cluster.radius95_m};
+}
+
+}  // namespace roadfix

@@ -1,0 +1,24 @@
+// Between the places of a search, which are geographic, and those of the filter on the grid.
+#pragma once
+
+#include <vector>
+
+#include "core/filter/clusters.hpp"
+#include "core/filter/filter.hpp"
+#include "core/locate/tracker.hpp"
+#include "core/match/search_region.hpp"
+
+namespace roadfix {
+
+AcceptanceRegion acceptance_of(const SearchRegion& region);
+
+/// So near that a search and the particles mean one place.
+bool is_same_place(const GridPose& a, const GridPose& b);
+
+/// Modes of a search as places to draw from; wider than they say, since particles move on before they are weighted.
+std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix);
+
+/// The covariance holds the registration error of the map.
+TrackCluster to_geographic(const MapView& map, const Cluster& cluster);
+
+}  // namespace roadfix

@@ -1,0 +1,28 @@
+#include "core/locate/track_motion.hpp"
+
+#include <cmath>
+
+namespace roadfix {
+
+OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise) {
+  const double metres = noise.odometry_m + noise.odometry_share * std::hypot(odometry.forward_m, odometry.right_m);
+  const double turn = noise.odometry_turn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
+  return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
+}
+
+std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry, OdometryCovariance covariance,
+                                                        double lost) {
+  constexpr double kLostShare = 0.5;
+  constexpr double kLostTurn = 0.3;
+  const double metres = kLostShare * lost * std::hypot(odometry.forward_m, odometry.right_m);
+  for (auto& row : covariance) {
+    for (double& value : row) value *= 1.0 + lost;
+  }
+  covariance[0][0] += metres * metres;
+  covariance[1][1] += metres * metres;
+  covariance[2][2] += lost * kLostTurn * kLostTurn;
+  const double times = 1.0 + lost;
+  return {{times * odometry.forward_m, times * odometry.right_m, times * odometry.turn}, covariance};
+}
+
+}  // namespace roadfix

@@ -113,7 +113,7 @@ FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   const auto cells = result.cells.cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (evidence.count[i] == 0) continue;
-    const double mean = double{evidence.sum[i]} / evidence.count[i];
+    const double mean = static_cast<double>(evidence.sum[i]) / evidence.count[i];
     cells[i] = cell_from_probability(1.0 / (1.0 + std::exp(-mean)));
   }
   return result;

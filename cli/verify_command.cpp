@@ -27,10 +27,13 @@ void print_json(const std::string& path, const MapVerdict& verdict) {
   json problems = json::array();
   for (const MapProblem& problem : verdict.problems)
     problems.push_back({{"code", problem.code}, {"what", problem.what}});
+  json unfinished = json::array();
+  for (const SourceStatus& source : verdict.unfinished) unfinished.push_back(source.record.name);
   const json answer = {{"map", path},
                        {"whole", verdict.problems.empty()},
                        {"tiles", verdict.tiles},
                        {"evidence_tiles", verdict.evidence},
+                       {"unfinished_sources", unfinished},
                        {"problems", problems}};
   fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
 }
@@ -39,6 +42,10 @@ void print_text(const std::string& path, const MapVerdict& verdict) {
   for (const MapProblem& problem : verdict.problems) fmt::print("{} [{}]\n", problem.what, problem.code);
   if (verdict.problems.empty()) {
     fmt::print("{}: whole ({} tiles, {} tiles of evidence)\n", path, verdict.tiles, verdict.evidence);
+  }
+  for (const SourceStatus& source : verdict.unfinished) {
+    fmt::print("source '{}' is not finished: {} of {} blocks. Repeat its ingest to go on\n", source.record.name,
+               source.blocks_done, source.blocks_total);
   }
 }
 
@@ -75,7 +82,9 @@ void verify(const Options& options) {
 
 void add_verify_command(CLI::App& app) {
   auto* command = app.add_subcommand("verify", "Checks that every tile of a map is whole and follows from its sources");
-  command->footer("Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line).");
+  command->footer(
+      "Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line). Interrupted "
+      "ingests are named; they are no damage.");
   const auto options = std::make_shared<Options>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");

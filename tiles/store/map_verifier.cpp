@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -220,6 +222,8 @@ class Verifier {
   void check_summary() {
     if (!verdict_.problems.empty()) return;  // they follow from the tiles, and some of these are wrong
     const MapInfo info = read_info(map_);
+    std::ranges::copy_if(info.sources, std::back_inserter(verdict_.unfinished),
+                         [](const SourceStatus& source) { return !source.complete; });
     const GridBox extent = table_.observed_extent();
     const bool same =
         (extent.empty() && info.extent.empty()) || (extent.min == info.extent.min && extent.max == info.extent.max);

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tiles/store/map_records.hpp"
+
 namespace roadfix {
 
 struct MapProblem {
@@ -19,6 +21,7 @@ struct MapVerdict {
   std::int64_t tiles = 0;     ///< fused tiles and overviews that were checked
   std::int64_t evidence = 0;  ///< tiles of evidence that were checked
   std::vector<MapProblem> problems;
+  std::vector<SourceStatus> unfinished;  ///< interrupted ingests: no damage, but ground may be missing
 };
 
 /// Reads everything: the database structure, the tile lattice, every tile of evidence, every fused tile against the

@@ -58,6 +58,20 @@ TEST_F(MapVerifier, AnEmptyMapIsWhole) {
   EXPECT_THAT(verify_map(folder / "empty.gpkg").problems, IsEmpty());
 }
 
+TEST_F(MapVerifier, NamesAnIngestThatWasInterruptedThoughTheMapIsWhole) {
+  const TileIndex block{847, -8165};
+  {
+    MapWriter writer(path, settings_37n());
+    writer.begin_source(testing::TestSource{"c", 3, {}}.record(), std::vector{block}, false);
+  }
+  const MapVerdict verdict = verify_map(path);
+  EXPECT_THAT(verdict.problems, IsEmpty());
+  ASSERT_EQ(verdict.unfinished.size(), 1U);
+  EXPECT_EQ(verdict.unfinished[0].record.name, "c");
+  EXPECT_EQ(verdict.unfinished[0].blocks_done, 0);
+  EXPECT_EQ(verdict.unfinished[0].blocks_total, 1);
+}
+
 TEST_F(MapVerifier, NamesACorruptTile) {
   EXPECT_THAT(
       codes_after("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 11 AND tile_column = 848 AND "
@@ -114,7 +128,7 @@ TEST_F(MapVerifier, FindsDamageToTheDatabaseItself) {
   // Overwrites pages in the middle of the file with noise; whatever SQLite calls it, it must be said.
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(static_cast<std::streamoff>(fs::file_size(path) / 2 / 4096 * 4096));
-  file << std::string(20 * 4096, '\x5a');
+  file << std::string(20UL * 4096UL, '\x5a');
   file.close();
   try {
     EXPECT_FALSE(verify_map(path).problems.empty());

@@ -116,7 +116,7 @@ TEST_F(IngestCommand, CtrlCStopsCleanlyAndSaysHowToGoOn) {
 
 TEST_F(IngestCommand, BadInputGetsOneLineACodeAndNoMap) {
   const std::string good = picture(300, 1.0);
-  std::ofstream(folder / "zero.tif");
+  std::ofstream(folder / "zero.tif") << "";
   std::ofstream(folder / "header.tif") << "II*and then no TIFF at all";
   write_raster(folder / "nowhere.tif", {.epsg = 0, .transform = std::nullopt}, [](int, int, int) { return 1.0; });
   RasterSpec metres_as_degrees;

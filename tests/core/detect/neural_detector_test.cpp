@@ -37,7 +37,7 @@ class NeuralDetector : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   fs::path model(const json& description, const std::string& network = "tiny.onnx") const {
-    const fs::path path = folder_ / "model.onnx";
+    fs::path path = folder_ / "model.onnx";
     fs::copy_file(kNetworks / network, path, fs::copy_options::overwrite_existing);
     std::ofstream(folder_ / "model.json") << description.dump();
     return path;

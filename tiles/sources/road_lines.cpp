@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/road_layer.hpp"
 #include "tiles/sources/vector_file.hpp"
@@ -93,12 +94,21 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
                                       layer.class_attribute()));
 }
 
+/// Of the ground that a layer says something about: as much as its widest road, or the largest cell, on either side of
+/// a straight line.
+double least_side_m(const RoadNetwork& network) {
+  double side_m = 2.0 * kMaxCellM;
+  for (const RoadLine& line : network.lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
+  return side_m;
+}
+
 void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, Parts& parts) {
   const bool tile = vector_tile_of(path).has_value();
   if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
   const std::optional<OGREnvelope> box = file.extent_of(layer.layer());
   if (!box) return;
-  const PlanePolygon covered = box_on_plane(*box, layer.to_plane(), path);
+  const double side_m = least_side_m(layer.classified() ? parts.classified : parts.plain);
+  const PlanePolygon covered = box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), path);
   if (layer.classified() || tile) parts.classified.covered.push_back(covered);
   if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
 }

@@ -3,6 +3,8 @@
 #include <cpl_string.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -154,6 +156,27 @@ PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& t
   edge(box.MaxX, box.MaxY, box.MinX, box.MaxY);
   edge(box.MinX, box.MaxY, box.MinX, box.MinY);
   return PlanePolygon(std::move(ring));
+}
+
+OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane) {
+  const GdalMessages messages;
+  const double x = (box.MinX + box.MaxX) / 2.0;
+  const double y = (box.MinY + box.MaxY) / 2.0;
+  const double step = 1e-6 * std::max({1.0, std::abs(x), std::abs(y)});  // some metres, in degrees too
+  std::array<double, 3> east{x, x + step, x};
+  std::array<double, 3> north{y, y, y + step};
+  OGREnvelope grown = box;
+  if (to_plane.Transform(3, east.data(), north.data()) == FALSE) return grown;
+  const auto grow = [&](std::size_t i, double& low, double& high) {
+    const double metres_a_unit = std::hypot(east[i] - east[0], north[i] - north[0]) / step;
+    const double margin = (side_m / metres_a_unit - (high - low)) / 2.0;
+    if (!std::isfinite(margin) || margin <= 0.0) return;
+    low -= margin;
+    high += margin;
+  };
+  grow(1, grown.MinX, grown.MaxX);
+  grow(2, grown.MinY, grown.MaxY);
+  return grown;
 }
 
 std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {

@@ -51,6 +51,10 @@ class VectorFile {
 /// The box as a polygon on the plane, its edges followed closely. Throws InvalidInput "crs-not-transformable".
 PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path);
 
+/// The box with each side that is shorter on the plane grown to `side_m` about its middle: that of a single straight
+/// road may have no height. A box without a place in the zone stays as it is.
+OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane);
+
 /// See VectorOptions::extent.
 std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone);
 

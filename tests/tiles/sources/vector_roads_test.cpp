@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include "core/units/error.hpp"
@@ -87,6 +88,31 @@ TEST_F(VectorRoads, GroundBesideTheExtentIsUnobserved) {
   options.extent = fmt::format("{},{},{},{}", low.lon_deg, low.lat_deg, high.lon_deg, high.lat_deg);
   const CellArray stated = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
   EXPECT_NEAR(static_cast<double>(stated.observed_count()), 10000.0, 300.0);
+}
+
+TEST_F(VectorRoads, AStraightRoadAloneIsKnownWithTheGroundBesideIt) {
+  const auto check = [](const std::string& path, const std::string& crs, const std::string& about) {
+    VectorOptions options;
+    options.crs = crs;
+    const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+    const Certainty certainty;
+    double road_cells = 0.0;
+    for (const Cell cell : result.cells()) {
+      if (cell == kUnobserved) continue;
+      road_cells += (probability(cell) - certainty.elsewhere) / (certainty.on_road - certainty.elsewhere);
+    }
+    EXPECT_NEAR(static_cast<double>(result.observed_count()), 200.0 * 32.0 / 4.0, 60.0) << about;
+    EXPECT_NEAR(road_cells, 200.0 * 10.0 / 4.0, 25.0) << about;
+  };
+  const std::string degrees_east = fmt::format(
+      R"({{"type":"Feature","properties":{{"highway":"primary"}},"geometry":{{"type":"LineString","coordinates":[[{0},{2}],[{1},{2}]]}}}})",
+      kZone.unproject(at(-100, 0)).lon_deg, kZone.unproject(at(100, 0)).lon_deg, kZone.unproject(at(0, 0)).lat_deg);
+  check(geojson({degrees_east}), "", "along a parallel");
+  check(geojson({feature(R"("highway":"primary")", at(-100, 0), at(100, 0.1))}), "", "nearly along a parallel");
+  for (const char* line : {"399900 4200000,400100 4200000", "400000 4199900,400000 4200100"}) {
+    std::ofstream(folder / "line.csv") << "highway,WKT\nprimary,\"LINESTRING(" << line << ")\"\n";
+    check((folder / "line.csv").string(), "EPSG:32637", line);
+  }
 }
 
 TEST_F(VectorRoads, AreTheSameHoweverTheGroundIsCutIntoBlocks) {

@@ -65,7 +65,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   }
   print_notes(request.files, summary);
   const SourceRecord record = record_of(arguments, request, summary);
-  const auto blocks = static_cast<std::int64_t>(plan_blocks(*source, settings).size());
+  const auto blocks = static_cast<std::int64_t>(plan_blocks(*source, record.name, settings).size());
   const nlohmann::json json = summary_json(record, summary, blocks, settings);
   if (arguments.dry_run) {
     print_plan(json, arguments.json);
@@ -87,8 +87,9 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     report = ingest(*source, record, settings, *writer, arguments.options, progress, stop);
   }
   if (report.observed_cells == 0 && report.blocks_before == 0) {
-    fmt::print(stderr, "note: nothing of {} was observed: all its pixels are nodata, transparent or no numbers\n",
-               request.files.location);
+    fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,
+               summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent or no numbers"
+                                          : "its --extent holds the centre of no cell");
   }
   print_report(json, report, cell_mp, arguments.json);
 }
@@ -115,8 +116,13 @@ void run(const IngestArguments& arguments, bool cell_given) {
   const MapSettings settings = settings_around_equator(arguments, requests.front(), detector.get(),
                                                        settings_of(arguments, requests.front(), cell_given));
   std::optional<MapWriter> writer;
-  for (const SourceRequest& request : requests) {
-    ingest_one(arguments, request, settings, detector.get(), writer, stop);
+  try {
+    for (const SourceRequest& request : requests) {
+      ingest_one(arguments, request, settings, detector.get(), writer, stop);
+    }
+  } catch (...) {
+    if (writer) writer->remove_if_new_and_empty();
+    throw;
   }
 }
 

@@ -41,7 +41,8 @@ void print_json(const std::string& path, const MapVerdict& verdict) {
 void print_text(const std::string& path, const MapVerdict& verdict) {
   for (const MapProblem& problem : verdict.problems) fmt::print("{} [{}]\n", problem.what, problem.code);
   if (verdict.problems.empty()) {
-    fmt::print("{}: whole ({} tiles, {} tiles of evidence)\n", path, verdict.tiles, verdict.evidence);
+    fmt::print("{}: whole ({} tiles, {} tiles of evidence){}\n", path, verdict.tiles, verdict.evidence,
+               verdict.tiles == 0 ? ", but empty: no ground is observed yet" : "");
   }
   for (const SourceStatus& source : verdict.unfinished) {
     fmt::print("source '{}' is not finished: {} of {} blocks. Repeat its ingest to go on\n", source.record.name,

@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using testing::ingest;
+using ::testing::Not;
 using testing::ProgramResult;
 using testing::run_program;
 using testing::settings_37n;
@@ -53,6 +54,15 @@ TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_THAT(damaged.err, HasSubstr("[map-damaged]"));
   EXPECT_EQ(roadfix("verify --repair " + path.string()).code, 0);
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
+}
+
+TEST_F(MapCommands, VerifySaysThatAMapIsEmpty) {
+  const auto empty = folder / "empty.gpkg";
+  { const MapWriter made(empty, settings_37n()); }
+  const ProgramResult result = roadfix("verify " + empty.string());
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, HasSubstr("no ground is observed yet"));
+  EXPECT_THAT(roadfix("verify " + path.string()).out, Not(HasSubstr("empty")));
 }
 
 TEST_F(MapCommands, ExportWritesARegion) {

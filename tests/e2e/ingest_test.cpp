@@ -157,6 +157,20 @@ TEST_F(IngestCommand, ATruncatedImageKeepsItsSourceIncompleteUntilTheFileIsWhole
   EXPECT_EQ(tiles(map("a.gpkg")), tiles(map("b.gpkg")));
 }
 
+TEST_F(IngestCommand, AFirstIngestThatFailsAtOnceLeavesNoMap) {
+  const std::string image = picture(2000, 1.0);
+  std::filesystem::resize_file(image, 4096);
+  const ChildResult first = ingest({image, "--as", "roads", "--map", map("a.gpkg")});
+  EXPECT_EQ(first.code, 1);
+  EXPECT_THAT(first.err, ::testing::HasSubstr("[image-unreadable-block]"));
+  EXPECT_FALSE(std::filesystem::exists(map("a.gpkg")));
+  std::filesystem::rename(image, folder / "cut.tif");
+  ASSERT_EQ(ingest({picture(300, 1.0), "--as", "roads", "--map", map("a.gpkg")}).code, 0);
+  const auto before = tiles(map("a.gpkg"));
+  EXPECT_EQ(ingest({folder / "cut.tif", "--as", "roads", "--map", map("a.gpkg")}).code, 1);
+  EXPECT_EQ(tiles(map("a.gpkg")), before) << "what was there is kept";
+}
+
 TEST_F(IngestCommand, ANewMapAroundTheEquatorHoldsBothSides) {
   std::ofstream(folder / "quito.geojson")
       << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"primary"},)"

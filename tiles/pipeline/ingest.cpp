@@ -44,6 +44,11 @@ struct Block {
                   source));
 }
 
+[[noreturn]] void outside_map(const std::string& source, const MapSettings& settings) {
+  throw InvalidInput("source-outside-map",
+                     fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map", source, settings.zone.epsg()));
+}
+
 /// The first failure of any stage. A pipeline that an exception cancels leaks the blocks in flight (oneTBB 2021.8), so
 /// the stages keep it here, nothing new is begun, and blocks that were read already are still written.
 class FirstFailure {
@@ -116,24 +121,25 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
 
 }  // namespace
 
-std::vector<TileIndex> plan_blocks(const CellSource& source, const MapSettings& settings) {
+std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& name, const MapSettings& settings) {
   constexpr double kLatticeEastM = 1 << 20;
   constexpr double kLatticeNorthM = 10.0 * (1 << 20);
   constexpr double kMaxBlocks = 1e6;
   GridBox box = source.extent();
   box.min = {std::max(box.min.east_m, 0.0), std::max(box.min.north_m, 0.0)};
   box.max = {std::min(box.max.east_m, kLatticeEastM), std::min(box.max.north_m, kLatticeNorthM)};
-  if (box.empty()) return {};
+  if (box.empty()) outside_map(name, settings);
   const double tile_m = kTileCells * settings.cell_m;
   if (box.width_m() / tile_m * box.height_m() / tile_m > kMaxBlocks) {
     throw LimitExceeded(
         "source-too-large",
-        fmt::format("the source covers {:.0f} x {:.0f} km, more than a million blocks of {:.0f} m: choose "
-                    "larger cells with --cell, or split it",
-                    box.width_m() / 1e3, box.height_m() / 1e3, tile_m));
+        fmt::format("'{}' covers {:.0f} x {:.0f} km, more than a million blocks of {:.0f} m: choose larger cells with "
+                    "--cell, or split it",
+                    name, box.width_m() / 1e3, box.height_m() / 1e3, tile_m));
   }
   std::vector<TileIndex> blocks = tiles_covering(GridGeometry::covering(box, settings.cell_m));
   std::erase_if(blocks, [&](TileIndex tile) { return !source.touches(tile_geometry(tile, settings.cell_m).box()); });
+  if (blocks.empty()) outside_map(name, settings);
   return blocks;
 }
 
@@ -147,11 +153,7 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, const 
                     MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
                     std::stop_token stop) {
   assert(options.jobs >= 1);
-  const std::vector<TileIndex> blocks = plan_blocks(source, settings);
-  if (blocks.empty()) {
-    throw InvalidInput("source-outside-map", fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map",
-                                                         record.name, settings.zone.epsg()));
-  }
+  const std::vector<TileIndex> blocks = plan_blocks(source, record.name, settings);
   const std::vector<TileIndex> todo = writer.begin_source(record, blocks, options.replace);
   IngestReport report;
   report.blocks = static_cast<std::int64_t>(blocks.size());

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "tiles/sources/cell_source.hpp"
@@ -35,9 +36,9 @@ struct IngestReport {
   double fusing_s = 0.0;
 };
 
-/// Tiles of the map's lattice that the source touches, row by row from the north-west. Throws LimitExceeded
-/// "source-too-large" beyond a million.
-std::vector<TileIndex> plan_blocks(const CellSource& source, const MapSettings& settings);
+/// Tiles of the map's lattice that the source touches, row by row from the north-west, at least one. `name`
+/// is for messages. Throws InvalidInput "source-outside-map", LimitExceeded "source-too-large" beyond a million.
+std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& name, const MapSettings& settings);
 
 /// Seed of a block's random numbers.
 std::uint64_t block_seed(std::uint64_t seed, TileIndex block);

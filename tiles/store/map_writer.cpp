@@ -24,8 +24,14 @@ using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
 
-Connection open_or_create(const std::filesystem::path& path, const MapSettings& settings) {
-  if (!std::filesystem::exists(path)) create_map(path, settings);
+/// Makes the map where there is none, and says so.
+bool create_if_missing(const std::filesystem::path& path, const MapSettings& settings) {
+  if (std::filesystem::exists(path)) return false;
+  create_map(path, settings);
+  return true;
+}
+
+Connection open_with(const std::filesystem::path& path, const MapSettings& settings) {
   Connection map = open_map(path, Access::kReadWrite);
   const MapSettings existing = read_settings(map);
   if (existing.zone != settings.zone || existing.cell_m != settings.cell_m) {
@@ -43,7 +49,8 @@ Connection open_or_create(const std::filesystem::path& path, const MapSettings& 
 struct MapWriter::State {
   State(const std::filesystem::path& path, const MapSettings& settings)
       : lock(path),
-        map(open_or_create(path, settings)),
+        made_here(create_if_missing(path, settings)),
+        map(open_with(path, settings)),
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
         fusion(map, tiles),
@@ -59,6 +66,7 @@ struct MapWriter::State {
   std::vector<std::string> drop_damaged_evidence();
 
   WriterLock lock;
+  bool made_here;
   Connection map;
   TileTable tiles;
   SourceTable sources;
@@ -192,6 +200,13 @@ void MapWriter::finish_source(const std::string& source,
     transaction.commit();
   }
   s.fusion.drain(progress, stop);
+}
+
+void MapWriter::remove_if_new_and_empty() {
+  State& s = *state_;
+  if (!s.made_here || Statement(s.map, "SELECT 1 FROM roadfix_blocks WHERE done = 1").step()) return;
+  std::error_code error;  // of no use to who hears of the failure that came before; `verify` calls such a map empty
+  std::filesystem::remove(s.map.path(), error);
 }
 
 void MapWriter::remove_source(const std::string& source) {

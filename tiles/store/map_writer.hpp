@@ -40,6 +40,10 @@ class MapWriter {
   void finish_source(const std::string& source, const std::function<void(std::int64_t, std::int64_t)>& progress = {},
                      std::stop_token stop = {});
 
+  /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
+  /// leaves no map. Nothing but the destructor may be called afterwards.
+  void remove_if_new_and_empty();
+
   /// Removes a source and fuses what it touched.
   void remove_source(const std::string& source);
 

@@ -82,7 +82,7 @@ class IngestTest : public ::testing::Test {
 };
 
 TEST_F(IngestTest, PlansTheTilesThatTheSourceTouches) {
-  const std::vector<TileIndex> blocks = plan_blocks(NoiseSource(), kSettings);
+  const std::vector<TileIndex> blocks = plan_blocks(NoiseSource(), "noise", kSettings);
   EXPECT_EQ(blocks.size(), 6U * 5U);  // tiles of 512 m
   EXPECT_TRUE(std::ranges::is_sorted(blocks, {}, [](TileIndex t) { return std::pair(t.row, t.col); }));
 }
@@ -91,10 +91,10 @@ TEST_F(IngestTest, CarriesEveryCellIntoTheMap) {
   const NoiseSource source;
   const IngestReport report = run(source, "a.gpkg", 2);
   const MapReader map(folder / "a.gpkg");
-  EXPECT_EQ(report.blocks, std::ssize(plan_blocks(source, kSettings)));
+  EXPECT_EQ(report.blocks, std::ssize(plan_blocks(source, "noise", kSettings)));
   EXPECT_EQ(report.blocks_before, 0);
   EXPECT_EQ(report.observed_cells, 1400 * 1100);
-  for (const TileIndex tile : plan_blocks(source, kSettings)) {
+  for (const TileIndex tile : plan_blocks(source, "noise", kSettings)) {
     EXPECT_EQ(map.tile(0, tile), source.read(tile_geometry(tile, kSettings.cell_m), block_seed(5, tile)));
   }
 }

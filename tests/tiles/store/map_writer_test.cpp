@@ -263,6 +263,27 @@ TEST(MapWriter, RefusesWhatDoesNotFit) {
   EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-not-found");
 }
 
+TEST(MapWriter, OnlyANewMapWithoutAFinishedBlockIsRemoved) {
+  const TemporaryFolder folder;
+  const TestSource source{"a", 1, some_blocks(2)};
+  {
+    MapWriter failed(folder / "new.gpkg", settings_37n());
+    failed.begin_source(source.record(), source.blocks, false);
+    failed.remove_if_new_and_empty();
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  {
+    MapWriter begun(folder / "begun.gpkg", settings_37n());
+    begun.begin_source(source.record(), source.blocks, false);
+    begun.put_block("a", source.blocks.front(), CellArray(256, 256));
+    begun.remove_if_new_and_empty();
+  }
+  EXPECT_EQ(MapReader(folder / "begun.gpkg").info().sources.front().blocks_done, 1);
+  { const MapWriter made_before(folder / "old.gpkg", settings_37n()); }
+  MapWriter(folder / "old.gpkg", settings_37n()).remove_if_new_and_empty();
+  EXPECT_TRUE(std::filesystem::exists(folder / "old.gpkg"));
+}
+
 TEST(MapWriter, AnExistingMapKeepsItsSettings) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFigures = 4;
+constexpr std::size_t kFigures = kCountedFigures.size();
 constexpr int kFewest = 50;
 constexpr double kWithin95OfPosition = 5.991;  // of chi^2 with two degrees
 constexpr double kWithin95OfHeading = 3.841;   // with one
@@ -131,10 +131,12 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   std::vector<Example> examples;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.answer.evidence || !outcome.position_nees) continue;
-    const SearchEvidence& evidence = *outcome.answer.evidence;
-    const bool right = *outcome.position_nees <= region * region;
-    examples.push_back({{evidence.surprise, evidence.lead, evidence.gap, evidence.ground}, right});
-    report.right += right ? 1 : 0;
+    Example& example = examples.emplace_back();
+    for (std::size_t i = 0; i < kFigures; ++i) {
+      example.figures[i] = (*outcome.answer.evidence).*kCountedFigures[i].value;
+    }
+    example.right = *outcome.position_nees <= region * region;
+    report.right += example.right ? 1 : 0;
     report.elsewhere += outcome.truth ? 0 : 1;
   }
   report.examples = static_cast<int>(examples.size());
@@ -147,9 +149,8 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   const Weights weights = logistic(examples);
   Calibration& c = report.calibration;
   c.bias = weights[0];
-  const std::array<Calibration::Term*, kFigures> terms{&c.surprise, &c.lead, &c.gap, &c.ground};
   for (std::size_t i = 0; i < kFigures; ++i) {
-    *terms[i] = {weights[i + 1] / scaling.spread[i], scaling.most[i]};
+    c.terms[i] = {weights[i + 1] / scaling.spread[i], scaling.most[i]};
     c.bias -= weights[i + 1] * scaling.mean[i] / scaling.spread[i];
   }
   c.highest = highest_of(examples, weights);
@@ -160,15 +161,14 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
 
 json to_json(const CalibrationReport& report, const json& origin) {
   const Calibration& c = report.calibration;
-  const auto term = [](const Calibration::Term& t) { return json{{"weight", t.weight}, {"most", t.most}}; };
-  json document{
-      {"format", "roadfix-calibration-2"},
-      {"bias", c.bias},
-      {"terms",
-       {{"surprise", term(c.surprise)}, {"lead", term(c.lead)}, {"gap", term(c.gap)}, {"ground", term(c.ground)}}},
-      {"highest", c.highest},
-      {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
-      {"origin", origin}};
+  json document{{"format", kCalibrationFormat},
+                {"bias", c.bias},
+                {"highest", c.highest},
+                {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
+                {"origin", origin}};
+  for (std::size_t i = 0; i < kFigures; ++i) {
+    document["terms"][kCountedFigures[i].name] = {{"weight", c.terms[i].weight}, {"most", c.terms[i].most}};
+  }
   document["origin"]["examples"] = report.examples;
   document["origin"]["right"] = report.right;
   document["origin"]["elsewhere"] = report.elsewhere;

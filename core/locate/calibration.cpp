@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
@@ -15,8 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kSureByExamples = 0.5;  ///< more needs evidence that chance explains nothing
-
-constexpr const char* kFormat = "roadfix-calibration-2";
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
   throw InvalidInput("calibration-field", fmt::format("calibration file: {} {}; write a new one with roadfix bench "
@@ -48,9 +47,10 @@ json parsed(std::string_view text) {
 }  // namespace
 
 double Calibration::probability(const SearchEvidence& evidence) const {
-  const auto counted = [](const Term& t, double figure) { return t.weight * std::min(figure, t.most); };
-  const double sum = bias + counted(surprise, evidence.surprise) + counted(lead, evidence.lead) +
-                     counted(gap, evidence.gap) + counted(ground, evidence.ground);
+  double sum = bias;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    sum += terms[i].weight * std::min(evidence.*kCountedFigures[i].value, terms[i].most);
+  }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
   const double not_by_chance = std::exp(-std::exp(-evidence.surprise));
@@ -59,17 +59,16 @@ double Calibration::probability(const SearchEvidence& evidence) const {
 
 Calibration parse_calibration(std::string_view text) {
   const json document = parsed(text);
-  if (!document.is_object() || document.value("format", json()) != kFormat) {
-    refuse("format", fmt::format("is not \"{}\"", kFormat));
+  if (!document.is_object() || document.value("format", json()) != kCalibrationFormat) {
+    refuse("format", fmt::format("is not \"{}\"", kCalibrationFormat));
   }
   constexpr double kLargest = 1e6;
   const json terms = document.value("terms", json());
   Calibration calibration;
   calibration.bias = number(document, "bias", -kLargest, kLargest);
-  calibration.surprise = term(terms, "surprise");
-  calibration.lead = term(terms, "lead");
-  calibration.gap = term(terms, "gap");
-  calibration.ground = term(terms, "ground");
+  for (std::size_t i = 0; i < kCountedFigures.size(); ++i) {
+    calibration.terms[i] = term(terms, std::string(kCountedFigures[i].name));
+  }
   calibration.highest = number(document, "highest", 0.0, 1.0 - 1e-9);
   const json scale = document.value("sigma_scale", json());
   calibration.position_sigma_scale = number(scale, "position", 0.1, 100.0);

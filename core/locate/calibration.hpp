@@ -4,25 +4,36 @@
 // it is no surer than the search itself that no other place fits as well by chance, whatever the examples say.
 #pragma once
 
-#include <string>
+#include <array>
 #include <string_view>
 
 #include "core/locate/search_evidence.hpp"
 
 namespace roadfix {
 
+struct CountedFigure {
+  std::string_view name;  ///< in calibration files
+  double SearchEvidence::*value;
+};
+
+/// The figures of the evidence that the probability rests on.
+inline constexpr std::array<CountedFigure, 4> kCountedFigures{{{"surprise", &SearchEvidence::surprise},
+                                                               {"lead", &SearchEvidence::lead},
+                                                               {"gap", &SearchEvidence::gap},
+                                                               {"ground", &SearchEvidence::ground}}};
+
+/// Value of "format" in a calibration file; another set of figures is another format.
+inline constexpr std::string_view kCalibrationFormat = "roadfix-calibration-2";
+
 struct Calibration {
-  /// One figure of the evidence in the sum that the logistic function turns into a probability.
+  /// One figure in the sum that the logistic function turns into a probability.
   struct Term {
     double weight = 0.0;  ///< >= 0
     double most = 0.0;    ///< larger figures count as this one
   };
 
   double bias = 0.0;
-  Term surprise;
-  Term lead;
-  Term gap;
-  Term ground;
+  std::array<Term, kCountedFigures.size()> terms;
   double highest = 0.0;  ///< what the number of examples can vouch for, below 1
   // Factors on the standard deviations that the shape of the peak gives, so that ellipses hold what they should.
   double position_sigma_scale = 1.0;

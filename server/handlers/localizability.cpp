@@ -103,8 +103,9 @@ std::string drawn(const Service& service, const http::Request& request, const La
 /// A service that is started with another calibration draws other tiles.
 std::string variation(const Service& service, const Layer& layer, const std::string& path) {
   const Calibration& c = service.calibration ? *service.calibration : default_calibration();
-  return fmt::format("{} {} {} {} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.surprise.weight,
-                     c.lead.weight, c.gap.weight, c.highest);
+  std::string key = fmt::format("{} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest);
+  for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.most);
+  return key;
 }
 
 http::Response get_tile(const Service& service, const http::Request& request, http::Admission& turns) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/locate/calibration.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
 
@@ -76,23 +77,41 @@ TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+/// A calibration that weighs nothing but the ground.
+std::string calibration_by_ground(const testing::TemporaryFolder& folder, double weight) {
+  const std::filesystem::path path = folder / ("ground-" + std::to_string(weight) + ".json");
+  json document{{"format", kCalibrationFormat},
+                {"bias", 0.0},
+                {"highest", 0.9},
+                {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}}};
+  for (const CountedFigure& figure : kCountedFigures) {
+    document["terms"][figure.name] = {{"weight", figure.name == "ground" ? weight : 0.0}, {"most", 10.0}};
+  }
+  std::ofstream(path) << document;
+  return path.string();
+}
+
 TEST(ServiceLife, IsAsSureAsTheCalibrationItIsGiven) {
   const testing::TemporaryFolder folder;
   const testing::Town town;
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
-  const auto term = [](double weight) { return json{{"weight", weight}, {"most", 10.0}}; };
-  std::ofstream(folder / "doubtful.json")
-      << json{{"format", "roadfix-calibration-2"},
-              {"bias", 0.0},
-              {"highest", 0.9},
-              {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}},
-              {"terms", {{"surprise", term(0.0)}, {"lead", term(0.0)}, {"gap", term(0.0)}, {"ground", term(0.0)}}}};
-  const testing::ServiceProcess service(
-      folder.path(), {"--calibration", (folder / "doubtful.json").string(), "--request-time", "600"});
+  const testing::ServiceProcess service(folder.path(),
+                                        {"--calibration", calibration_by_ground(folder, 0.0), "--request-time", "600"});
   httplib::Client client = testing::client_of(service);
   const json fix = testing::json_of(client.Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png"));
   EXPECT_EQ(fix["status"], "ambiguous") << fix;
   EXPECT_DOUBLE_EQ(fix["probability"].get<double>(), 0.5) << "of a logistic function that weighs nothing";
+}
+
+TEST(ServiceLife, SendsTilesOfLocalizabilityAnewUnderAnotherCalibration) {
+  const testing::TemporaryFolder folder;
+  testing::write_map_file(folder / "town.gpkg", testing::Town().roads, 2.0);
+  const auto tag = [&](double weight) {
+    const testing::ServiceProcess service(folder.path(), {"--calibration", calibration_by_ground(folder, weight)});
+    return testing::client_of(service).Get("/v1/maps/town/localizability/tiles/16/0/0.png")->get_header_value("ETag");
+  };
+  EXPECT_EQ(tag(0.2), tag(0.2));
+  EXPECT_NE(tag(0.2), tag(0.3));
 }
 
 TEST(ServiceLife, StopsAtOnceWhenNothingIsInFlight) {

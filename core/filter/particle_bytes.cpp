@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix {
 namespace {
@@ -16,18 +17,6 @@ constexpr std::uint64_t kMagic = 0x3130'5346'4652ULL;  // "RFFS01"
 constexpr std::size_t kMaxParticles = 10'000'000;
 constexpr std::size_t kColumns = 6;
 constexpr std::size_t kHeaderWords = 7;
-static_assert(std::endian::native == std::endian::little);
-
-void put(std::vector<std::byte>& bytes, std::uint64_t word) {
-  const auto* first = reinterpret_cast<const std::byte*>(&word);
-  bytes.insert(bytes.end(), first, first + sizeof word);
-}
-
-std::uint64_t word_at(std::span<const std::byte> bytes, std::size_t index) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, bytes.data() + index * sizeof word, sizeof word);
-  return word;
-}
 
 auto columns_of(auto& p) {
   return std::array{&p.east_m, &p.north_m, &p.heading_rad, &p.drift_east_m_s, &p.drift_north_m_s, &p.weight};
@@ -43,11 +32,11 @@ auto columns_of(auto& p) {
 std::vector<std::byte> to_bytes(const FilterState& state) {
   std::vector<std::byte> bytes;
   const std::size_t count = state.particles.size();
-  bytes.reserve(sizeof(std::uint64_t) * (kHeaderWords + kColumns * count));
+  bytes.reserve(kWordBytes * (kHeaderWords + kColumns * count));
   for (const std::uint64_t word :
        {kMagic, std::uint64_t{count}, state.seed, state.step, state.resets,
         std::bit_cast<std::uint64_t>(state.slow_support), std::bit_cast<std::uint64_t>(state.fast_support)}) {
-    put(bytes, word);
+    put_word(bytes, word);
   }
   for (const auto* column : columns_of(state.particles)) {
     const auto data = std::as_bytes(std::span(*column));
@@ -57,10 +46,9 @@ std::vector<std::byte> to_bytes(const FilterState& state) {
 }
 
 FilterState filter_state_of(std::span<const std::byte> bytes) {
-  constexpr std::size_t kWord = sizeof(std::uint64_t);
-  if (bytes.size() < kWord * kHeaderWords || word_at(bytes, 0) != kMagic) refuse("is of no known version");
+  if (bytes.size() < kWordBytes * kHeaderWords || word_at(bytes, 0) != kMagic) refuse("is of no known version");
   const std::uint64_t count = word_at(bytes, 1);
-  if (count == 0 || count > kMaxParticles || bytes.size() != kWord * (kHeaderWords + kColumns * count)) {
+  if (count == 0 || count > kMaxParticles || bytes.size() != kWordBytes * (kHeaderWords + kColumns * count)) {
     refuse("is not whole");
   }
   FilterState state;
@@ -70,10 +58,10 @@ FilterState filter_state_of(std::span<const std::byte> bytes) {
   state.slow_support = std::bit_cast<double>(word_at(bytes, 5));
   state.fast_support = std::bit_cast<double>(word_at(bytes, 6));
   state.particles.resize(count);
-  std::size_t at = kWord * kHeaderWords;
+  std::size_t at = kWordBytes * kHeaderWords;
   for (auto* column : columns_of(state.particles)) {
-    std::memcpy(column->data(), bytes.data() + at, kWord * count);
-    at += kWord * count;
+    std::memcpy(column->data(), bytes.data() + at, kWordBytes * count);
+    at += kWordBytes * count;
     if (!std::ranges::all_of(*column, [](double x) { return std::isfinite(x); })) refuse("holds what is no number");
   }
   const auto is_support = [](double x) { return x >= 0.0 && x <= 1.0; };

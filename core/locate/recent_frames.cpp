@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 #include "core/units/error.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix {
 namespace {
@@ -16,9 +16,7 @@ namespace {
 using Frame = RecentFrames::Frame;
 
 constexpr std::uint64_t kMagic = 0x3130'4646'4652ULL;  // "RFFF01"
-constexpr std::size_t kWord = sizeof(std::uint64_t);
-constexpr double kMostCombinedCells = 16e6;  // more than frames make that may be kept
-static_assert(std::endian::native == std::endian::little);
+constexpr double kMostCombinedCells = 16e6;            // more than frames make that may be kept
 
 std::array<double, 2> size_m(const FeatureMap& features) {
   return {features.cell_m * features.cells.cols(), features.cell_m * features.cells.rows()};
@@ -54,13 +52,6 @@ BodyOffset seen_after(const Odometry& moved, const BodyOffset& before) {
   return {c * forward + s * right, c * right - s * forward, (before.turn - moved.turn).wrapped()};
 }
 
-void put(std::vector<std::byte>& bytes, std::uint64_t word) {
-  const auto* first = reinterpret_cast<const std::byte*>(&word);
-  bytes.insert(bytes.end(), first, first + kWord);
-}
-
-void put(std::vector<std::byte>& bytes, double value) { put(bytes, std::bit_cast<std::uint64_t>(value)); }
-
 [[noreturn]] void refuse(const char* what) {
   throw CorruptData("track-frames-corrupt",
                     std::string("the stored frames of a track ") + what + ": delete the track and begin a new one");
@@ -70,11 +61,7 @@ class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
 
-  std::uint64_t word() {
-    std::uint64_t value = 0;
-    std::memcpy(&value, take(kWord).data(), kWord);
-    return value;
-  }
+  std::uint64_t word() { return word_at(take(kWordBytes), 0); }
   double number() {
     const auto value = std::bit_cast<double>(word());
     if (!std::isfinite(value)) refuse("hold what is no number");
@@ -95,11 +82,11 @@ class Reader {
 void put(std::vector<std::byte>& bytes, const Frame& frame) {
   const FeatureMap& features = frame.placed.features;
   const BodyOffset& offset = frame.placed.offset;
-  put(bytes, static_cast<std::uint64_t>(features.cells.cols()));
-  put(bytes, static_cast<std::uint64_t>(features.cells.rows()));
+  put_word(bytes, static_cast<std::uint64_t>(features.cells.cols()));
+  put_word(bytes, static_cast<std::uint64_t>(features.cells.rows()));
   for (const double value : {features.cell_m, features.nadir.col, features.nadir.row, offset.forward_m, offset.right_m,
                              offset.turn.radians(), frame.position_m2, frame.turn_rad2}) {
-    put(bytes, value);
+    put_word(bytes, std::bit_cast<std::uint64_t>(value));
   }
   const auto cells = std::as_bytes(features.cells.cells());
   bytes.insert(bytes.end(), cells.begin(), cells.end());
@@ -169,8 +156,8 @@ FeatureMap RecentFrames::laid_around(const FeatureMap& features) const {
 std::vector<std::byte> RecentFrames::to_bytes() const {
   if (frames_.empty()) return {};
   std::vector<std::byte> bytes;
-  put(bytes, kMagic);
-  put(bytes, std::uint64_t{frames_.size()});
+  put_word(bytes, kMagic);
+  put_word(bytes, frames_.size());
   for (const Frame& frame : frames_) put(bytes, frame);
   return bytes;
 }

@@ -5,11 +5,17 @@
 
 namespace roadfix {
 
-Ellipse ellipse_of(const PositionCovariance& c) {
-  const double mean = 0.5 * (c.east2 + c.north2);
-  const double split = std::hypot(0.5 * (c.north2 - c.east2), c.east_north);
-  const double along_north = 0.5 * std::atan2(2.0 * c.east_north, c.north2 - c.east2);
-  return {{std::sqrt(mean + split), std::sqrt(std::max(0.0, mean - split))}, Angle::radians(along_north)};
+Ellipse ellipse_of(const MapView& map, GridPoint at, const std::array<std::array<double, 3>, 3>& covariance) {
+  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
+  const double east2 = covariance[0][0] + registration2;
+  const double north2 = covariance[1][1] + registration2;
+  const double east_north = covariance[0][1];
+  const double mean = 0.5 * (east2 + north2);
+  const double split = std::hypot(0.5 * (north2 - east2), east_north);
+  const Angle from_grid_north = Angle::radians(0.5 * std::atan2(2.0 * east_north, north2 - east2));
+  const double true_deg = map.zone.true_from_grid(from_grid_north, at).compass_degrees();
+  return {{std::sqrt(mean + split), std::sqrt(std::max(0.0, mean - split))},
+          Angle::degrees(std::fmod(true_deg, 180.0))};
 }
 
 }  // namespace roadfix

@@ -1,23 +1,20 @@
-// A covariance of position as an ellipse.
+// How uncertain a position on a map is, as an ellipse on the earth.
 #pragma once
 
 #include <array>
 
+#include "core/locate/map_view.hpp"
 #include "core/units/angle.hpp"
 
 namespace roadfix {
 
 struct Ellipse {
   std::array<double, 2> sigma_m;  ///< along the major and minor axis
-  Angle heading;                  ///< of the major axis, clockwise from grid north
+  Angle heading;                  ///< of the major axis, clockwise from true north, within [0, 180) degrees
 };
 
-struct PositionCovariance {
-  double east2 = 0.0;
-  double north2 = 0.0;
-  double east_north = 0.0;
-};
-
-Ellipse ellipse_of(const PositionCovariance& covariance);
+/// `covariance` is that of the match alone at `at`: east (m), north (m), heading (rad). The registration error of the
+/// map's sources is added to both axes.
+Ellipse ellipse_of(const MapView& map, GridPoint at, const std::array<std::array<double, 3>, 3>& covariance);
 
 }  // namespace roadfix

@@ -30,9 +30,9 @@ double spread_of(const CellArray& cells) {
   return n > 0.0 ? squares / n - (sum / n) * (sum / n) : 0.0;
 }
 
-// 16 patches of 15 m that err independently of each other. On less, one place always fits far better than the others,
-// and what tells chance from more than chance no longer holds.
-constexpr double kLeastGroundM2 = 60.0 * 60.0;
+// On less, one place always fits far better than the others, and what tells chance from more than chance no longer
+// holds.
+constexpr double kLeastGroundM2 = 16.0 * kSampleM2;
 
 /// Sets status and reason and returns true where the feature map alone tells that there is nothing to search for.
 bool hopeless(const FeatureMap& features, Fix& fix) {
@@ -70,20 +70,16 @@ bool shows_less_than_a_road_across(const FeatureMap& features) {
 
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
                       const Calibration& calibration) {
-  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
-  const auto& c = mode.covariance;
-  const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
-  const GridPoint at = mode.pose.position;
+  const Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
   FixMode result;
-  result.pose = {map.zone.unproject(at), map.zone.true_from_grid(mode.pose.heading, at).wrapped()};
+  result.pose = on_earth(mode.pose, map.zone);
   result.scale = mode.scale;
   result.weight = weight;
   result.rho = rho_at(map, cells, mode.pose, mode.scale);
   result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
                     calibration.position_sigma_scale * ellipse.sigma_m[1]};
-  const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
-  result.ellipse_heading = Angle::degrees(std::fmod(major_deg, 180.0));
-  result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(c[2][2]));
+  result.ellipse_heading = ellipse.heading;
+  result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]));
   result.observed_cells = mode.observed_cells;
   return result;
 }
@@ -110,6 +106,10 @@ void require_valid(const FixOptions& options, double area_km2) {
 GridPose on_grid(const GeoPose& pose, const UtmZone& zone) {
   const GridPoint at = zone.project(pose.position);
   return {at, zone.grid_from_true(pose.heading, at)};
+}
+
+GeoPose on_earth(const GridPose& pose, const UtmZone& zone) {
+  return {zone.unproject(pose.position), zone.true_from_grid(pose.heading, pose.position).wrapped()};
 }
 
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {

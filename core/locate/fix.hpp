@@ -26,6 +26,8 @@ struct GeoPose {
 
 /// The same on the plane of the zone, its heading from grid north.
 GridPose on_grid(const GeoPose& pose, const UtmZone& zone);
+/// And back, its heading within (-180, 180] degrees.
+GeoPose on_earth(const GridPose& pose, const UtmZone& zone);
 
 struct GeoCircle {
   LatLon centre;

@@ -13,9 +13,6 @@ constexpr std::size_t kFewestRivals = 12;
 constexpr double kUnknown = -10.0;
 constexpr double kLargest = 1000.0;
 
-// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample.
-constexpr double kSampleM2 = 15.0 * 15.0;
-
 /// Differences between correlations near 1 mean more than the same near 0.
 double fisher(double score) {
   constexpr double kPerfect = 0.9999;

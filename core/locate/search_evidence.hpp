@@ -6,6 +6,9 @@
 
 namespace roadfix {
 
+/// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample.
+inline constexpr double kSampleM2 = 15.0 * 15.0;
+
 struct SearchEvidence {
   /// -ln of how many places of the region would fit as well as the best one by chance, if the scores of the distinct
   /// places beside it thin out like an exponential tail of Fisher's z above the lowest of them (the domain of

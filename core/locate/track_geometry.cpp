@@ -42,16 +42,12 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
 }
 
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster) {
-  const GridPoint at = cluster.mean.position;
-  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
-  const auto& c = cluster.covariance;
-  const Ellipse ellipse = ellipse_of({c[0][0] + registration2, c[1][1] + registration2, c[0][1]});
-  const double major_deg = map.zone.true_from_grid(ellipse.heading, at).compass_degrees();
-  return {{map.zone.unproject(at), map.zone.true_from_grid(cluster.mean.heading, at).wrapped()},
+  const Ellipse ellipse = ellipse_of(map, cluster.mean.position, cluster.covariance);
+  return {on_earth(cluster.mean, map.zone),
           cluster.weight,
           ellipse.sigma_m,
-          Angle::degrees(std::fmod(major_deg, 180.0)),
-          Angle::radians(std::sqrt(c[2][2])),
+          ellipse.heading,
+          Angle::radians(std::sqrt(cluster.covariance[2][2])),
           cluster.radius95_m};
 }
 

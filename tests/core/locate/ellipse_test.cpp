@@ -1,0 +1,49 @@
+#include "core/locate/ellipse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/geodesy/utm.hpp"
+
+namespace roadfix {
+namespace {
+
+const UtmZone kZone = UtmZone::containing({37.7, 38.3});
+const GridPoint kFarFromTheMeridian{180'000.0, 4'180'000.0};
+
+MapView map_registered_to(double sigma_m) {
+  return {.name = "map", .version = "1", .zone = kZone, .extent = {}, .registration_sigma_m = sigma_m, .read = {}};
+}
+
+/// Of a position that is `along_m` unsure in the direction `grid` and `across_m` across it.
+std::array<std::array<double, 3>, 3> covariance_of(Angle grid, double along_m, double across_m) {
+  const double s = sin(grid);
+  const double c = cos(grid);
+  const double a2 = along_m * along_m;
+  const double b2 = across_m * across_m;
+  return {{{a2 * s * s + b2 * c * c, (a2 - b2) * s * c, 0.0}, {(a2 - b2) * s * c, a2 * c * c + b2 * s * s, 0.0}, {}}};
+}
+
+TEST(Ellipse, PointsAlongTheUnsureDirectionFromTrueNorthWithinHalfATurn) {
+  for (double degrees = -175.0; degrees < 180.0; degrees += 10.0) {
+    const Angle grid = Angle::degrees(degrees);
+    const Ellipse ellipse = ellipse_of(map_registered_to(0.0), kFarFromTheMeridian, covariance_of(grid, 9.0, 4.0));
+    EXPECT_NEAR(ellipse.sigma_m[0], 9.0, 1e-9);
+    EXPECT_NEAR(ellipse.sigma_m[1], 4.0, 1e-9);
+    EXPECT_GE(ellipse.heading.degrees(), 0.0);
+    EXPECT_LT(ellipse.heading.degrees(), 180.0);
+    const Angle expected = kZone.true_from_grid(grid, kFarFromTheMeridian);
+    EXPECT_NEAR(sin(ellipse.heading - expected), 0.0, 1e-9) << degrees;
+  }
+}
+
+TEST(Ellipse, GrowsByTheErrorOfTheMapsRegistrationOnBothAxes) {
+  const auto covariance = covariance_of(Angle::degrees(30.0), 8.0, 0.0);
+  const Ellipse ellipse = ellipse_of(map_registered_to(6.0), kFarFromTheMeridian, covariance);
+  EXPECT_NEAR(ellipse.sigma_m[0], 10.0, 1e-9);
+  EXPECT_NEAR(ellipse.sigma_m[1], 6.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace roadfix

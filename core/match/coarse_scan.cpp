@@ -182,9 +182,7 @@ class Scan {
   }
 
   static void widen(const FloatPlane& blocks, const BlockMixes& mixes, Range cols, Range rows, FloatPlane& out) {
-    out.cols = widened_for_vectors(cols.count());
-    out.rows = rows.count();
-    out.values.resize(static_cast<std::size_t>(out.cols) * static_cast<std::size_t>(out.rows));
+    out.resize(widened_for_vectors(cols.count()), rows.count());
     const std::ptrdiff_t from = cols.first + 1;
     for (int row = 0; row < out.rows; ++row) {
       mix_blocks(blocks.row(rows.first + row), mixes.first.data() + from, mixes.second.data() + from,

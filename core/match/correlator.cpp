@@ -153,9 +153,8 @@ FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn
 
 void Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn, Room& room, FloatPlanes& result) const {
   for (FloatPlane* plane : {&result.first, &result.second}) {
-    plane->cols = sum_cols();
-    plane->rows = sum_rows();
-    plane->values.assign(static_cast<std::size_t>(plane->cols) * static_cast<std::size_t>(plane->rows), 0.0F);
+    plane->resize(sum_cols(), sum_rows());
+    std::ranges::fill(plane->values, 0.0F);
   }
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, room);

@@ -13,6 +13,12 @@ struct FloatPlane {
 
   FloatPlane() = default;
   FloatPlane(int c, int r) : cols(c), rows(r), values(static_cast<std::size_t>(c) * static_cast<std::size_t>(r)) {}
+  /// As large as this; what it holds then is anything.
+  void resize(int c, int r) {
+    cols = c;
+    rows = r;
+    values.resize(static_cast<std::size_t>(c) * static_cast<std::size_t>(r));
+  }
   float* row(int r) { return values.data() + std::ptrdiff_t{r} * cols; }
   const float* row(int r) const { return values.data() + std::ptrdiff_t{r} * cols; }
   float& at(int col, int r) { return row(r)[col]; }

@@ -184,8 +184,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 
 #include <algorithm>
-#include <array>
 #include <cassert>
+#include <vector>
 
 #include "core/match/kernel_vnni.hpp"
 
@@ -210,17 +210,13 @@ MatchSums scaled(const IntegerSums& s) {
 /// All places within the plane and its margin.
 void sums_within(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                  std::span<MatchSums> out) {
-  std::array<IntegerSums, 64> sums;
-  for (std::size_t first = 0; first < places.size(); first += sums.size()) {
-    const std::size_t count = std::min(sums.size(), places.size() - first);
-    const auto some = std::span(sums).first(count);
-    if (has_byte_products()) {
-      sums_by_byte_products(map, footprint, places.subspan(first, count), some);
-    } else {
-      HWY_DYNAMIC_DISPATCH(sums_at)(map, footprint, places.subspan(first, count), some);
-    }
-    std::ranges::transform(some, out.subspan(first).begin(), scaled);
+  std::vector<IntegerSums> sums(places.size());
+  if (has_byte_products()) {
+    sums_by_byte_products(map, footprint, places, sums);
+  } else {
+    HWY_DYNAMIC_DISPATCH(sums_at)(map, footprint, places, sums);
   }
+  std::ranges::transform(sums, out.begin(), scaled);
 }
 
 }  // namespace

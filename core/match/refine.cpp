@@ -44,9 +44,10 @@ class GroundAround {
       windows.push_back(window_around(level, pose, cells));
       apart += cells_of(windows.back());
     }
-    if (windows.empty()) return;
-    const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
-    if (cells_of(all) <= apart) windows.assign(1, all);
+    if (!windows.empty()) {
+      const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
+      if (cells_of(all) <= apart) windows.assign(1, all);
+    }
     for (const GridGeometry& window : windows) {
       if (deadline.over()) return;
       planes_.push_back({window.origin, MapPlane(level.read(window).cells, 0)});
@@ -154,6 +155,7 @@ GridGeometry framed(const GridGeometry& geometry, int cells) {
 
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
   const GroundAround ground(level, cells, deadline, candidates);
+  if (!ground.whole()) return false;
   std::map<std::pair<int, int>, std::vector<std::size_t>> candidates_of;  // scale and bin
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
@@ -165,7 +167,7 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
   std::map<int, LevelFeatures> features;
   std::vector<RefineTask> tasks;
   for (auto& [key, members] : candidates_of) {
-    if (deadline.over() || !ground.whole()) return false;
+    if (deadline.over()) return false;
     const auto [scale, bin] = key;
     if (!features.contains(scale)) features.emplace(scale, level.at_scale(scale));
     tasks.push_back({scale, bin, &features.at(scale), std::move(members), {}});

@@ -41,11 +41,8 @@ void ScanMeansPatch::at(bool half_turn, double full_cells, double least_cells, S
   map_.block_observed().correlate(room_.square, half_turn, room_.observed, room_.squares);
   map_.block_values().correlate(room_.observed_of_patch, half_turn, room_.values, room_.of_map);
   const FloatPlane& n = room_.counts_and_values.first;
-  for (FloatPlane* plane : {&means.correction, &means.gain}) {
-    plane->cols = n.cols;
-    plane->rows = n.rows;
-    plane->values.resize(n.values.size());
-  }
+  means.correction.resize(n.cols, n.rows);
+  means.gain.resize(n.cols, n.rows);
   const BlockRow sums{n.values.data(), room_.counts_and_values.second.values.data(), room_.squares.first.values.data(),
                       room_.of_map.first.values.data(), room_.of_map.second.values.data()};
   const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(least_cells),

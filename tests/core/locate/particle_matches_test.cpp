@@ -1,0 +1,55 @@
+#include "core/locate/particle_matches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/grid/resample.hpp"
+#include "tests/support/flight.hpp"
+#include "tests/support/map_view.hpp"
+
+namespace roadfix {
+namespace {
+
+TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
+  const RoadGrid map = testing::street_map(51, {2.0, {300'000, -3'200'000}, 800, 700});
+  const GridPose middle{{600'700.0, 6'399'400.0}, Angle::degrees(60.0)};
+  std::mt19937_64 random(11);
+  const FeatureMap features = testing::observed_at(map, middle, 100, 90, 2.0, {0.1, 0.1}, random);
+  Particles p;
+  p.resize(300);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.set(i, {middle.position.east_m + testing::uniform(random, -20, 20),
+              middle.position.north_m + testing::uniform(random, -20, 20),
+              middle.heading.radians() + testing::uniform(random, -0.1, 0.1)});
+    p.weight[i] = i == 7 ? 0.0 : 1.0;
+  }
+  const auto sums = match_particles(testing::view_of(map), features, p);
+  EXPECT_EQ(sums[7].n, 0);
+  double difference = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (i == 7) continue;
+    // Brute force: the map cut out at the very pose.
+    const FeatureMap below = cut_out(map, p.at(i).pose(), 100, 90, 2.0);
+    MatchSums exact;
+    for (int r = 0; r < 90; ++r) {
+      for (int c = 0; c < 100; ++c) {
+        if (!is_observed(below.cells.at(c, r))) continue;
+        const double m = probability(below.cells.at(c, r));
+        const double l = probability(features.cells.at(c, r));
+        ++exact.n;
+        exact.m += m;
+        exact.l += l;
+        exact.mm += m * m;
+        exact.ll += l * l;
+        exact.ml += m * l;
+      }
+    }
+    difference += std::abs(*rho(sums[i]) - *rho(exact)) / 299.0;
+  }
+  EXPECT_LT(difference, 0.05) << "nearest cell and shared heading bins";
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,217 @@
+// When a track searches, and which places it claims.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/locate/tracker.hpp"
+#include "tests/core/locate/track_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::Flight;
+using testing::Track;
+
+TEST_F(Track, ClaimsNoPlaceBeforeASearchHasToldItFromAllOthers) {
+  TrackSettings uniform = settings();
+  uniform.start = TrackStart::kUniform;
+  uniform.filter.max_particles = 20'000;
+  uniform.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 250.0};
+  TrackSettings unsearchable = uniform;
+  unsearchable.max_search_km2 = 1e-3;
+  for (const bool searches : {true, false}) {
+    Flight flight(map_, start_, 2);
+    state_ = {};
+    const auto look = [&](int i, const TrackEstimate& estimate) {
+      EXPECT_TRUE(!estimate.converged || state_.last_search > 0) << "step " << i;
+    };
+    const TrackEstimate last = fly(Tracker(view_, searches ? uniform : unsearchable), flight, 25, look);
+    EXPECT_LT(error_m(last, flight.pose()), 12.0);
+    EXPECT_GE(state_.evidence, std::log(100.0));
+    EXPECT_EQ(last.converged, searches);
+  }
+}
+
+TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
+  Flight flight(map_, start_, 1);
+  const StepInput first = flight.step();
+  const auto accepted = [&](double highest) {
+    TrackSettings s = settings();
+    Calibration calibration = default_calibration();
+    calibration.highest = highest;
+    s.calibration = std::make_shared<const Calibration>(calibration);
+    const StepResult result = Tracker(view_, s).advance({}, first);
+    EXPECT_EQ(result.estimate.measurement, Measurement::kSearched);
+    return result.estimate.since_accepted_s.has_value();
+  };
+  EXPECT_TRUE(accepted(0.999));
+  EXPECT_FALSE(accepted(0.5));
+}
+
+TEST_F(Track, ClaimsNoPlaceWhereOneBrightStrokeHidesFaintRoads) {
+  // What is seen of the roads is faint, and a line that is none is not: chance agreements with it come often, and
+  // particles gather at one of them.
+  const auto stroke = [](FeatureMap& features, std::mt19937_64& random) {
+    for (Cell& cell : features.cells.cells()) cell = static_cast<Cell>(cell / 10);
+    const int row = static_cast<int>(testing::uniform(random, 10, 110));
+    const int col = static_cast<int>(testing::uniform(random, 10, 80));
+    const double slope = testing::uniform(random, -1.0, 1.0);
+    for (int i = 0; i < 40; ++i) {
+      for (int k = 0; k < 5; ++k) {
+        features.cells.at(col + i, std::clamp(row + static_cast<int>(slope * i) + k, 0, 127)) = kRoad;
+      }
+    }
+  };
+  const Tracker tracker(view_, settings());
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    Flight flight(map_, start_, seed);
+    std::mt19937_64 random(seed);
+    state_ = {};
+    for (int i = 0; i < 25; ++i) {
+      StepInput step = flight.step();
+      stroke(*step.features, random);
+      const TrackEstimate estimate = advance(tracker, step);
+      EXPECT_TRUE(!estimate.converged || error_m(estimate, flight.pose()) < 25.0) << "seed " << seed << ", step " << i;
+    }
+  }
+}
+
+TEST_F(Track, ClaimsNoPlaceAmongManyThatFitAlike) {
+  // Particles gather at one of them by and by, the frames agree with it, and a search finds more than chance.
+  const RoadGrid grid = testing::grid_city(map_.geometry, 120.0);
+  const MapView view = testing::view_of(grid);
+  Flight flight(grid, start_, 13);
+  fly(Tracker(view, settings()), flight, 40,
+      [](int i, const TrackEstimate& estimate) { EXPECT_FALSE(estimate.converged) << "step " << i; });
+}
+
+TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  fly(tracker, flight, 3);
+  StepInput late = flight.step();
+  late.time_us += 700'000'000;  // the belief is thrown away, and a search shall find it anew
+  StepLimits limits;
+  limits.search_time = std::chrono::milliseconds(1);
+  ASSERT_NO_THROW(state_ = tracker.advance(state_, late, limits).state);
+  EXPECT_EQ(state_.last_search, state_.measured) << "it was tried";
+  EXPECT_EQ(state_.sequence, late.sequence);
+}
+
+TEST_F(Track, NoticesAKidnappingAndRecovers) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  fly(tracker, flight, 15);
+  flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});
+  int recovered = -1;
+  for (int i = 0; i < 60 && recovered < 0; ++i) {
+    const TrackEstimate estimate = advance(tracker, flight.step());
+    const bool right = error_m(estimate, flight.pose()) < 20.0;
+    EXPECT_TRUE(i < 12 || right || !estimate.converged) << "still sure of the wrong place";
+    if (estimate.converged && right) recovered = i;
+  }
+  EXPECT_GE(recovered, 0);
+  EXPECT_LT(recovered, 40);
+}
+
+TEST_F(Track, IsFoundByItsLastFramesTogetherWhereEachShowsTooLittle) {
+  TrackSettings few = settings();
+  few.filter.max_particles = 800;  // too few to find the place without a search
+  int found = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    Flight flight(map_, start_, seed);
+    flight.side_cells = 28;
+    state_ = {};
+    const auto look = [&](int i, const TrackEstimate& estimate) {
+      EXPECT_TRUE(!estimate.converged || error_m(estimate, flight.pose()) < 25.0) << "seed " << seed << ", step " << i;
+    };
+    const TrackEstimate last = fly(Tracker(view_, few), flight, 40, look);
+    found += error_m(last, flight.pose()) < 25.0 ? 1 : 0;
+  }
+  EXPECT_GE(found, 3) << "one, when each search has a single frame";
+}
+
+TEST_F(Track, KeepsItsLastFramesWhileItIsNotPlacedAndKnowsHowItMoved) {
+  const RoadGrid elsewhere = testing::street_map(52, map_.geometry);
+  const auto kept = [&](const RoadGrid& ground, const TrackSettings& s, const std::function<void(StepInput&)>& change) {
+    const Tracker tracker(view_, s);
+    Flight flight(ground, start_, 6);
+    state_ = {};
+    fly(tracker, flight, 8);
+    StepInput last = flight.step();
+    change(last);
+    advance(tracker, last);
+    return state_.recent.frames().size();
+  };
+  const auto as_it_is = [](StepInput&) {};
+  EXPECT_EQ(kept(elsewhere, settings(), as_it_is), 3U);
+  EXPECT_EQ(kept(map_, settings(), as_it_is), 0U) << "it is placed";
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.odometry.reset(); }), 1U);
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.sequence += 1; }), 1U) << "a step was lost";
+  EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.time_us += 601'000'000; }), 1U);
+  TrackSettings blown = settings();
+  blown.vehicle.wind_walk = 0.1;
+  EXPECT_EQ(kept(elsewhere, blown, as_it_is), 1U) << "the wind may have carried it anywhere";
+  EXPECT_EQ(kept(elsewhere, TrackSettings::paper(500), as_it_is), 0U) << "it never searches";
+}
+
+/// The town of Track, of which the map knows only what lies west of a line, and a vehicle that flies east.
+class TrackBeyondTheMap : public Track {
+ protected:
+  TrackBeyondTheMap() {
+    part_.read = [whole = view_.read](const GridGeometry& geometry) {
+      RoadGrid grid = whole(geometry);
+      for (int row = 0; row < grid.geometry.rows; ++row) {
+        for (int col = 0; col < grid.geometry.cols; ++col) {
+          if (grid.geometry.cell_center(col, row).east_m > 600'950.0) grid.cells.at(col, row) = kUnobserved;
+        }
+      }
+      return grid;
+    };
+  }
+
+  TrackEstimate fly_to(const Tracker& tracker, const GridPose& pose, double seconds) {
+    StepInput step;
+    step.sequence = state_.sequence + 1;
+    step.time_us = state_.time_us + static_cast<std::int64_t>(1e6 * seconds);
+    if (step.sequence > 0) step.odometry = Odometry{20.0, 0.0, Angle()};
+    step.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random_);
+    return advance(tracker, step);
+  }
+  /// 28 steps; the last ones see nothing that the map shows.
+  TrackEstimate fly_out(const Tracker& tracker) {
+    TrackEstimate last;
+    for (int i = 0; i < 28; ++i) {
+      last = fly_to(tracker, {{600'650.0 + 20.0 * i, 6'399'400.0}, Angle::degrees(90.0)}, 1.0);
+      if (i == 8) {
+        EXPECT_LT(error_m(last, {{600'650.0 + 20.0 * i, 6'399'400.0}, Angle::degrees(90.0)}), 25.0);
+      }
+    }
+    return last;
+  }
+
+  MapView part_ = view_;
+  std::mt19937_64 random_{12};
+};
+
+TEST_F(TrackBeyondTheMap, TakesNothingFromFramesOfGroundThatTheMapDoesNotShow) {
+  const TrackEstimate last = fly_out(Tracker(part_, settings()));
+  EXPECT_EQ(last.measurement, Measurement::kUseless);
+  EXPECT_LT(last.doubt, 0.4) << "nothing speaks against the belief";
+  EXPECT_LT(error_m(last, {{600'650.0 + 20.0 * 27, 6'399'400.0}, Angle::degrees(90.0)}), 40.0);
+}
+
+TEST_F(TrackBeyondTheMap, SearchesAnewWhereNothingWasAcceptedForAMinute) {
+  const Tracker tracker(part_, settings());
+  fly_out(tracker);
+  // In truth it is elsewhere, over ground that the map shows; where it believes to be, no frame can tell.
+  GridPose pose{{600'420.0, 6'398'900.0}, Angle::degrees(90.0)};
+  TrackEstimate last;
+  for (int i = 0; i < 14; ++i, pose.position.east_m += 20.0) last = fly_to(tracker, pose, 10.0);
+  EXPECT_LT(error_m(last, {{pose.position.east_m - 20.0, pose.position.north_m}, pose.heading}), 20.0);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -59,8 +59,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   if (goes_south_of(*source, settings.zone)) {
     summary.notes.push_back(
         fmt::format("what lies south of the equator is left out, since the cells of EPSG:{} end there; a new map with "
-                    "--zone EPSG:{} "
-                    "holds both sides",
+                    "--zone EPSG:{} holds both sides",
                     settings.zone.epsg(), southern(settings.zone).epsg()));
   }
   print_notes(request.files, summary);

@@ -55,8 +55,7 @@ std::optional<std::string> note_on_collar(const std::vector<std::string>& paths,
     const char* colour = black ? "black" : "white";
     return fmt::format(
         "{}: about {:.0f} % of it is pure {}, and nothing marks that as nodata, so it is taken as ground. If nothing "
-        "was "
-        "seen there, give --nodata-color {}",
+        "was seen there, give --nodata-color {}",
         paths[i], 100.0 * share, colour, colour);
   }
   return std::nullopt;

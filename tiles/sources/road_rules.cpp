@@ -68,8 +68,20 @@ constexpr double kLaneM = 3.25;
 constexpr double kShouldersM = 1.0;
 constexpr double kMaxLanes = 16.0;
 
+/// Shapefiles and office tables write "Primary", "PRIMARY" and "primary ", where OpenStreetMap writes "primary".
+std::string plain(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  std::string result(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
+  std::ranges::transform(result, result.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
 bool yes(const std::string& value) {
-  return !value.empty() && value != "no" && value != "0" && value != "false" && value != "F";
+  const std::string word = plain(value);
+  return !word.empty() && word != "no" && word != "n" && word != "0" && word != "false" && word != "f";
 }
 
 template <typename List>
@@ -80,10 +92,11 @@ bool listed(const List& list, std::string_view value) {
 /// What nobody sees from above, or what does not exist.
 bool hidden(const TagLookup& tags, std::string_view road_class) {
   if (yes(tags("tunnel")) || yes(tags("covered")) || yes(tags("indoor"))) return true;
-  if (tags("location") == "underground" || tags("location") == "indoor") return true;
+  const std::string location = plain(tags("location"));
+  if (location == "underground" || location == "indoor") return true;
   const std::string level = tags("level");
   if (listed(kFootClasses, road_class) && !level.empty() && level != "0") return true;
-  return std::ranges::any_of(kInvisibleStates, [&](std::string_view state) { return tags(state) == "yes"; });
+  return std::ranges::any_of(kInvisibleStates, [&](std::string_view state) { return plain(tags(state)) == "yes"; });
 }
 
 }  // namespace
@@ -108,6 +121,7 @@ RoadRules RoadRules::parse(std::string_view text) {
                                      "to 100) and yes or no, for example 'residential 6 yes'",
                                      number, line));
     }
+    rule.road_class = plain(rule.road_class);
     rule.drawn = drawn == "yes";
     result.rules_.push_back(std::move(rule));
   }
@@ -118,7 +132,7 @@ void RoadRules::select(std::string_view classes) {
   for (RoadRule& rule : rules_) rule.drawn = false;
   std::istringstream names{std::string(classes)};
   for (std::string name; std::getline(names, name, ',');) {
-    const auto rule = std::ranges::find(rules_, name, &RoadRule::road_class);
+    const auto rule = std::ranges::find(rules_, plain(name), &RoadRule::road_class);
     if (rule == rules_.end()) {
       throw InvalidInput("road-class-unknown",
                          fmt::format("'{}' is no class of the road rules; add it with --rules FILE", name));
@@ -129,12 +143,12 @@ void RoadRules::select(std::string_view classes) {
 }
 
 const RoadRule* RoadRules::find(std::string_view road_class) const {
-  const auto rule = std::ranges::find(rules_, road_class, &RoadRule::road_class);
+  const auto rule = std::ranges::find(rules_, plain(road_class), &RoadRule::road_class);
   return rule != rules_.end() ? &*rule : nullptr;
 }
 
 std::optional<double> RoadRules::width_of(const TagLookup& tags, bool classified) const {
-  const std::string road_class = classified ? tags(class_attribute_) : std::string();
+  const std::string road_class = classified ? plain(tags(class_attribute_)) : std::string();
   const RoadRule* rule = find(road_class);
   if (classified && (rule == nullptr || !rule->drawn)) return std::nullopt;
   if (hidden(tags, road_class)) return std::nullopt;

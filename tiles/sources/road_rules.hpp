@@ -1,4 +1,5 @@
 // Which road features are drawn, and how wide: one readable table, replaceable by the user.
+// Classes and yes or no are compared without regard to case and outer blanks.
 //
 // The question behind every line of it is "does a camera above see a road here?". So footways, steps and cycle ways
 // are left out (too narrow at the cells of a map, and mostly beside a road), tracks are drawn, tunnels are not.

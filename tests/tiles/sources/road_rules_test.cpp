@@ -80,6 +80,23 @@ TEST(RoadRules, DrawExactlyTheSelectedClasses) {
   EXPECT_THROW(rules.select("primary,autobahn"), InvalidInput);
 }
 
+TEST(RoadRules, TakeClassesWhateverTheirCaseAndOuterBlanks) {
+  for (const char* name : {"Primary", "PRIMARY", " primary ", "primary\t"}) {
+    EXPECT_THAT(width({{"highway", name}}), Optional(10.0)) << name;
+    EXPECT_TRUE(RoadRules().knows(name)) << name;
+  }
+  EXPECT_EQ(width({{"highway", "Footway"}}), std::nullopt);
+  EXPECT_EQ(width({{"highway", "prim ary"}}), std::nullopt);
+  EXPECT_FALSE(RoadRules().knows("STRASSE"));
+  RoadRules rules = RoadRules::parse("Boulevard 20 yes\nALLEY 2 no\n");
+  EXPECT_THAT(width({{"highway", "BOULEVARD"}}, rules), Optional(20.0));
+  rules.select("alley , Boulevard");
+  EXPECT_THAT(width({{"highway", "Alley"}}, rules), Optional(2.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"tunnel", "NO"}}), Optional(10.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"tunnel", "N"}}), Optional(10.0));
+  EXPECT_EQ(width({{"highway", "primary"}, {"abandoned", "Yes"}}), std::nullopt);
+}
+
 TEST(RoadRules, AreReadFromATable) {
   const RoadRules rules = RoadRules::parse("# mine\nboulevard 20 yes  # wide\n\nalley 2 no\n");
   EXPECT_THAT(width({{"highway", "boulevard"}}, rules), Optional(20.0));

@@ -179,6 +179,19 @@ TEST_F(VectorRoads, AnotherAttributeIsTakenForTheClassWhereItHoldsClassesAndSaid
   EXPECT_THAT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->summary().method, HasSubstr("classes in type"));
 }
 
+TEST_F(VectorRoads, ClassesInCapitalsAreClassesAndUnknownOnesAreNamedAsTheyStand) {
+  const std::string path = geojson({feature(R"("ROADTYPE":"PRIMARY")", at(-150, 40), at(150, 40)),
+                                    feature(R"("ROADTYPE":"Residential ")", at(-150, 0), at(150, 0)),
+                                    feature(R"("ROADTYPE":"Feldweg")", at(-150, -40), at(150, -40))});
+  RoadRules rules;
+  rules.set_class_attribute("roadtype");
+  const RoadNetwork network = read_road_network({path}, {}, rules, kZone);
+  ASSERT_EQ(network.lines.size(), 2U);
+  EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+  EXPECT_EQ(network.lines.back().half_width_m, 3.0);
+  EXPECT_THAT(network.notes, ElementsAre(HasSubstr("Feldweg (1)")));
+}
+
 TEST_F(VectorRoads, LinesWithoutClassesAreAllRoadsAndSaidSo) {
   const std::string path = geojson({feature(R"("type":"A","lanes":4)", at(-150, 40), at(150, 40)),
                                     feature(R"("type":"primary","lanes":2)", at(-150, -40), at(150, -40)),

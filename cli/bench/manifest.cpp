@@ -202,8 +202,12 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
   for (const Field& map : root.at("maps").elements()) manifest.maps.push_back(parse_map(map, directory));
   for (const Field& set : root.at("queries").elements())
     manifest.queries.push_back(parse_query_set(set, manifest, directory));
-  for (const Field& method : root.at("methods").elements())
-    manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
+  if (root.has("methods")) {
+    for (const Field& method : root.at("methods").elements())
+      manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
+  } else {
+    manifest.methods = {"roads"};
+  }
   if (manifest.queries.empty()) root.refuse("has no queries");
   if (manifest.methods.empty()) root.refuse("has no methods");
   return manifest;

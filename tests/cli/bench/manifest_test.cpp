@@ -7,6 +7,7 @@
 namespace roadfix::bench {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -29,6 +30,14 @@ TEST(Manifest, ReadsAllThreeKindsOfQueries) {
   EXPECT_TRUE(manifest.queries[1].black_is_unobserved);
   EXPECT_EQ(manifest.queries[2].kind, QuerySet::Kind::kSimulated);
   EXPECT_EQ(manifest.queries[2].prior_radius_m, 500);
+}
+
+TEST(Manifest, WithoutMethodsAsksForRoads) {
+  const std::string queries = R"("queries": [{"map": "town", "frames": "frames.csv"}])";
+  const std::string maps = R"("maps": [{"name": "town", "sources": [{"path": "pre.tif", "as": "imagery"}]}])";
+  EXPECT_THAT(parse_manifest("{" + maps + "," + queries + "}", ".").methods, ElementsAre("roads"));
+  EXPECT_THAT([&] { parse_manifest("{" + maps + "," + queries + R"(, "methods": []})", "."); },
+              ThrowsMessage<InvalidInput>(HasSubstr("no methods")));
 }
 
 TEST(Manifest, ReadsTheQualityOfSimulatedQueriesAndWhereTheyComeFrom) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,11 +10,11 @@
 #include "cli/command.hpp"
 #include "cli/ingest_options.hpp"
 #include "cli/ingest_report.hpp"
+#include "cli/ingest_zone.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
-#include "tiles/pipeline/open_source.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -30,41 +31,13 @@ SourceRecord record_of(const IngestArguments& arguments, const SourceRequest& re
   return record;
 }
 
-UtmZone southern(UtmZone zone) { return *UtmZone::from_epsg(zone.epsg() + 100); }
-
-/// The cells of a northern zone end at the equator.
-bool goes_south_of(const CellSource& source, UtmZone zone) {
-  return zone.northern() && source.extent().min.north_m < 0.0;
-}
-
-/// Those of a southern zone go on for 485 km beyond it: a new map around the equator loses nothing there.
-MapSettings settings_around_equator(const IngestArguments& arguments, const SourceRequest& first,
-                                    const RoadDetector* detector, MapSettings settings) {
-  constexpr double kNearM = 480e3;
-  const bool free = arguments.zone.empty() && !MapWriter::settings_of(arguments.map);
-  if (!free || !settings.zone.northern() || settings.zone.project(centre_of_source(first)).north_m > kNearM) {
-    return settings;
-  }
-  const std::unique_ptr<CellSource> source = open_source(first, settings, detector);
-  if (goes_south_of(*source, settings.zone) && source->extent().max.north_m < kNearM) {
-    settings.zone = southern(settings.zone);
-  }
-  return settings;
-}
-
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
-  const std::unique_ptr<CellSource> source = open_source(request, settings, detector);
+  const auto [source, blocks] = plan_source(request, settings, detector);
   SourceSummary summary = source->summary();
-  if (goes_south_of(*source, settings.zone)) {
-    summary.notes.push_back(
-        fmt::format("what lies south of the equator is left out, since the cells of EPSG:{} end there; a new map with "
-                    "--zone EPSG:{} holds both sides",
-                    settings.zone.epsg(), southern(settings.zone).epsg()));
-  }
+  std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
   print_notes(request.files, summary);
   const SourceRecord record = record_of(arguments, request, summary);
-  const auto blocks = static_cast<std::int64_t>(plan_blocks(*source, record.name, settings).size());
   const nlohmann::json json = summary_json(record, summary, blocks, settings);
   if (arguments.dry_run) {
     print_plan(json, arguments.json);

@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -21,6 +22,7 @@ namespace roadfix {
 namespace {
 
 using testing::ChildResult;
+using ::testing::HasSubstr;
 using testing::RasterSpec;
 using testing::run_child;
 using testing::write_raster;
@@ -184,6 +186,34 @@ TEST_F(IngestCommand, ANewMapAroundTheEquatorHoldsBothSides) {
   EXPECT_EQ(north.code, 0) << north.err;
   EXPECT_THAT(north.err, ::testing::AllOf(::testing::HasSubstr("south of the equator is left out"),
                                           ::testing::HasSubstr("--zone EPSG:32736")));
+}
+
+TEST_F(IngestCommand, ASourceFarFromTheZoneOfTheMapHearsOfBothChoices) {
+  const auto road = [&](const std::string& name, double lon_deg) {
+    std::ofstream(folder / name) << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{)"
+                                 << R"("highway":"primary"},"geometry":{"type":"LineString","coordinates":[[)"
+                                 << lon_deg << ",37.76],[" << lon_deg + 0.01 << ",37.77]]}}]}";
+    return std::string(folder / name);
+  };
+  const std::string home = road("home.geojson", 40.0);
+  const std::string far = road("far.geojson", 46.0);
+  ASSERT_EQ(ingest({home, "--map", map("a.gpkg")}).code, 0);
+  write_raster(folder / "far.tif", {.epsg = 32638, .transform = std::array{588000.0, 1.0, 0.0, 4180000.0, 0.0, -1.0}},
+               [](int, int, int) { return 1.0; });
+  for (const std::string& source : {far, std::string(folder / "far.tif")}) {
+    const ChildResult refused = ingest({source, "--as", "roads", "--map", map("a.gpkg")});
+    EXPECT_EQ(refused.code, 1) << source;
+    EXPECT_THAT(refused.err, ::testing::AllOf(HasSubstr("[source-in-another-zone]"), HasSubstr("another --map"),
+                                              HasSubstr("--zone EPSG:32638"), HasSubstr("0.3 % too long")));
+  }
+  EXPECT_EQ(ingest({far, "--map", map("own.gpkg")}).code, 0);
+  const ChildResult both = ingest({far, home, "--zone", "EPSG:32638", "--map", map("both.gpkg")});
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_THAT(both.err, HasSubstr("% too long"));
+  const ChildResult near = ingest({road("near.geojson", 44.0), "--map", map("a.gpkg")});
+  EXPECT_EQ(near.code, 0);
+  EXPECT_THAT(near.err, ::testing::AllOf(HasSubstr(" km from the central meridian of EPSG:32637"),
+                                         HasSubstr("0.20 % too long"), HasSubstr("another --map")));
 }
 
 TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {

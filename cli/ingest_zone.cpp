@@ -1,0 +1,101 @@
+#include "cli/ingest_zone.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geodesy/utm.hpp"
+#include "core/units/error.hpp"
+#include "tiles/pipeline/ingest.hpp"
+#include "tiles/pipeline/open_source.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+constexpr double kFalseEastingM = 500e3;
+
+UtmZone southern(UtmZone zone) { return *UtmZone::from_epsg(zone.epsg() + 100); }
+
+/// The cells of a northern zone end at the equator.
+bool goes_south_of(const CellSource& source, UtmZone zone) {
+  return zone.northern() && source.extent().min.north_m < 0.0;
+}
+
+/// By how much lengths on the plane exceed those on the ground, relative; Snyder, Map projections (1987), eq. 8-10,
+/// without its term of the fourth order, which is 1e-5 at 500 km.
+double stretch(double from_meridian_m) {
+  constexpr double kCentralScale = 0.9996;
+  constexpr double kEarthRadiusM = 6371e3;
+  const double angle = from_meridian_m / (kCentralScale * kEarthRadiusM);
+  return kCentralScale * (1.0 + angle * angle / 2.0) - 1.0;
+}
+
+bool is_about_place(const std::string& code) { return code == "crs-not-transformable" || code == "source-outside-map"; }
+
+/// Throws in place of `error` where it is the zone that does not fit.
+void refuse_another_zone(const SourceRequest& request, const MapSettings& settings) {
+  const LatLon centre = centre_of_source(request);
+  const UtmZone home = UtmZone::containing(centre);
+  if (home.number() == settings.zone.number()) return;
+  throw InvalidInput(
+      "source-in-another-zone",
+      fmt::format("{}: lies at longitude {:.2f}, in UTM zone EPSG:{}, too far from EPSG:{} of the map to have a place "
+                  "on it. Ingest it into a map file of its own (another --map); or all sources into a new map with "
+                  "--zone EPSG:{}, which reaches 500 km to either side of longitude {} (lengths at its rims are "
+                  "{:.1f} % too long). If the file's reference system is wrong, give the right one with --crs",
+                  request.files.location, centre.lon_deg, home.epsg(), settings.zone.epsg(), home.epsg(),
+                  6 * home.number() - 183, 100.0 * stretch(kFalseEastingM)));
+}
+
+}  // namespace
+
+MapSettings settings_around_equator(const IngestArguments& arguments, const SourceRequest& first,
+                                    const RoadDetector* detector, MapSettings settings) {
+  constexpr double kNearM = 480e3;
+  const bool free = arguments.zone.empty() && !MapWriter::settings_of(arguments.map);
+  if (!free || !settings.zone.northern() || settings.zone.project(centre_of_source(first)).north_m > kNearM) {
+    return settings;
+  }
+  const std::unique_ptr<CellSource> source = open_source(first, settings, detector);
+  if (goes_south_of(*source, settings.zone) && source->extent().max.north_m < kNearM) {
+    settings.zone = southern(settings.zone);
+  }
+  return settings;
+}
+
+PlannedSource plan_source(const SourceRequest& request, const MapSettings& settings, const RoadDetector* detector) {
+  try {
+    PlannedSource planned{open_source(request, settings, detector)};
+    planned.blocks = std::ssize(plan_blocks(*planned.cells, request.files.name, settings));
+    return planned;
+  } catch (const InvalidInput& error) {
+    if (is_about_place(error.code())) refuse_another_zone(request, settings);
+    throw;
+  }
+}
+
+std::vector<std::string> zone_notes(const CellSource& source, const MapSettings& settings) {
+  constexpr double kWithinAnyZone = 0.001;  // at the border of a zone, on the equator
+  std::vector<std::string> notes;
+  const UtmZone zone = settings.zone;
+  const GridBox extent = source.extent();
+  if (goes_south_of(source, zone)) {
+    notes.push_back(
+        fmt::format("what lies south of the equator is left out, since the cells of EPSG:{} end there; a "
+                    "new map with --zone EPSG:{} holds both sides",
+                    zone.epsg(), southern(zone).epsg()));
+  }
+  const double far_m =
+      std::max(std::abs(extent.min.east_m - kFalseEastingM), std::abs(extent.max.east_m - kFalseEastingM));
+  if (stretch(far_m) > kWithinAnyZone) {
+    notes.push_back(
+        fmt::format("it reaches {:.0f} km from the central meridian of EPSG:{}, the zone of the map, where "
+                    "lengths are {:.2f} % too long; a map file of its own (another --map) for the zone "
+                    "that it lies in has them right",
+                    far_m / 1e3, zone.epsg(), 100.0 * stretch(far_m)));
+  }
+  return notes;
+}
+
+}  // namespace roadfix::cli

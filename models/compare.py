@@ -60,11 +60,11 @@ def at_pixels(mask, shape):
 
 
 class Row:
-    """One place and detector: counts for each threshold, path similarity for each threshold."""
+    """One place and detector: counts for each threshold; path similarity, which takes long, only where it is asked for."""
 
     def __init__(self):
         self.counts = {t: Counts() for t in THRESHOLDS}
-        self.paths = {t: [] for t in THRESHOLDS}
+        self.pictures = []
 
     def add(self, pair, probability, tolerance_m):
         shape = tuple(int(round(side * pair.levels[0].gsd_m / PIXEL_M)) for side in pair.seen.shape)
@@ -75,16 +75,16 @@ class Row:
             found = (probability > t) & seen
             counted = (skeleton(found), skeleton(truth)) if lines else (found, truth)
             self.counts[t] += relaxed_counts(*counted, seen, tolerance_m, PIXEL_M)
-            score = similarity(truth, found, PIXEL_M)
-            if score is not None:
-                self.paths[t].append(score)
+        self.pictures.append((probability * seen, truth))
 
     def best(self):
         return max(THRESHOLDS, key=lambda t: self.counts[t].f1)
 
     def figures(self, t):
-        counts, paths = self.counts[t], self.paths[t]
-        apls = f"{np.mean(paths):.3f}" if paths else "-"
+        scores = [similarity(truth, probability > t, PIXEL_M) for probability, truth in self.pictures]
+        scores = [score for score in scores if score is not None]
+        apls = f"{np.mean(scores):.3f}" if scores else "-"
+        counts = self.counts[t]
         return f"{counts.precision:.3f} | {counts.recall:.3f} | {counts.f1:.3f} | {apls}"
 
 
@@ -107,7 +107,8 @@ def main():
         for pair in pairs:
             rows[pair.set_name].add(pair, detected(options, detector, pair), options.tolerance)
         for name, row in rows.items():
-            print(f"| {name} | {detector} | {row.figures(0.5)} | {row.best():g} | {row.figures(row.best())} |", flush=True)
+            best = row.best()
+            print(f"| {name} | {detector} | {row.figures(0.5)} | {best:g} | {row.figures(best)} |", flush=True)
 
 
 if __name__ == "__main__":

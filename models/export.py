@@ -12,7 +12,7 @@ import torch
 from roadnet.data import load_pairs, read_sets
 from roadnet.export import difference, export, fit_calibration
 from roadnet.metrics import logits_and_labels
-from roadnet.network import Ensemble, RoadNet
+from roadnet.network import read_network
 from roadnet.predict import TorchNetwork
 
 
@@ -38,10 +38,7 @@ def main():
     gsd_m = states[0]["gsd_m"]
     if any(state["gsd_m"] != gsd_m for state in states):
         raise SystemExit("the checkpoints see different metres per pixel: they cannot become one network")
-    members = [RoadNet() for _ in states]
-    for member, state in zip(members, states):
-        member.load_state_dict(state["averaged"])
-    model = Ensemble(members) if len(members) > 1 else members[0]
+    model = read_network(options.checkpoint)
     held_out = [p for s in read_sets(options.sets, options.data) if s.share > 0 for p in load_pairs(s, options.data)[1]]
     scale, bias = 1.0, 0.0
     if held_out:

@@ -1,4 +1,4 @@
-"""Losses that bear incomplete and slightly shifted labels."""
+"""Losses that bear incomplete and slightly shifted labels, and the one of a teacher."""
 import torch
 from torch.nn import functional as F
 
@@ -21,3 +21,9 @@ def road_loss(logits, label, weight, missing=0.05):
     overlap, total = (found * road).sum(), found.sum() + (road * seen).sum()
     dice = 1 - (2 * overlap + 1) / (total + 1)
     return entropy + 0.5 * dice
+
+
+def distillation_loss(logits, taught):
+    """Cross-entropy against the probabilities of a teacher's logits (Hinton, Vinyals and Dean 2015, at temperature 1). It
+    speaks about every cell, also where a label is missing or unsure."""
+    return F.binary_cross_entropy_with_logits(logits, torch.sigmoid(taught))

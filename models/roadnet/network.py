@@ -78,5 +78,15 @@ class Ensemble(nn.Module):
         return sum(member(x) for member in self.members) / len(self.members)
 
 
+def read_network(checkpoints):
+    """The averaged weights of one checkpoint, or of several as the mean of their logits; in evaluation mode."""
+    members = []
+    for path in checkpoints:
+        member = RoadNet()
+        member.load_state_dict(torch.load(path, map_location="cpu")["averaged"])
+        members.append(member.eval())
+    return Ensemble(members) if len(members) > 1 else members[0]
+
+
 def twice(x):
     return F.interpolate(x, scale_factor=2.0, mode="nearest")

@@ -6,10 +6,11 @@ from pathlib import Path
 import torch
 from torch.utils.data import DataLoader, Sampler
 
-from .losses import road_loss
+from .losses import distillation_loss, road_loss
 from .metrics import evaluate_pairs
-from .network import RoadNet
+from .network import RoadNet, read_network
 from .predict import TorchNetwork
+
 
 class Consecutive(Sampler):
     """Crop numbers from `first` on, so that a resumed run goes on with fresh ones."""
@@ -56,8 +57,10 @@ def save(path, **state):
 def train(crops, options):
     torch.manual_seed(options.seed)
     device = torch.device(options.device)
-    model, averaged = RoadNet().to(device, memory_format=torch.channels_last), RoadNet().to(device)
+    start = read_network([options.begin_with]) if options.begin_with else RoadNet()
+    model, averaged = start.to(device, memory_format=torch.channels_last), RoadNet().to(device)
     averaged.load_state_dict(model.state_dict())
+    teacher = read_network(options.teacher).to(device, memory_format=torch.channels_last) if options.teacher else None
     for parameter in averaged.parameters():
         parameter.requires_grad_(False)
     optimizer = torch.optim.AdamW(model.parameters(), lr=options.rate, weight_decay=1e-3)
@@ -81,7 +84,11 @@ def train(crops, options):
         picture = image.to(device, memory_format=torch.channels_last)
         with torch.autocast(device.type, torch.bfloat16, enabled=options.bf16):
             logits = model(picture).float()
+            with torch.no_grad():
+                taught = teacher(picture).float() if teacher else None
         loss = road_loss(logits, label.to(device), weight.to(device))
+        if teacher:
+            loss = (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)

@@ -1,6 +1,7 @@
 // The operator's console: the maps, a fix for a picture at hand, and what a place promises before the flight. All of it
 // is what the HTTP interface offers to any program.
 import { square } from './geometry.js';
+import { choiceOf, linesOf, stepTo } from './maps.js';
 import { drawModes, element, request, showFix, showProblem, showStatus } from './show.js';
 import { Tracks } from './tracks.js';
 
@@ -10,6 +11,9 @@ const answers = L.layerGroup().addTo(view);
 const promises = L.layerGroup().addTo(view);
 L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
+const MAPS_REFRESH_MS = 10_000;
+let shown = null;  // the map on the page, see maps.js
+let lines = '';    // of the list of maps, as JSON
 let tiles = null;
 let layer = null;
 
@@ -24,37 +28,65 @@ async function attempt(output, work) {
 
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 
+/// Draws the chosen map as it is now; gives what the service says of it.
+async function drawMap() {
+  const url = mapUrl();
+  const [info, tileset] = await Promise.all([request(url), request(`${url}/tilejson.json`)]);
+  if (tiles) tiles.remove();
+  tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png`, {
+    maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
+  }).addTo(view);
+  shown = { name: info.name, version: info.version };
+  by('about').replaceChildren(
+    element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
+    ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));
+  return info;
+}
+
 async function openMap() {
   answers.clearLayers();
   promises.clearLayers();
   by('answer').replaceChildren();
   by('place').replaceChildren();
-  const [info, tileset] = await Promise.all([request(mapUrl()), request(`${mapUrl()}/tilejson.json`)]);
-  if (tiles) tiles.remove();
-  tiles = L.tileLayer(`${mapUrl()}/tiles/{z}/{x}/{y}.png`, {
-    maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
-  }).addTo(view);
-  const [west, south, east, north] = info.bbox;
-  view.fitBounds([[south, west], [north, east]]);
-  await drawLayer();
-  by('about').replaceChildren(
-    element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
-    ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));
+  shown = { name: by('maps').value, version: null };
+  try {
+    const info = await drawMap();
+    const [west, south, east, north] = info.bbox;
+    view.fitBounds([[south, west], [north, east]]);
+    await drawLayer();
+  } catch (error) {
+    shown = null;  // so that the next look at the list tries again
+    throw error;
+  }
 }
 
-async function listMaps() {
-  const { maps } = await request('/v1/maps');
-  for (const map of maps) {
-    const option = new Option(map.status === 'ready' ? map.name : `${map.name}: ${map.reason}`, map.name);
-    option.disabled = map.status !== 'ready';
-    by('maps').add(option);
+/// Keeps the list as the service has it and the choice as the operator left it.
+async function showMaps({ maps }) {
+  const chosen = choiceOf(maps, by('maps').value);
+  const wanted = linesOf(maps, chosen);
+  if (lines !== JSON.stringify(wanted)) {
+    lines = JSON.stringify(wanted);
+    by('maps').replaceChildren(...wanted.map(({ name, text, disabled }) => {
+      const option = new Option(text, name);
+      option.disabled = disabled;
+      return option;
+    }));
+    by('maps').value = chosen;
   }
-  if (!maps.some((map) => map.status === 'ready')) {
-    by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
-    return;
+  if (chosen === null) by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
+  const step = stepTo(maps, chosen, shown);
+  if (step === 'open') await openMap();
+  if (step === 'redraw') {
+    await drawMap();
+    await drawLayer();
   }
-  by('maps').value = maps.find((map) => map.status === 'ready').name;
-  await openMap();
+}
+
+/// A service that does not answer now is asked again.
+async function refreshMaps() {
+  if (document.hidden) return;
+  const list = await request('/v1/maps').catch(() => null);
+  if (list) await attempt(by('about'), () => showMaps(list));
 }
 
 function questionOf(form) {
@@ -140,5 +172,8 @@ by('ask').addEventListener('submit', ask);
 view.on('click', promiseOf);
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', () => attempt(by('place'), drawLayer));
 acceptDrops(by('drop'), by('ask').elements.picture);
-attempt(by('about'), listMaps);
+attempt(by('about'), async () => showMaps(await request('/v1/maps')));
+setInterval(refreshMaps, MAPS_REFRESH_MS);
+document.addEventListener('visibilitychange', refreshMaps);
+window.addEventListener('focus', refreshMaps);
 new Tracks(view, by('tracks'), by('track'));

@@ -1,0 +1,44 @@
+// The page's list of maps over several answers of the service: node maps_test.mjs PATH/TO/maps.js
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+
+// As a data: URL, since node takes a .js file outside of a package for no module.
+const text = readFileSync(process.argv[2], 'utf8');
+const { choiceOf, linesOf, stepTo } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+
+const ready = (name, version = '1') => ({ name, version, status: 'ready' });
+const texts = (maps, chosen) => linesOf(maps, chosen).map((line) => line.text);
+
+const cases = {
+  'the first map with ground is chosen, then the choice stays'() {
+    assert.equal(choiceOf([], ''), null);
+    assert.equal(choiceOf([{ name: 'a', status: 'empty' }, ready('b'), ready('c')], ''), 'b');
+    assert.equal(choiceOf([ready('a'), ready('b'), ready('c')], 'b'), 'b');
+    assert.equal(choiceOf([ready('a')], 'b'), 'b');
+  },
+  'maps that cannot be shown say why and cannot be chosen'() {
+    const maps = [{ name: 'a', status: 'empty' }, { name: 'b', status: 'unreadable', reason: 'cut off' }, { name: 'c', status: 'incomplete' }];
+    assert.deepEqual(texts(maps, 'c'), ['a: nothing is ingested yet', 'b: cut off', 'c: still being ingested']);
+    assert.deepEqual(linesOf(maps, 'c').map((line) => line.disabled), [true, true, false]);
+  },
+  'a map that appears gets a line, one that left loses it unless it is chosen'() {
+    assert.deepEqual(texts([ready('a'), ready('b')], 'a'), ['a', 'b']);
+    assert.deepEqual(texts([ready('b')], 'a'), ['b', 'a: no longer served']);
+    assert.deepEqual(texts([ready('b')], 'b'), ['b']);
+  },
+  'a map is opened once and drawn anew when its version changes'() {
+    assert.equal(stepTo([ready('a')], 'a', null), 'open');
+    assert.equal(stepTo([ready('a')], 'a', { name: 'b', version: '1' }), 'open');
+    assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: null }), null);
+    assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: '1' }), null);
+    assert.equal(stepTo([ready('a', '2')], 'a', { name: 'a', version: '1' }), 'redraw');
+    assert.equal(stepTo([], 'a', { name: 'a', version: '1' }), null);
+    assert.equal(stepTo([], null, null), null);
+    assert.equal(stepTo([{ name: 'a', version: '2', status: 'unreadable' }], 'a', { name: 'a', version: '1' }), null);
+  },
+};
+
+for (const [name, check] of Object.entries(cases)) {
+  check();
+  console.log(`ok: ${name}`);
+}

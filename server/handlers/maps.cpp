@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/units/error.hpp"
 #include "server/api/geo_bounds.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -57,12 +58,20 @@ json details(const ServedMap& map) {
   return answer;
 }
 
+json unreadable(const UnreadableMap& map) {
+  return {{"name", map.name}, {"status", "unreadable"}, {"code", map.code}, {"reason", map.reason}};
+}
+
 http::Response list(const Service& service) {
   std::vector<json> maps;
-  for (const auto& map : service.maps.maps()) maps.push_back(summary(*map));
-  for (const UnreadableMap& map : service.maps.unreadable()) {
-    maps.push_back({{"name", map.name}, {"status", "unreadable"}, {"code", map.code}, {"reason", map.reason}});
+  for (const auto& map : service.maps.maps()) {
+    try {
+      maps.push_back(summary(*map));
+    } catch (const Error& error) {  // of one map; the others are still to be listed
+      maps.push_back(unreadable({map->name, error.code(), error.what()}));
+    }
   }
+  for (const UnreadableMap& map : service.maps.unreadable()) maps.push_back(unreadable(map));
   std::ranges::sort(maps, {}, [](const json& map) { return map["name"].get<std::string>(); });
   return json_response({{"maps", maps}});
 }

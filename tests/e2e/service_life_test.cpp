@@ -10,6 +10,7 @@
 #include "core/locate/calibration.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
+#include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
 namespace {
@@ -54,6 +55,22 @@ TEST(ServiceLife, NoticesMapsThatAppearChangeBreakAndLeave) {
   std::filesystem::remove(folder / "broken.gpkg");
   std::filesystem::remove(folder / "town.gpkg");
   EXPECT_TRUE(eventually([&] { return status() == "none"; }));
+}
+
+TEST(ServiceLife, AMapWithoutLatitudeAndLongitudeHidesNoOther) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "far.gpkg", town.roads, 2.0);
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  sqlite::Connection(folder / "far.gpkg", sqlite::Access::kReadWrite)
+      .execute("UPDATE gpkg_contents SET max_x = 1.04e6");
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  const json maps = testing::json_of(client.Get("/v1/maps"))["maps"];
+  ASSERT_EQ(maps.size(), 2U);
+  EXPECT_EQ(maps[0]["status"], "unreadable");
+  EXPECT_EQ(maps[0]["code"], "position-outside-zone");
+  EXPECT_EQ(maps[1]["status"], "ready");
 }
 
 TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/store/map_reader.hpp"
 
@@ -22,7 +23,7 @@ const MapSettings kSettings{*UtmZone::from_epsg(32637), 2.0};
 class NoiseSource final : public CellSource {
  public:
   SourceSummary summary() const override { return {}; }
-  GridBox extent() const override { return {{400100.0, 4200100.0}, {402900.0, 4202300.0}}; }
+  GridBox extent() const override { return extent_; }
   bool touches(const GridBox& box) const override {
     return box.max.east_m > extent().min.east_m && box.min.east_m < extent().max.east_m &&
            box.max.north_m > extent().min.north_m && box.min.north_m < extent().max.north_m;
@@ -41,12 +42,14 @@ class NoiseSource final : public CellSource {
     }
     return cells;
   }
+  void set_extent(GridBox extent) { extent_ = extent; }
   void fail_at(std::int64_t read) { fail_at_ = read; }
   void stop_at(std::int64_t read) { stop_at_ = read; }
   std::stop_token stop() { return stop_.get_token(); }
   std::int64_t reads() const { return reads_; }
 
  private:
+  GridBox extent_{{400100.0, 4200100.0}, {402900.0, 4202300.0}};
   mutable std::atomic<std::int64_t> reads_ = 0;
   std::int64_t fail_at_ = -1;
   std::int64_t stop_at_ = -1;
@@ -85,6 +88,17 @@ TEST_F(IngestTest, PlansTheTilesThatTheSourceTouches) {
   const std::vector<TileIndex> blocks = plan_blocks(NoiseSource(), "noise", kSettings);
   EXPECT_EQ(blocks.size(), 6U * 5U);  // tiles of 512 m
   EXPECT_TRUE(std::ranges::is_sorted(blocks, {}, [](TileIndex t) { return std::pair(t.row, t.col); }));
+}
+
+TEST_F(IngestTest, PlansNoGroundWithoutLatitudeAndLongitude) {
+  NoiseSource source;
+  source.set_extent({{998000.0, 4200100.0}, {1003000.0, 4201000.0}});
+  for (const TileIndex block : plan_blocks(source, "noise", kSettings)) {
+    const GridBox ground = tile_geometry(block, kSettings.cell_m).box();
+    EXPECT_NO_THROW(kSettings.zone.unproject(ground.max)) << ground.max.east_m;
+  }
+  source.set_extent({{1001000.0, 4200100.0}, {1003000.0, 4201000.0}});
+  EXPECT_EQ(testing::code_of([&] { plan_blocks(source, "noise", kSettings); }), "source-outside-map");
 }
 
 TEST_F(IngestTest, CarriesEveryCellIntoTheMap) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -46,12 +47,6 @@ class Districts {
  private:
   PlanPoint phase_;
 };
-
-PlanPoint middle_of(const Polyline& outline) {
-  PlanPoint sum(0.0, 0.0);
-  for (const PlanPoint& p : outline) sum += p;
-  return sum / static_cast<double>(outline.size());
-}
 
 LandUse use_of(const Block& block, double district, Random& random) {
   constexpr double kHectare = 10'000.0;

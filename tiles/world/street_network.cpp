@@ -6,42 +6,17 @@
 #include <numbers>
 #include <string>
 
+#include "tiles/world/distortion.hpp"
+#include "tiles/world/polygon.hpp"
+
 namespace roadfix::world {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
 constexpr double kPointEveryM = 12.0;
+constexpr std::array<double, 6> kWavesM{1700.0, 1100.0, 800.0, 520.0, 310.0, 190.0};
+constexpr double kBending = 0.022;
 constexpr double kCityRadiusShare = 0.62;  // of half the diagonal; beyond it lie fields
-
-struct Wave {
-  PlanPoint frequency;
-  PlanPoint amplitude;
-  double phase = 0.0;
-};
-
-/// A smooth displacement of the plane: long waves bend arterials, short ones keep streets from being straight.
-class Distortion {
- public:
-  explicit Distortion(Random& random) {
-    constexpr std::array<double, 6> kLengths{1700.0, 1100.0, 800.0, 520.0, 310.0, 190.0};
-    for (std::size_t i = 0; i < waves_.size(); ++i) {
-      const double length = kLengths[i] * random.uniform(0.85, 1.15);
-      const double heading = random.uniform(0.0, kTau);
-      const double push = random.uniform(0.0, kTau);
-      const double amplitude = length * 0.022;
-      waves_[i] = {PlanPoint(std::cos(heading), std::sin(heading)) * (kTau / length),
-                   PlanPoint(std::cos(push), std::sin(push)) * amplitude, random.uniform(0.0, kTau)};
-    }
-  }
-  PlanPoint operator()(PlanPoint p) const {
-    PlanPoint moved = p;
-    for (const Wave& wave : waves_) moved += wave.amplitude * std::sin(wave.frequency.dot(p) + wave.phase);
-    return moved;
-  }
-
- private:
-  std::array<Wave, 6> waves_;
-};
 
 struct StreetClass {
   std::string name;
@@ -54,63 +29,9 @@ const StreetClass& class_of(int level) {
   return kClasses[static_cast<std::size_t>(std::clamp(level, 0, 4))];
 }
 
-double area_of(const Polyline& polygon) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) twice += polygon[i].cross(polygon[(i + 1) % polygon.size()]);
-  return std::abs(twice) / 2.0;
-}
-
-PlanPoint middle_of(const Polyline& polygon) {
-  PlanPoint sum(0.0, 0.0);
-  for (const PlanPoint& p : polygon) sum += p;
-  return sum / static_cast<double>(polygon.size());
-}
-
-struct Cut {
-  std::array<Polyline, 2> parts;
-  Polyline chord;  ///< two points
-};
-
-/// Splits a convex polygon along the line through `point` with the unit direction `along`.
-Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along) {
-  Cut result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const PlanPoint a = polygon[i];
-    const PlanPoint b = polygon[(i + 1) % polygon.size()];
-    const double side_a = along.cross(a - point);
-    const double side_b = along.cross(b - point);
-    result.parts[side_a < 0.0 ? 1 : 0].push_back(a);
-    if ((side_a < 0.0) != (side_b < 0.0)) {
-      const PlanPoint crossing = a + (b - a) * (side_a / (side_a - side_b));
-      for (Polyline& part : result.parts) part.push_back(crossing);
-      result.chord.push_back(crossing);
-    }
-  }
-  return result;
-}
-
-/// Unit direction of the longest side: streets follow what is there.
-PlanPoint longest_side(const Polyline& polygon) {
-  PlanPoint best(1.0, 0.0);
-  double longest = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const PlanPoint side = polygon[(i + 1) % polygon.size()] - polygon[i];
-    if (cv::norm(side) > longest) {
-      longest = cv::norm(side);
-      best = side / longest;
-    }
-  }
-  return best;
-}
-
-double extent_along(const Polyline& polygon, PlanPoint along) {
-  const auto [low, high] = std::ranges::minmax(polygon, {}, [&](const PlanPoint& p) { return p.dot(along); });
-  return (high - low).dot(along);
-}
-
 class Layout {
  public:
-  Layout(Plan& plan, Random& random) : plan_(plan), random_(random), bend_(random) {}
+  Layout(Plan& plan, Random& random) : plan_(plan), random_(random), bend_(random, kWavesM, kBending) {}
 
   void build() {
     center_ = {plan_.width_m * random_.uniform(0.4, 0.6), plan_.height_m * random_.uniform(0.4, 0.6)};

@@ -1,0 +1,35 @@
+// Polygons of a plan: how large they are, how a line cuts them.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "tiles/world/plan.hpp"
+#include "tiles/world/random.hpp"
+
+namespace roadfix::world {
+
+double area_of(const Polyline& polygon);
+PlanPoint middle_of(const Polyline& polygon);
+cv::Rect2d box_of(const Polyline& polygon);
+/// Unit direction of the longest side.
+PlanPoint longest_side(const Polyline& polygon);
+/// From the first to the last corner met in a unit direction.
+double extent_along(const Polyline& polygon, PlanPoint along);
+
+struct Cut {
+  std::array<Polyline, 2> parts;
+  Polyline chord;  ///< two points, where the line meets a convex polygon
+};
+
+/// Splits a convex polygon along the line through `point` with the unit direction `along`.
+Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along);
+
+/// Pieces of that line that lie in the polygon, which need not be convex.
+std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, PlanPoint point, PlanPoint along);
+
+/// A round shape with an uneven rim.
+Polyline blob(PlanPoint center, double radius_m, Random& random);
+
+}  // namespace roadfix::world

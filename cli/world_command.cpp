@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -56,17 +57,28 @@ void render(const Options& options) {
 }  // namespace
 
 void add_world_command(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("world", "Renders a town before and after an earthquake, with the truth about its roads");
+  auto* command = app.add_subcommand(
+      "world", "Renders a town or open country before and after an earthquake, with the truth about its roads");
   command->footer(
       "Examples: roadfix world town\n"
       "          roadfix world goteborg --roads highways.geojson --center 57.70,11.97 --size-km 2x1.5\n"
+      "          roadfix world country --land country --varied\n"
       "Writes pre.tif, post.tif, roads.geojson, world.json, frames/ with frames.csv, and bench.json for roadfix "
       "bench.");
   const auto options = std::make_shared<Options>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder,--out", options->folder, "Folder to write, made where it is missing")->required();
   command->add_option("--seed", settings.seed, "The same seed gives the same files")->capture_default_str();
+  command
+      ->add_option(
+          "--land", settings.land,
+          "A town's streets and houses; or open country: woods, fields, unpaved tracks, few paved roads, and what "
+          "looks like a road and is none (rails, streams, field margins, fire breaks)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, world::Land>{{"town", world::Land::kTown},
+                                                                             {"country", world::Land::kCountry}})
+                      .description(""))
+      ->type_name("town|country")
+      ->default_str("town");
   command->add_option("--size-km", options->size_km, "Width and height in km, for example 2x2")
       ->delimiter('x')
       ->expected(2)
@@ -76,7 +88,9 @@ void add_world_command(CLI::App& app) {
       ->delimiter(',')
       ->expected(2)
       ->type_name("LAT,LON");
-  command->add_option("--roads", settings.roads, "Render these roads (a file that OGR reads) instead of invented ones")
+  command
+      ->add_option("--roads", settings.roads,
+                   "Render these roads (a file that OGR reads) as a town's instead of invented ones")
       ->type_name("FILE");
   command->add_option("--collapsed", settings.collapsed_share, "Share of the buildings that fall")
       ->capture_default_str();

@@ -26,5 +26,17 @@ TEST(WorldCommand, LeavesAManifestThatBenchRunsAsItIs) {
   }
 }
 
+TEST(WorldCommand, RendersALandThatItKnowsOnly) {
+  const testing::TemporaryFolder folder;
+  const std::string place = (folder / "place").string();
+  const ProgramResult sea = run_program(folder.path(), "world " + place + " --land sea");
+  EXPECT_NE(sea.code, 0);
+  EXPECT_THAT(sea.err, HasSubstr("--land"));
+  const ProgramResult country =
+      run_program(folder.path(), "world " + place + " --land country --size-km 0.3x0.3 --gsd 1 --frames 0");
+  EXPECT_EQ(country.code, 0) << country.err;
+  EXPECT_THAT(country.out, HasSubstr("km of roads"));
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -59,14 +59,14 @@ void pitch_tents(Plan& plan, const Site& site, int number, const Block& block, R
 
 }  // namespace
 
-Plan after_earthquake(const Plan& before, const Site& site, double collapsed_share, Random& random) {
-  Plan after = before;
-  after.buildings.clear();
-  const std::vector<bool> falls = fallen(before.buildings, collapsed_share, random);
+void collapse(Plan& plan, double share, Random& random) {
+  const std::vector<Building> standing = std::move(plan.buildings);
+  plan.buildings.clear();
+  const std::vector<bool> falls = fallen(standing, share, random);
   for (std::size_t i = 0; i < falls.size(); ++i) {
-    const Building& building = before.buildings[i];
+    const Building& building = standing[i];
     if (!falls[i]) {
-      after.buildings.push_back(building);
+      plan.buildings.push_back(building);
       continue;
     }
     Footprint spread = building.footprint;
@@ -75,8 +75,13 @@ Plan after_earthquake(const Plan& before, const Site& site, double collapsed_sha
     spread.width_m += spill;
     spread.center += PlanPoint(random.normal(), random.normal()) * (spill * 0.25);
     spread.angle_rad += 0.1 * random.normal();
-    after.debris.push_back({spread, 1.0 + 0.16 * building.height_m, random.bits()});
+    plan.debris.push_back({spread, 1.0 + 0.16 * building.height_m, random.bits()});
   }
+}
+
+Plan after_earthquake(const Plan& before, const Site& site, double collapsed_share, Random& random) {
+  Plan after = before;
+  collapse(after, collapsed_share, random);
   std::erase_if(after.trees, [&](const Tree&) { return random.chance(0.07); });
   after.boxes = traffic(after, random);
   for (std::size_t i = 0; i < after.blocks.size(); ++i) {

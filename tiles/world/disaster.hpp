@@ -7,6 +7,9 @@
 
 namespace roadfix::world {
 
+/// That share of the buildings becomes debris.
+void collapse(Plan& plan, double share, Random& random);
+
 /// The same ground after the event: fallen buildings are debris, some trees are gone, vehicles have moved, tents stand
 /// on open ground. Whole neighbourhoods fall together; tall buildings fall more often.
 Plan after_earthquake(const Plan& before, const Site& site, double collapsed_share, Random& random);

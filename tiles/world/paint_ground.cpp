@@ -4,7 +4,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tiles/world/paint_crowns.hpp"
+#include "tiles/world/paint_parcels.hpp"
 #include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
 #include "tiles/world/random.hpp"
 
 namespace roadfix::world {
@@ -14,13 +17,13 @@ using palette::varied;
 
 Colour mixed(const Colour& a, const Colour& b, double share) { return a * (1.0 - share) + b * share; }
 
-struct Surface {
+struct Ground {
   Colour colour;
   Material material;
 };
 
 /// Ground of a block before anything stands on it. The same in both pictures but for the season.
-Surface surface_of(LandUse use, double winter, Random& random) {
+Ground surface_of(LandUse use, double winter, Random& random) {
   const double draw = random.unit();
   const auto green = [&](const Colour& c) { return mixed(c, {118, 102, 76}, 0.55 * winter); };
   switch (use) {
@@ -49,12 +52,6 @@ Surface surface_of(LandUse use, double winter, Random& random) {
   return {varied(green(palette::kDryGrass), 0.12, random), Material::kBare};
 }
 
-cv::Rect2d box_of(const Polyline& outline) {
-  const auto [west, east] = std::ranges::minmax(outline, {}, &PlanPoint::x);
-  const auto [north, south] = std::ranges::minmax(outline, {}, &PlanPoint::y);
-  return {west.x, north.y, east.x - west.x, south.y - north.y};
-}
-
 /// Parcels of different crops, each with its furrows. They may reach over the block's rim: streets are painted later.
 void paint_field(Canvas& canvas, const Block& block, double winter, Random& random) {
   const cv::Rect2d box = box_of(block.outline);
@@ -67,7 +64,7 @@ void paint_field(Canvas& canvas, const Block& block, double winter, Random& rand
       const double length = random.uniform(60.0, 220.0);
       const Footprint grid{center, angle, 0.0, 0.0};
       const Footprint parcel{grid.at(v + length / 2.0, u + width / 2.0), angle, length, width};
-      const Surface surface = surface_of(LandUse::kField, winter, random);
+      const Ground surface = surface_of(LandUse::kField, winter, random);
       const Colour furrow = surface.colour * random.uniform(0.9, 0.96);
       const double spacing = random.uniform(3.0, 6.0);
       const bool inside = cv::pointPolygonTest(std::vector<cv::Point2f>(block.outline.begin(), block.outline.end()),
@@ -116,6 +113,7 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
                        {plan.width_m + 200, plan.height_m + 200},
                        {-200, plan.height_m + 200}},
               palette::kSoil, Material::kBare);
+  paint_parcels(canvas, plan, conditions);
   for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
     const Block& block = plan.blocks[i];
     if (block.outline.size() < 3) continue;
@@ -124,7 +122,7 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
       continue;
     }
     Random random(i, 17);
-    const Surface surface = surface_of(block.use, conditions.winter, random);
+    const Ground surface = surface_of(block.use, conditions.winter, random);
     canvas.fill(block.outline, surface.colour, surface.material);
     if (block.use == LandUse::kField) paint_field(canvas, block, conditions.winter, random);
     if (block.use == LandUse::kPark) paint_park(canvas, block, random);
@@ -132,7 +130,7 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
   paint_lots(canvas, plan, conditions.winter);
   if (!plan.river.empty()) {
     canvas.stroke(plan.river, plan.river_width_m * 1.45, palette::kGarden, Material::kGrass);
-    canvas.stroke(plan.river, plan.river_width_m, palette::kWater, Material::kSmooth);
+    canvas.stroke(plan.river, plan.river_width_m, plan.water, Material::kSmooth);
   }
 }
 
@@ -140,6 +138,10 @@ void paint_trees(Canvas& canvas, const Plan& plan, const Conditions& conditions)
   const PlanPoint to_sun = -conditions.shadow_direction();
   for (const Tree& tree : plan.trees) {
     if (!canvas.sees(tree.center, tree.radius_m + 2.0)) continue;
+    if (tree.crown != Crown::kGarden) {
+      paint_crown(canvas, tree, conditions);
+      continue;
+    }
     const PlanPoint crown = tree.center + conditions.lean * (tree.height_m * 0.6);
     const bool bare = tree.deciduous && conditions.winter > 0.5;
     const Colour colour = (bare ? palette::kBareTree : palette::kTree) * tree.tone;

@@ -48,10 +48,12 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
   const double dust = conditions.dust;
   const Colour sidewalk = palette::kSidewalk * (1.0 - dust) + palette::kDust * dust;
   for (const Street& street : plan.streets) {
+    if (street.surface != Surface::kKerbed) continue;
     canvas.stroke(street.line, street.width_m + 2.0 * sidewalk_m(street), sidewalk, Material::kPaved);
   }
   for (std::size_t i = 0; i < plan.streets.size(); ++i) {
     const Street& street = plan.streets[i];
+    if (street.surface != Surface::kKerbed) continue;
     const Colour surface = surface_of(street, i, conditions);
     canvas.stroke(street.line, street.width_m, surface, Material::kAsphalt);
     // Tyres polish two tracks of each large street a little darker.
@@ -59,7 +61,7 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
       canvas.stroke(street.line, street.width_m * 0.62, surface * 0.955, Material::kAsphalt);
   }
   for (const Street& street : plan.streets) {
-    if (street.width_m < kLargeM || length_m(street.line) < 60.0) continue;
+    if (street.surface != Surface::kKerbed || street.width_m < kLargeM || length_m(street.line) < 60.0) continue;
     const Colour marking = palette::kMarking * (1.0 - dust) + palette::kDust * dust;
     paint_middle(canvas, street, marking);
     const std::size_t last = street.line.size() - 2;

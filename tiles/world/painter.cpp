@@ -5,8 +5,11 @@
 #include "tiles/world/canvas.hpp"
 #include "tiles/world/light.hpp"
 #include "tiles/world/paint_buildings.hpp"
+#include "tiles/world/paint_damage.hpp"
 #include "tiles/world/paint_ground.hpp"
+#include "tiles/world/paint_railway.hpp"
 #include "tiles/world/paint_streets.hpp"
+#include "tiles/world/paint_tracks.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -28,10 +31,14 @@ cv::Mat3b paint_tile(const Plan& plan, const Conditions& conditions, const Textu
   Canvas canvas(pixels, gsd_m);
   paint_ground(canvas, plan, conditions);
   paint_streets(canvas, plan, conditions);
+  paint_railway(canvas, plan.country, conditions);
+  paint_tracks(canvas, plan, conditions);
   paint_boxes(canvas, plan);
+  paint_slides(canvas, plan.country);
   paint_debris(canvas, plan);
   paint_buildings(canvas, plan, conditions);
   paint_trees(canvas, plan, conditions);
+  paint_logs(canvas, plan.country, conditions);
   texture.apply(canvas.colour(), canvas.material(), pixels, gsd_m);
   shade(canvas.colour(), cast_shadows(canvas.height(), gsd_m, conditions));
   expose(canvas.colour(), pixels, gsd_m, conditions, plan.debris, texture);

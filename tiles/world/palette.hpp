@@ -18,7 +18,6 @@ inline const Colour kStubble{184, 168, 136};
 inline const Colour kAsphalt{146, 137, 127};
 inline const Colour kSidewalk{178, 167, 152};
 inline const Colour kMarking{205, 200, 190};
-inline const Colour kWater{74, 92, 86};
 inline const Colour kTree{44, 58, 42};
 inline const Colour kBareTree{92, 84, 66};
 inline const Colour kDust{178, 160, 136};

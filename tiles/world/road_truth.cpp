@@ -37,6 +37,23 @@ std::optional<Piece> clipped(PlanPoint a, PlanPoint b, double width_m, double he
   return Piece{a + d * enter, a + d * leave};
 }
 
+/// Value of OpenStreetMap's `surface`; none for a town's streets.
+const char* surface_tag(Surface surface) {
+  switch (surface) {
+    case Surface::kKerbed:
+      return nullptr;
+    case Surface::kAsphalt:
+      return "asphalt";
+    case Surface::kGravel:
+      return "gravel";
+    case Surface::kEarth:
+      return "earth";
+    case Surface::kSand:
+      return "sand";
+  }
+  return nullptr;
+}
+
 void require(bool done, const std::string& path, const GdalMessages& messages) {
   if (!done) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written ({})", path, messages.text()));
 }
@@ -51,6 +68,7 @@ void add(OGRLayer& layer, const Street& street, const Polyline& line, const Plac
   OGRFeature feature(layer.GetLayerDefn());
   feature.SetField("highway", street.road_class.c_str());
   feature.SetField("width_m", street.width_m);
+  if (const char* surface = surface_tag(street.surface)) feature.SetField("surface", surface);
   feature.SetGeometry(&geometry);
   require(layer.CreateFeature(&feature) == OGRERR_NONE, path, messages);
 }
@@ -82,7 +100,10 @@ int write_road_truth(const std::string& path, const std::vector<Street>& streets
   require(layer != nullptr, path, messages);
   OGRFieldDefn road_class("highway", OFTString);
   OGRFieldDefn width("width_m", OFTReal);
-  require(layer->CreateField(&road_class) == OGRERR_NONE && layer->CreateField(&width) == OGRERR_NONE, path, messages);
+  OGRFieldDefn surface("surface", OFTString);
+  for (OGRFieldDefn* field : {&road_class, &width, &surface}) {
+    require(layer->CreateField(field) == OGRERR_NONE, path, messages);
+  }
   int count = 0;
   for (const Street& street : streets) {
     for (const Polyline& line :

@@ -32,6 +32,12 @@ void check(const WorldSettings& s) {
     throw InvalidInput("world-gsd", fmt::format("pixels of {:g} m cannot be rendered: choose {:g} to {:g} m", s.gsd_m,
                                                 kMinGsdM, kMaxGsdM));
   }
+  if (s.land == Land::kCountry && !s.roads.empty()) {
+    throw InvalidInput("world-land-roads",
+                       fmt::format("{}: given roads can only be rendered as a town's: leave out the "
+                                   "roads, or choose the land town",
+                                   s.roads));
+  }
   if (!within(s.collapsed_share, 0.0, 1.0)) {
     throw InvalidInput("world-share", fmt::format("a share of {:g} of the buildings cannot collapse: choose 0 to 1",
                                                   s.collapsed_share));

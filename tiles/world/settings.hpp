@@ -10,8 +10,11 @@
 
 namespace roadfix::world {
 
+enum class Land { kTown, kCountry };
+
 struct WorldSettings {
   std::uint64_t seed = 1;
+  Land land = Land::kTown;
   double width_m = 2000.0;
   double height_m = 2000.0;
   double gsd_m = 0.5;
@@ -27,7 +30,8 @@ struct WorldSettings {
 
 inline constexpr LatLon kDefaultCenter{37.7640, 38.2760};
 
-/// Throws InvalidInput ("world-size", "world-gsd", "world-share", "world-frames", "world-too-small-for-frames").
+/// Throws InvalidInput ("world-size", "world-gsd", "world-land-roads", "world-share", "world-frames",
+/// "world-too-small-for-frames").
 void check(const WorldSettings& settings);
 
 /// Pixels of both pictures on the plane of their zone.

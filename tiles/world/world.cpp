@@ -9,6 +9,8 @@
 #include "core/units/error.hpp"
 #include "tiles/sources/road_lines.hpp"
 #include "tiles/world/conditions.hpp"
+#include "tiles/world/country.hpp"
+#include "tiles/world/country_disaster.hpp"
 #include "tiles/world/development.hpp"
 #include "tiles/world/disaster.hpp"
 #include "tiles/world/frames.hpp"
@@ -30,17 +32,20 @@ LatLon center_of(const WorldSettings& settings) {
   return settings.roads.empty() ? kDefaultCenter : centre_of_roads(settings.roads, {});
 }
 
-Plan plan_before(const WorldSettings& settings, const Placement& placement) {
+Plan empty_plan(const Placement& placement) {
   Plan plan;
   plan.width_m = placement.cols * placement.gsd_m;
   plan.height_m = placement.rows * placement.gsd_m;
+  return plan;
+}
+
+void lay_streets(Plan& plan, const WorldSettings& settings, const Placement& placement) {
   if (settings.roads.empty()) {
     Random random(settings.seed, kStreets);
     invent_streets(plan, random);
   } else {
     plan.streets = read_streets(settings.roads, placement);
   }
-  return plan;
 }
 
 void fill_in(Plan& plan, Site& site, std::uint64_t seed) {
@@ -50,6 +55,26 @@ void fill_in(Plan& plan, Site& site, std::uint64_t seed) {
   plant(plan, site, tree);
   Random car(seed, kTraffic);
   plan.boxes = traffic(plan, car);
+}
+
+struct Plans {
+  Plan before;
+  Plan after;
+};
+
+Plans plans_of(const WorldSettings& settings, const Placement& placement) {
+  Plan before = empty_plan(placement);
+  Random shock(settings.seed, kDisaster);
+  if (settings.land == Land::kCountry) {
+    lay_out_country(before, settings.seed);
+    Plan after = after_earthquake_in_country(before, settings.collapsed_share, shock);
+    return {std::move(before), std::move(after)};
+  }
+  lay_streets(before, settings, placement);
+  Site site(before);
+  fill_in(before, site, settings.seed);
+  Plan after = after_earthquake(before, site, settings.collapsed_share, shock);
+  return {std::move(before), std::move(after)};
 }
 
 class Photographer {
@@ -90,6 +115,7 @@ void write_report(const WorldReport& report, const WorldSettings& settings, cons
       report.placement.point_of(report.placement.cols / 2.0, report.placement.rows / 2.0));
   const nlohmann::ordered_json json{
       {"seed", settings.seed},
+      {"land", settings.land == Land::kCountry ? "country" : "town"},
       {"size_m", {report.placement.cols * settings.gsd_m, report.placement.rows * settings.gsd_m}},
       {"gsd_m", settings.gsd_m},
       {"center", {{"lat", center.lat_deg}, {"lon", center.lon_deg}}},
@@ -138,11 +164,7 @@ WorldReport render_world(const WorldSettings& settings, const std::filesystem::p
                          const WorldProgress& progress, std::stop_token stop) {
   check(settings);
   const Placement placement = place(settings, center_of(settings));
-  Plan before = plan_before(settings, placement);
-  Site site(before);
-  fill_in(before, site, settings.seed);
-  Random shock(settings.seed, kDisaster);
-  const Plan after = after_earthquake(before, site, settings.collapsed_share, shock);
+  const auto [before, after] = plans_of(settings, placement);
 
   make_folder(folder);
   Photographer photographer(placement, settings.seed, progress, std::move(stop));

@@ -107,6 +107,24 @@ TEST(World, OnVariedDaysIsTheSameTownUnderAnotherSun) {
   }
 }
 
+TEST(World, OfOpenCountryComesWithTheTruthAboutItsRoads) {
+  const TemporaryFolder folder;
+  WorldSettings settings = small_settings(7);
+  settings.land = Land::kCountry;
+  settings.varied = true;
+  const WorldReport report = render(settings, folder / "a");
+  render(settings, folder / "b");
+  EXPECT_GT(report.road_km, 0.2);
+  for (const char* name : {"pre.tif", "post.tif", "roads.geojson", "world.json", "frames/frame_01.png"}) {
+    EXPECT_FALSE(bytes_of(folder / "a" / name).empty()) << name;
+    EXPECT_EQ(bytes_of(folder / "a" / name), bytes_of(folder / "b" / name)) << name;
+  }
+  const std::string truth = bytes_of(folder / "a" / "roads.geojson");
+  EXPECT_THAT(truth, ::testing::HasSubstr(R"("highway": "track", "width_m": )"));
+  EXPECT_THAT(truth, ::testing::HasSubstr(R"("surface": ")"));
+  EXPECT_THAT(bytes_of(folder / "a" / "world.json"), ::testing::HasSubstr(R"("land": "country")"));
+}
+
 TEST(World, LiesWhereItWasAskedForInTheZoneOfItsCentre) {
   const TemporaryFolder folder;
   WorldSettings settings = small_settings();
@@ -193,6 +211,11 @@ TEST(World, RefusesSettingsThatCannotBeMet) {
   EXPECT_EQ(code_with([](auto& s) { s.collapsed_share = 1.5; }), "world-share");
   EXPECT_EQ(code_with([](auto& s) { s.frames = -1; }), "world-frames");
   EXPECT_EQ(code_with([](auto& s) { s.footprint_m = 300.0; }), "world-too-small-for-frames");
+  EXPECT_EQ(code_with([](auto& s) {
+              s.land = Land::kCountry;
+              s.roads = "roads.geojson";
+            }),
+            "world-land-roads");
   EXPECT_EQ(code_with([](auto& s) { s.roads = "no-such-file.geojson"; }), "source-not-found");
   EXPECT_FALSE(std::filesystem::exists(folder / "world"));
 }

@@ -1,0 +1,64 @@
+#include "tiles/world/country_disaster.hpp"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tiles/world/corridor.hpp"
+#include "tiles/world/disaster.hpp"
+#include "tiles/world/farmsteads.hpp"
+#include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
+
+namespace roadfix::world {
+namespace {
+
+/// Trees near streets lean towards the light and fall that way.
+void fell_trees(Plan& plan, double share, Random& random) {
+  Corridor streets(plan);
+  for (const Street& street : plan.streets) streets.add(street.line, street.width_m);
+  const cv::Mat1f to_street = streets.distances();
+  std::vector<Tree> standing;
+  for (const Tree& tree : plan.trees) {
+    const bool near = Corridor::at(to_street, tree.center) < 0.8 * tree.height_m;
+    if (tree.height_m < 6.0 || !random.chance(near ? share : 0.1 * share)) {
+      standing.push_back(tree);
+      continue;
+    }
+    const PlanPoint slope(
+        Corridor::at(to_street, tree.center + PlanPoint(2, 0)) - Corridor::at(to_street, tree.center - PlanPoint(2, 0)),
+        Corridor::at(to_street, tree.center + PlanPoint(0, 2)) -
+            Corridor::at(to_street, tree.center - PlanPoint(0, 2)));
+    const double angle = near ? std::atan2(-slope.y, -slope.x) + 0.5 * random.normal() : random.uniform(0.0, 6.28);
+    const PlanPoint top = tree.center + PlanPoint(std::cos(angle), std::sin(angle)) * tree.height_m;
+    plan.country.logs.push_back({tree.center, top, tree.radius_m, tree.leaf * tree.tone});
+  }
+  plan.trees = std::move(standing);
+}
+
+void slide(Plan& plan, Random& random) {
+  const Street& street = plan.streets[random.index(plan.streets.size())];
+  const PlanPoint off(random.normal() * 6.0, random.normal() * 6.0);
+  Slide slide{blob(street.line[random.index(street.line.size())] + off, random.uniform(5.0, 22.0), random),
+              palette::varied(plan.country.soil, 0.15, random), random.bits()};
+  const std::vector<cv::Point2f> outline(slide.outline.begin(), slide.outline.end());
+  std::erase_if(plan.trees, [&](const Tree& tree) {
+    return cv::pointPolygonTest(outline, tree.center, false) > 0.0 && random.chance(0.9);
+  });
+  plan.country.slides.push_back(std::move(slide));
+}
+
+}  // namespace
+
+Plan after_earthquake_in_country(const Plan& before, double collapsed_share, Random& random) {
+  Plan after = before;
+  collapse(after, collapsed_share, random);
+  fell_trees(after, random.uniform(0.3, 1.0) * (0.01 + 0.25 * collapsed_share), random);
+  const double square_km = after.width_m * after.height_m / 1e6;
+  const int slides =
+      static_cast<int>(std::lround(square_km * (2.0 + 40.0 * collapsed_share) * random.uniform(0.3, 1.0)));
+  for (int i = 0; i < slides && !after.streets.empty(); ++i) slide(after, random);
+  after.boxes = country_traffic(after, random);
+  return after;
+}
+
+}  // namespace roadfix::world

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Renders labelled pairs to train on: pictures of towns before and after an earthquake, and masks of their carriageways.
+"""Renders labelled pairs to train on: pictures of towns or of open country before and after an earthquake, and masks of their carriageways.
 
 Example: python3 models/render.py --roadfix build/release/cli/roadfix --out build/rendered/train --first-seed 1 --count 60
-Writes OUT/images and OUT/masks. Each seed gives two pictures of one town, on two days with their own sun, air and camera.
+Writes OUT/images and OUT/masks. Each seed gives two pictures of one place, on two days with their own sun, air and camera.
 """
 import argparse
 import json
@@ -20,7 +20,8 @@ def arguments():
     parser.add_argument("--roadfix", default="build/release/cli/roadfix", help="program that renders (%(default)s)")
     parser.add_argument("--out", required=True, type=Path)
     parser.add_argument("--first-seed", default=1, type=int)
-    parser.add_argument("--count", default=60, type=int, help="towns (%(default)s)")
+    parser.add_argument("--count", default=60, type=int, help="places (%(default)s)")
+    parser.add_argument("--land", choices=("town", "country"), default="town", help="what is rendered (%(default)s)")
     parser.add_argument("--size-km", default="1x1")
     parser.add_argument("--gsd", default=0.5, type=float)
     parser.add_argument("--roads", default="", help="OpenStreetMap extract whose streets are rendered instead of invented ones")
@@ -31,7 +32,7 @@ def arguments():
 def render(options, seed, folder):
     collapsed = np.random.default_rng(seed).uniform(0.0, 0.35)
     command = [options.roadfix, "world", str(folder), "--seed", str(seed), "--size-km", options.size_km, "--gsd", str(options.gsd),
-               "--collapsed", f"{collapsed:.2f}", "--frames", "0", "--varied"]
+               "--land", options.land, "--collapsed", f"{collapsed:.2f}", "--frames", "0", "--varied"]
     command += ["--roads", options.roads] if options.roads else []
     command += ["--center", options.center] if options.center else []
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
@@ -60,7 +61,7 @@ def main():
     options = arguments()
     for part in ("images", "masks"):
         (options.out / part).mkdir(parents=True, exist_ok=True)
-    prefix = Path(options.roads).name.split(".")[0] or "town"
+    prefix = Path(options.roads).name.split(".")[0] or options.land
     for seed in range(options.first_seed, options.first_seed + options.count):
         with tempfile.TemporaryDirectory() as folder:
             render(options, seed, folder)

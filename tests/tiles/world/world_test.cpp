@@ -76,7 +76,7 @@ double busyness(const cv::Mat& bgr, const cv::Mat1b& mask) {
   }
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return double{*middle};
+  return static_cast<double>(*middle);
 }
 
 TEST(World, ComesOutTheSameToTheByteForTheSameSeedOnly) {

@@ -1,5 +1,5 @@
-// A rendered world: a town or open country before and after an earthquake with the truth about its roads and about frames
-// of it. It gives demo, tests and training a ground truth; it is no substitute for real imagery.
+// A rendered world: a town or open country before and after an earthquake with the truth about its roads and about
+// frames of it. It gives demo, tests and training a ground truth; it is no substitute for real imagery.
 #pragma once
 
 #include <cstdint>

@@ -88,7 +88,12 @@ std::vector<std::string> zone_notes(const CellSource& source, const MapSettings&
   }
   const double far_m =
       std::max(std::abs(extent.min.east_m - kFalseEastingM), std::abs(extent.max.east_m - kFalseEastingM));
-  if (stretch(far_m) > kWithinAnyZone) {
+  if (far_m > kFalseEastingM) {
+    notes.push_back(
+        fmt::format("what lies more than 500 km from the central meridian of EPSG:{}, the zone of the map, "
+                    "is left out; a map file of its own (another --map) holds it",
+                    zone.epsg()));
+  } else if (stretch(far_m) > kWithinAnyZone) {
     notes.push_back(
         fmt::format("it reaches {:.0f} km from the central meridian of EPSG:{}, the zone of the map, where "
                     "lengths are {:.2f} % too long; a map file of its own (another --map) for the zone "

@@ -83,6 +83,10 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     }
     images_.push_back(std::move(image));
   }
+  if (rule == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
+    const auto [least, most] = std::ranges::minmax_element(values);
+    sampled_ = {static_cast<double>(*least), static_cast<double>(*most)};
+  }
   if (!declared)
     range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   if (rule == ValueRule::kShare) channels_ = 1;

@@ -40,6 +40,8 @@ class Mosaic {
   double gsd_m() const { return gsd_m_; }
   bool holds_integers() const { return integers_; }
   ValueRange range() const { return range_; }
+  /// Least and largest value sampled of a source of shares; low > high where none is valid, or they are colours.
+  ValueRange sampled() const { return sampled_; }
   std::string crs() const { return crs_; }
 
   /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed. Thread-safe.
@@ -59,6 +61,7 @@ class Mosaic {
   int channels_ = 1;
   bool integers_ = false;
   ValueRange range_;
+  ValueRange sampled_{1.0, 0.0};
   std::string crs_;
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first

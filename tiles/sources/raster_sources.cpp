@@ -14,6 +14,7 @@
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/mosaic.hpp"
 #include "tiles/sources/road_rules.hpp"
+#include "tiles/sources/road_values.hpp"
 
 namespace roadfix {
 namespace {
@@ -123,6 +124,7 @@ class RoadRaster final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     summary_.registration_sigma_m = kRasterSigmaM;
+    summary_.notes = notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
   }
 
   SourceSummary summary() const override { return summary_; }

@@ -148,6 +148,29 @@ TEST_F(RoadRaster, MasksOfAnyRangeCarryTheCertaintyOfDrawnRoads) {
   }
 }
 
+TEST_F(RoadRaster, ValuesThatAreNoSharesAreRefused) {
+  for (const auto& [type, value] : {std::pair{GDT_Float32, 100.0}, {GDT_Float32, -9999.0}, {GDT_Int16, -9999.0}}) {
+    EXPECT_EQ(testing::code_of([&, t = type, v = value] { cells(t, v); }), "road-values-out-of-range") << value;
+  }
+  EXPECT_NO_THROW(cells(GDT_Float32, 1.04)) << "resampling overshoots";
+}
+
+TEST_F(RoadRaster, ValuesThatHardlySayAnythingGetANote) {
+  const auto notes = [&](double road, double elsewhere, std::optional<double> nodata) {
+    RasterSpec spec;
+    spec.nodata = nodata;
+    const std::string path =
+        write_raster(folder / "b.tif", spec, [&](int, int col, int) { return col < 31 ? road : elsewhere; });
+    return open_road_raster({path}, {}, kZone, 2.0)->summary().notes;
+  };
+  EXPECT_THAT(notes(255.0, 0.0, std::nullopt), ::testing::IsEmpty());
+  EXPECT_THAT(notes(1.0, 0.0, std::nullopt), ::testing::IsEmpty());
+  EXPECT_THAT(notes(255.0, 0.0, 0.0), ::testing::ElementsAre(::testing::HasSubstr("-unsetnodata")));
+  EXPECT_THAT(notes(100.0, 0.0, std::nullopt),
+              ::testing::ElementsAre(::testing::HasSubstr("no road is surer than 39 %")));
+  EXPECT_THAT(notes(0.0, 0.0, std::nullopt), ::testing::IsEmpty()) << "a place without roads";
+}
+
 TEST_F(RoadRaster, FloatsAreProbabilitiesAsTheyAre) {
   const CellArray result = cells(GDT_Float32, 0.6);
   EXPECT_NEAR(probability(result.at(14, 5)), 0.6, 0.004);

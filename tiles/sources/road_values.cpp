@@ -1,0 +1,37 @@
+#include "tiles/sources/road_values.hpp"
+
+#include <fmt/format.h>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+
+std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
+                                              const ValueRange& range, bool integers) {
+  if (sampled.low > sampled.high) return {};
+  constexpr double kResampling = 0.1;  // by which cubic resampling overshoots
+  if (sampled.low < -kResampling * range.high || (!integers && sampled.high > (1.0 + kResampling) * range.high)) {
+    throw InvalidInput(
+        "road-values-out-of-range",
+        fmt::format("{}: its values go from {:g} to {:g}, but a raster of roads holds {} from 0 to {:g}. Mark values "
+                    "that mean nothing as nodata (gdal_edit.py -a_nodata), rescale others (gdal_translate -scale)",
+                    path, sampled.low, sampled.high, integers ? "integers" : "probabilities", range.high));
+  }
+  constexpr double kHalf = 0.5;
+  std::vector<std::string> notes;
+  if (sampled.low > kHalf * range.high) {
+    notes.push_back(fmt::format(
+        "{}: every pixel with data is road, so that nothing is known to be no road, and places look alike. If nodata "
+        "stands for no road here, take the mark away (gdal_edit.py -unsetnodata) and use --replace",
+        path));
+  }
+  if (integers && sampled.high > 0.0 && sampled.high < kHalf * range.high) {
+    notes.push_back(fmt::format(
+        "{}: its largest value is {:g} of {:g}, so that no road is surer than {:.0f} %. If it stands for certain, "
+        "rescale it (gdal_translate -scale 0 {:g} 0 {:g})",
+        path, sampled.high, range.high, 100.0 * sampled.high / range.high, sampled.high, range.high));
+  }
+  return notes;
+}
+
+}  // namespace roadfix

@@ -142,9 +142,8 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
 /// Where some layers tell roads apart, the lines of the others are rivers, railways or bus routes.
 RoadNetwork join(Parts& parts, const RoadRules& rules) {
   RoadNetwork network = std::move(parts.any_classified ? parts.classified : parts.plain);
-  if (parts.any_classified) {
-    network.left_out += parts.plain.left_out + static_cast<std::int64_t>(parts.plain.lines.size());
-  }
+  const RoadNetwork& other = parts.any_classified ? parts.plain : parts.classified;
+  network.left_out += other.left_out + static_cast<std::int64_t>(other.lines.size());
   for (const auto& [name, about] : parts.plain_layers) {
     const auto& [path, attributes] = about;
     network.notes.push_back(

@@ -257,6 +257,10 @@ TEST_F(VectorRoads, ClassesThatNoRuleKnowsAreNamed) {
 TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {
   const std::string rivers = geojson({feature(R"("highway":"footway")", at(0, 0), at(9, 9))});
   EXPECT_EQ(code_of([&] { open_road_vectors({rivers}, {}, RoadRules(), kZone, 2.0); }), "source-without-roads");
+  const std::string squares = geojson({R"({"type":"Feature","properties":{"highway":"pedestrian"},"geometry":)"
+                                       R"({"type":"Polygon","coordinates":[[[38,37],[39,37],[39,38],[38,37]]]}})"});
+  EXPECT_THAT(message_of([&] { read_road_network({squares}, {}, RoadRules(), kZone); }),
+              HasSubstr("none of its 1 features is drawn as a road: none of them is a line"));
   std::ofstream(folder / "bad.geojson") << R"({"type":"FeatureCollection","features":[{"type":)";
   EXPECT_EQ(code_of([&] { read_road_network({(folder / "bad.geojson").string()}, {}, RoadRules(), kZone); }),
             "source-unreadable");

@@ -88,6 +88,41 @@ void check_body_headers(const Request& request, std::size_t max_bytes) {
   }
 }
 
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes) {
+  std::string& body = exchange.request.body;
+  bool too_large = false;
+  const bool whole = reader([&](const char* data, std::size_t size) {
+    too_large = body.size() + size > max_bytes;
+    if (!too_large) body.append(data, size);
+    return !too_large;
+  });
+  if (whole) return;
+  if (too_large) {
+    throw LimitExceeded("body-too-large", fmt::format("the body is larger than the limit of {} bytes", max_bytes));
+  }
+  switch (exchange.connection->failure()) {
+    case Connection::Failure::kTimeout:
+      throw Interrupted("request-timeout", "the rest of the body did not come in time");
+    case Connection::Failure::kCutOff:
+      throw InvalidInput("body-cut-off",
+                         fmt::format("the body ended after {} bytes, before its announced end", body.size()));
+    default:
+      throw InvalidInput("bad-body-encoding", "the body's chunks or its gzip stream are damaged");
+  }
+}
+
+std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_bytes) {
+  switch (exchange.connection->failure()) {
+    case Connection::Failure::kHeadTooLarge:
+      return std::make_exception_ptr(
+          LimitExceeded("head-too-large", fmt::format("request line and headers exceed {} bytes", max_bytes)));
+    case Connection::Failure::kTimeout:
+      return std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
+    default:
+      return std::make_exception_ptr(InvalidInput("bad-request", "the head of the request is not HTTP/1.1"));
+  }
+}
+
 void fill(httplib::Response& out, Response response) {
   out.status = response.status;
   for (auto& [name, value] : response.headers) out.set_header(name, value);

@@ -3,6 +3,8 @@
 
 #include <httplib.h>
 
+#include <cstddef>
+#include <exception>
 #include <string>
 
 #include "server/http/connection.hpp"
@@ -36,6 +38,14 @@ Request translated(const httplib::Request& head, const Exchange& exchange);
 /// ("body-too-large") by what the head says.
 void check_body_headers(const Request& request, std::size_t max_bytes);
 bool announces_body(const Request& request);
+
+/// Throws LimitExceeded "body-too-large" beyond so many bytes after unpacking, Interrupted "request-timeout" or
+/// InvalidInput ("body-cut-off", "bad-body-encoding").
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes);
+
+/// Why no head could be read: LimitExceeded "head-too-large", Interrupted "request-timeout", InvalidInput
+/// "bad-request".
+std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_bytes);
 
 void fill(httplib::Response& out, Response response);
 

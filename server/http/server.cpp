@@ -57,7 +57,6 @@ class Server::Impl : public httplib::Server {
 
   HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
   void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
-  void read_body(Exchange& exchange, const httplib::ContentReader& reader) const;
   Response answered(Exchange& exchange);
   void reply(Exchange& exchange, httplib::Response& out, Response response) const;
   HandlerResponse complete_error(httplib::Response& out);
@@ -215,37 +214,13 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
 void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
   Exchange& exchange = *t_exchange;
   try {
-    read_body(exchange, reader);
+    read_body(exchange, reader, settings_.body_bytes);
   } catch (...) {
     exchange.must_close = true;
     reply(exchange, out, on_error_(std::current_exception()));
     return;
   }
   reply(exchange, out, answered(exchange));
-}
-
-void Server::Impl::read_body(Exchange& exchange, const httplib::ContentReader& reader) const {
-  std::string& body = exchange.request.body;
-  bool too_large = false;
-  const bool whole = reader([&](const char* data, std::size_t size) {
-    too_large = body.size() + size > settings_.body_bytes;
-    if (!too_large) body.append(data, size);
-    return !too_large;
-  });
-  if (whole) return;
-  if (too_large) {
-    throw LimitExceeded("body-too-large",
-                        fmt::format("the body is larger than the limit of {} bytes", settings_.body_bytes));
-  }
-  switch (exchange.connection->failure()) {
-    case Connection::Failure::kTimeout:
-      throw Interrupted("request-timeout", "the rest of the body did not come in time");
-    case Connection::Failure::kCutOff:
-      throw InvalidInput("body-cut-off",
-                         fmt::format("the body ended after {} bytes, before its announced end", body.size()));
-    default:
-      throw InvalidInput("bad-body-encoding", "the body's chunks or its gzip stream are damaged");
-  }
 }
 
 Response Server::Impl::answered(Exchange& exchange) {
@@ -283,19 +258,7 @@ HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   Exchange& exchange = *t_exchange;
   if (exchange.request.id.empty()) exchange.request = translated({}, exchange);
   exchange.must_close = true;
-  std::exception_ptr error;
-  switch (exchange.connection->failure()) {
-    case Connection::Failure::kHeadTooLarge:
-      error = std::make_exception_ptr(LimitExceeded(
-          "head-too-large", fmt::format("request line and headers exceed {} bytes", settings_.head_bytes)));
-      break;
-    case Connection::Failure::kTimeout:
-      error = std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
-      break;
-    default:
-      error = std::make_exception_ptr(InvalidInput("bad-request", "the head of the request is not HTTP/1.1"));
-  }
-  reply(exchange, out, on_error_(error));
+  reply(exchange, out, on_error_(failure_of_head(exchange, settings_.head_bytes)));
   return HandlerResponse::Handled;
 }
 

@@ -45,7 +45,7 @@ UtmZone zone_of(const IngestArguments& arguments, const SourceRequest& first) {
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--as", a.meaning,
-                     "What the sources are: auto (vectors are roads, rasters imagery), imagery, roads");
+                     "What the sources are: auto (vectors and other maps are roads, rasters imagery), imagery, roads");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources where the files do not say it, or say it wrong");
   command.add_option("--nodata-color", a.collar, "Colour of the collar around the imagery: white, black or R,G,B");

@@ -32,18 +32,28 @@ bool listed(const List& list, std::string_view value) {
   return std::ranges::find(list, value) != list.end();
 }
 
-/// Whether the file holds pixels. A file that neither opens as raster nor as vectors is reported by name.
-bool is_raster(const std::string& path) {
-  if (listed(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return false;
+/// What the rasters of a file are unless the user says it: those of a map made by roadfix are roads, all others
+/// imagery.
+SourceKind kind_of(GDALDataset& raster) {
+  const char* identifier = raster.GetMetadataItem("IDENTIFIER");
+  const bool map = EQUAL(raster.GetDriverName(), "GPKG") && identifier != nullptr &&
+                   std::string_view(identifier) == "road_probability";
+  return map ? SourceKind::kRoadRaster : SourceKind::kImagery;
+}
+
+/// A file that neither opens as raster nor as vectors is reported by name.
+SourceKind kind_of(const std::string& path) {
+  constexpr SourceKind kVectors = SourceKind::kRoadVectors;
+  if (listed(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
   {
     const GdalMessages messages;
     const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-    if (raster) return true;
+    if (raster) return kind_of(*raster);
   }
   if (listed(kImageEndings, ending_of(path))) {
     open_dataset(path, GDAL_OF_RASTER);  // says why not
   }
-  return false;
+  return kVectors;
 }
 
 SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
@@ -90,10 +100,12 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
     result.name = fs::absolute(path).filename().string();
   } else {
     result.paths = {argument};
-    const bool raster = is_raster(argument);
-    if (!raster) open_dataset(argument, GDAL_OF_VECTOR);
-    const SourceKind pixels = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
-    result.kind = raster ? pixels : SourceKind::kRoadVectors;
+    result.kind = kind_of(argument);
+    if (result.kind == SourceKind::kRoadVectors) {
+      open_dataset(argument, GDAL_OF_VECTOR);
+    } else if (meaning != SourceMeaning::kAuto) {
+      result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
+    }
     result.name = path.stem().string();
     if (result.name.ends_with(".osm")) result.name.resize(result.name.size() - 4);
   }

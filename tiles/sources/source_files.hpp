@@ -9,7 +9,7 @@ namespace roadfix {
 
 enum class SourceKind { kImagery, kRoadRaster, kRoadVectors };
 
-/// What the user says a source is. kAuto: vectors are roads, rasters are imagery.
+/// What the user says a source is. kAuto: vectors and maps made by roadfix are roads, other rasters imagery.
 enum class SourceMeaning { kAuto, kImagery, kRoads };
 /// "auto", "imagery", "roads". Throws InvalidInput "source-meaning-unknown".
 SourceMeaning parse_meaning(std::string_view text);

@@ -2,13 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <fstream>
+#include <string>
 
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/fingerprint.hpp"
+#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
 namespace {
@@ -33,6 +36,22 @@ TEST_F(SourceFilesTest, RastersAreImageryUnlessCalledRoads) {
   EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kImagery);
   EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
   EXPECT_EQ(find_source(path, SourceMeaning::kAuto).name, "city");
+}
+
+TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
+  const std::string city = write_raster(folder / "city.tif", {.type = GDT_Float32}, [](int, int, int) { return 0.5; });
+  const DatasetPtr picture(GDALDataset::Open(city.c_str(), GDAL_OF_RASTER));
+  for (const std::string identifier : {"road_probability", "heights"}) {
+    const std::string path = (folder / (identifier + ".gpkg")).string();
+    const std::string option = "RASTER_IDENTIFIER=" + identifier;
+    const std::array<const char*, 2> options{option.c_str(), nullptr};
+    DatasetPtr(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+        path.c_str(), picture.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
+    const bool map = identifier == "road_probability";
+    EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, map ? SourceKind::kRoadRaster : SourceKind::kImagery);
+    EXPECT_EQ(find_source(path, SourceMeaning::kImagery).kind, SourceKind::kImagery);
+    EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
+  }
 }
 
 TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/detect/frame.hpp"
@@ -52,7 +53,9 @@ class Imagery final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     summary_.registration_sigma_m = kImagerySigmaM;
-    if (auto note = note_on_collar(paths, options)) summary_.notes.push_back(std::move(*note));
+    std::optional<std::string> note = note_on_likely_roads(paths.front(), options);
+    if (!note) note = note_on_collar(paths, options);
+    if (note) summary_.notes.push_back(std::move(*note));
   }
 
   SourceSummary summary() const override { return summary_; }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -32,6 +34,22 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Val
         path, sampled.high, range.high, 100.0 * sampled.high / range.high, sampled.high, range.high));
   }
   return notes;
+}
+
+std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {
+  RasterFile file(path, options);
+  if (file.channels() != 1) return std::nullopt;
+  const std::vector<float> values = file.sample_values();
+  if (values.empty()) return std::nullopt;
+  const auto [least, most] = std::ranges::minmax(values);
+  const bool mask =
+      least < most && std::ranges::all_of(values, [&, a = least, b = most](float v) { return v == a || v == b; });
+  const bool probabilities = !file.holds_integers() && least < most && least >= 0.0F && most <= 1.0F;
+  if (!mask && !probabilities) return std::nullopt;
+  return fmt::format(
+      "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, give "
+      "--as roads",
+      path, least, mask ? "and" : "to", most, mask ? "a mask of roads are" : "probabilities are");
 }
 
 }  // namespace roadfix

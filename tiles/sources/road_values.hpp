@@ -1,6 +1,8 @@
-// Whether the values of a raster can be shares of road: what is clamped in silence makes a map that lies.
+// Whether the values of a raster can be shares of road, and whether a picture is one of roads: what is clamped or
+// searched for roads in silence makes a map that lies.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,5 +15,8 @@ namespace roadfix {
 /// values and for floats above 1.
 std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
                                               const ValueRange& range, bool integers);
+
+/// For imagery: a note where the file has one band of floats within 0..1, or of two values alone.
+std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options);
 
 }  // namespace roadfix

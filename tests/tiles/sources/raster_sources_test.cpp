@@ -12,6 +12,7 @@
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/road_rules.hpp"
+#include "tiles/sources/road_values.hpp"
 
 namespace roadfix {
 namespace {
@@ -123,6 +124,22 @@ TEST(Imagery, WithAPaintedCollarGetsANoteUnlessTheUserNamedIt) {
   const std::string plain =
       write_raster(folder / "b.tif", spec, [](int, int col, int row) { return (col + row) % 250 + 3; });
   EXPECT_TRUE(open_imagery({plain}, {}, kZone, 2.0, detector)->summary().notes.empty());
+}
+
+TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](GDALDataType type, const testing::PixelFunction& value) {
+    const std::string path = write_raster(folder / "a.tif", {.type = type}, value);
+    return note_on_likely_roads(path, {});
+  };
+  const auto mask = [](int, int col, int) { return col < 31 ? 255.0 : 0.0; };
+  const auto share = [](int, int col, int) { return col / 64.0; };
+  const auto picture = [](int, int col, int row) { return (col + row) % 128; };
+  EXPECT_THAT(note(GDT_Byte, mask), ::testing::Optional(::testing::HasSubstr("0 and 255, as those of a mask")));
+  EXPECT_THAT(note(GDT_Float32, share), ::testing::Optional(::testing::HasSubstr("--as roads")));
+  EXPECT_EQ(note(GDT_Byte, picture), std::nullopt);
+  EXPECT_EQ(note(GDT_Float32, picture), std::nullopt);
+  EXPECT_EQ(note(GDT_Byte, [](int, int, int) { return 7.0; }), std::nullopt);
 }
 
 class RoadRaster : public ::testing::Test {

@@ -45,7 +45,7 @@ TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
     const std::string path = (folder / (identifier + ".gpkg")).string();
     const std::string option = "RASTER_IDENTIFIER=" + identifier;
     const std::array<const char*, 2> options{option.c_str(), nullptr};
-    DatasetPtr(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+    const DatasetPtr copy(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
         path.c_str(), picture.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
     const bool map = identifier == "road_probability";
     EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, map ? SourceKind::kRoadRaster : SourceKind::kImagery);

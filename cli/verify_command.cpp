@@ -34,6 +34,7 @@ void print_json(const std::string& path, const MapVerdict& verdict) {
                        {"tiles", verdict.tiles},
                        {"evidence_tiles", verdict.evidence},
                        {"unfinished_sources", unfinished},
+                       {"tiles_to_fuse", verdict.tiles_to_fuse},
                        {"problems", problems}};
   fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
 }
@@ -47,6 +48,10 @@ void print_text(const std::string& path, const MapVerdict& verdict) {
   for (const SourceStatus& source : verdict.unfinished) {
     fmt::print("source '{}' is not finished: {} of {} blocks. Repeat its ingest to go on\n", source.record.name,
                source.blocks_done, source.blocks_total);
+  }
+  if (verdict.tiles_to_fuse > 0) {
+    fmt::print("{} tiles do not show their newest evidence yet: a command was interrupted. Repeat it\n",
+               verdict.tiles_to_fuse);
   }
 }
 
@@ -85,7 +90,7 @@ void add_verify_command(CLI::App& app) {
   auto* command = app.add_subcommand("verify", "Checks that every tile of a map is whole and follows from its sources");
   command->footer(
       "Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line). Interrupted "
-      "ingests are named; they are no damage.");
+      "ingests and what they left to do are named; they are no damage.");
   const auto options = std::make_shared<Options>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");

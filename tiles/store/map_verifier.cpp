@@ -38,7 +38,7 @@ class Verifier {
     check_database();
     if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
     check_lattice();
-    check_pending();
+    verdict_.tiles_to_fuse = number("SELECT count(*) FROM roadfix_pending");
     check_ledger();
     check_ancillary();
     check_evidence();
@@ -99,12 +99,6 @@ class Verifier {
           "gpkg_tile_matrix_set and gpkg_tile_matrix are not those of the zone and cell size of the map. Restore the "
           "map from a copy");
     }
-  }
-
-  void check_pending() {
-    const std::int64_t pending = number("SELECT count(*) FROM roadfix_pending");
-    if (pending == 0) return;
-    report("fusion-pending", fmt::format("{} tiles wait to be fused: an ingest was interrupted. Repeat it", pending));
   }
 
   void check_ledger() {

@@ -21,7 +21,9 @@ struct MapVerdict {
   std::int64_t tiles = 0;     ///< fused tiles and overviews that were checked
   std::int64_t evidence = 0;  ///< tiles of evidence that were checked
   std::vector<MapProblem> problems;
-  std::vector<SourceStatus> unfinished;  ///< interrupted ingests: no damage, but ground may be missing
+  // No damage, but of interrupted commands: ground may be missing, or not show its newest evidence yet.
+  std::vector<SourceStatus> unfinished;
+  std::int64_t tiles_to_fuse = 0;
 };
 
 /// Reads everything: the database structure, the tile lattice, every tile of evidence, every fused tile against the

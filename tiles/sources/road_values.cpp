@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "core/units/error.hpp"
 
@@ -34,6 +35,25 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Val
         path, sampled.high, range.high, 100.0 * sampled.high / range.high, sampled.high, range.high));
   }
   return notes;
+}
+
+std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options) {
+  RasterFile file(path, options);
+  if (file.channels() != 3) return std::nullopt;
+  const std::vector<float> values = file.sample_values();
+  if (values.empty()) return std::nullopt;
+  const float most = *std::ranges::max_element(values);
+  std::size_t coloured = 0;
+  for (std::size_t i = 0; i < values.size(); i += 3) {
+    const auto [least, largest] = std::ranges::minmax(std::span(values).subspan(i, 3));
+    coloured += largest - least > 0.05F * most ? 1 : 0;
+  }
+  if (10 * coloured < values.size() / 3) return std::nullopt;
+  return fmt::format(
+      "{}: it is in colour, and its brightness is taken for the probability of road. If it shows the ground rather "
+      "than "
+      "roads, ingest it without --as roads (and --replace this source)",
+      path);
 }
 
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {

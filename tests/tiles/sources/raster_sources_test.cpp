@@ -142,6 +142,18 @@ TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
   EXPECT_EQ(note(GDT_Byte, [](int, int, int) { return 7.0; }), std::nullopt);
 }
 
+TEST(RoadRasterNote, IsGivenForPicturesInColourAndNotForDrawingsInGrey) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](int bands, const testing::PixelFunction& value) {
+    return note_on_likely_picture(write_raster(folder / "a.tif", {.bands = bands}, value), {});
+  };
+  const auto ground = [](int band, int col, int row) { return 60 + (col + row) % 64 + 30 * band; };
+  const auto drawing = [](int, int col, int) { return col < 31 ? 255.0 : 0.0; };
+  EXPECT_THAT(note(3, ground), ::testing::Optional(::testing::HasSubstr("without --as roads")));
+  EXPECT_EQ(note(3, drawing), std::nullopt);
+  EXPECT_EQ(note(1, ground), std::nullopt);
+}
+
 class RoadRaster : public ::testing::Test {
  protected:
   CellArray cells(GDALDataType type, double road) {

@@ -16,6 +16,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::int64_t kSupportForConvergence = 3;
+constexpr std::int64_t kMostSupport = 5;  // three rejections in a row take a claim back
 const double kEvidenceForConvergence = std::log(100.0);
 // So that a track that has long been right does not go on for long when it is not any more.
 const double kMostEvidence = 2.0 * kEvidenceForConvergence;
@@ -194,6 +195,7 @@ class Tracker::Step {
                             : accepted         ? Measurement::kAccepted
                                                : Measurement::kRejected;
     if (accepted) accept();
+    if (estimate_.measurement == Measurement::kRejected) reject();
     if (correction.usable) weigh_belief(std::log(correction.mean_likelihood));
   }
 
@@ -223,8 +225,14 @@ class Tracker::Step {
   }
 
   void accept() {
-    ++state_.supported;
+    state_.supported = std::min(state_.supported + 1, kMostSupport);
     state_.accepted_time_us = input_.time_us;
+  }
+
+  /// A claim that is taken back waits for a search.
+  void reject() {
+    state_.supported = std::max<std::int64_t>(0, std::min(state_.supported, kMostSupport) - 1);
+    if (state_.supported < kSupportForConvergence) state_.compared = false;
   }
 
   /// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it

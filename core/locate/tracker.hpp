@@ -82,7 +82,7 @@ struct TrackerState {
   std::int64_t time_us = 0;
   std::int64_t measured = 0;     ///< feature maps so far
   std::int64_t last_search = 0;  ///< `measured` at the last search
-  std::int64_t supported = 0;    ///< accepted measurements since the belief began
+  std::int64_t supported = 0;    ///< of the last measurements: up by one when accepted, down when rejected
   /// Log of the odds that the measurements gave the belief against chance, since they last spoke against it.
   double evidence = 0.0;
   std::optional<std::int64_t> accepted_time_us;

@@ -116,6 +116,27 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
   EXPECT_LT(recovered, 40);
 }
 
+TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
+  // It drifts away faster than the odometry says.
+  for (const double slip_m : {15.0, 25.0}) {
+    const Tracker tracker(view_, settings());
+    Flight flight(map_, start_, 5);
+    state_ = {};
+    ASSERT_TRUE(fly(tracker, flight, 12).converged);
+    int rejected = 0;
+    for (int i = 0; i < 12; ++i) {
+      StepInput step = flight.step();
+      GridPose off = flight.pose();
+      off.position.east_m += slip_m * (i + 1);
+      std::mt19937_64 random(static_cast<std::uint64_t>(i));
+      step.features = testing::observed_at(map_, off, 128, 128, 2.0, {0.3, 0.3}, random);
+      const TrackEstimate estimate = advance(tracker, step);
+      rejected = estimate.measurement == Measurement::kRejected ? rejected + 1 : 0;
+      EXPECT_FALSE(estimate.converged && rejected >= 3) << slip_m << " m a step, step " << i;
+    }
+  }
+}
+
 TEST_F(Track, IsFoundByItsLastFramesTogetherWhereEachShowsTooLittle) {
   TrackSettings few = settings();
   few.filter.max_particles = 800;  // too few to find the place without a search

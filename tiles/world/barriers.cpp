@@ -22,7 +22,7 @@ struct Course {
 Polyline across(const Plan& plan, const Course& course, Random& random) {
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
   const PlanPoint along(std::cos(angle), std::sin(angle));
-  const PlanPoint side(-along.y, along.x);
+  const PlanPoint side = perpendicular(along);
   const PlanPoint through(plan.width_m * random.uniform(0.15, 0.85), plan.height_m * random.uniform(0.15, 0.85));
   const double reach = std::hypot(plan.width_m, plan.height_m);
   const double phase = random.uniform(0.0, 6.3);
@@ -69,9 +69,9 @@ void end_tracks_before(Plan& plan, const Corridor& barrier) {
 
 void dig_ponds(Plan& plan, Random& random) {
   Corridor roads(plan);
-  for (const Street& street : plan.streets) roads.add(street.line, street.width_m + 8.0);
+  roads.add(plan.streets, 8.0);
   roads.add(plan.country.railway, 16.0);
-  const int count = static_cast<int>(plan.width_m * plan.height_m / 1e6 * random.uniform(0.0, 6.0) + random.unit());
+  const int count = static_cast<int>(plan.square_km() * random.uniform(0.0, 6.0) + random.unit());
   for (int i = 0; i < count; ++i) {
     const PlanPoint at(random.uniform(0.0, plan.width_m), random.uniform(0.0, plan.height_m));
     Polyline pond = blob(at, random.uniform(6.0, 38.0), random);
@@ -85,7 +85,7 @@ void dig_ponds(Plan& plan, Random& random) {
 
 void lay_barriers(Plan& plan, Random& random) {
   Corridor roads(plan);
-  for (const Street& street : plan.streets) roads.add(street.line, street.width_m + 6.0);
+  roads.add(plan.streets, 6.0);
   Corridor barrier(plan);
   if (random.chance(0.4)) {
     plan.country.railway = clear_of(roads, plan, {0.0, random.uniform(0.0, 22.0)}, random);

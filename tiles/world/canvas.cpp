@@ -66,7 +66,7 @@ void Canvas::stroke(const Polyline& line, double width_m, const Colour& colour, 
     const PlanPoint b = line[i + 1];
     if (!sees((a + b) / 2.0, cv::norm(b - a) / 2.0 + width_m)) continue;
     const PlanPoint along = direction(line, i);
-    const PlanPoint side = PlanPoint(-along.y, along.x) * half;
+    const PlanPoint side = perpendicular(along) * half;
     fill({a + side, b + side, b - side, a - side}, colour, material);
     if (width_m > 2.0 * gsd_m_) {
       disc(a, half, colour, material, 0.0);

@@ -36,6 +36,10 @@ void Corridor::add(const Polyline& line, double width_m) {
   cv::polylines(cells_, std::vector{cells_of(line)}, false, 255, width, cv::LINE_8, kFraction);
 }
 
+void Corridor::add(const std::vector<Street>& streets, double wider_m) {
+  for (const Street& street : streets) add(street.line, street.width_m + wider_m);
+}
+
 void Corridor::add_area(const Polyline& outline) {
   cv::fillPoly(cells_, std::vector{cells_of(outline)}, 255, cv::LINE_8, kFraction);
 }

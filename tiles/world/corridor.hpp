@@ -15,6 +15,8 @@ class Corridor {
   explicit Corridor(const Plan& plan);
 
   void add(const Polyline& line, double width_m);
+  /// Each by so much more than its width.
+  void add(const std::vector<Street>& streets, double wider_m);
   void add_area(const Polyline& outline);
 
   /// False outside the raster.

@@ -15,7 +15,7 @@ namespace {
 /// Trees near streets lean towards the light and fall that way.
 void fell_trees(Plan& plan, double share, Random& random) {
   Corridor streets(plan);
-  for (const Street& street : plan.streets) streets.add(street.line, street.width_m);
+  streets.add(plan.streets, 0.0);
   const cv::Mat1f to_street = streets.distances();
   std::vector<Tree> standing;
   for (const Tree& tree : plan.trees) {
@@ -53,9 +53,8 @@ Plan after_earthquake_in_country(const Plan& before, double collapsed_share, Ran
   Plan after = before;
   collapse(after, collapsed_share, random);
   fell_trees(after, random.uniform(0.3, 1.0) * (0.01 + 0.25 * collapsed_share), random);
-  const double square_km = after.width_m * after.height_m / 1e6;
   const int slides =
-      static_cast<int>(std::lround(square_km * (2.0 + 40.0 * collapsed_share) * random.uniform(0.3, 1.0)));
+      static_cast<int>(std::lround(after.square_km() * (2.0 + 40.0 * collapsed_share) * random.uniform(0.3, 1.0)));
   for (int i = 0; i < slides && !after.streets.empty(); ++i) slide(after, random);
   after.boxes = country_traffic(after, random);
   return after;

@@ -88,10 +88,10 @@ class Surveyor {
       return;
     }
     PlanPoint along = longest_side(polygon);
-    const PlanPoint across(-along.y, along.x);
+    const PlanPoint across = perpendicular(along);
     if (extent_along(polygon, across) > extent_along(polygon, along)) along = across;
     const double skew = random_.normal() * 0.16;
-    const PlanPoint normal(-along.y, along.x);
+    const PlanPoint normal = perpendicular(along);
     const double shift = extent_along(polygon, along) * random_.uniform(-0.22, 0.22);
     const Cut halves =
         cut(polygon, middle_of(polygon) + along * shift, normal * std::cos(skew) + along * std::sin(skew));

@@ -115,7 +115,7 @@ class Builder {
     const double length = cv::norm(to - from);
     if (length < habit.front_min) return;
     const PlanPoint along = (to - from) / length;
-    PlanPoint inward(-along.y, along.x);
+    PlanPoint inward = perpendicular(along);
     if (site_.block_at((from + to) / 2.0 + inward * 2.5) != number) inward = -inward;
     for (double t = offset * 0.5; t < length;) {
       const double front = random_.uniform(habit.front_min, habit.front_max);

@@ -16,7 +16,7 @@ constexpr double kPerSquareKm = 16.0;
 class Settler {
  public:
   Settler(Plan& plan, Random& random) : plan_(plan), random_(random), taken_(plan) {
-    for (const Street& street : plan.streets) taken_.add(street.line, street.width_m + 3.0);
+    taken_.add(plan.streets, 3.0);
     taken_.add(plan.country.railway, 14.0);
     taken_.add(plan.river, plan.river_width_m * 1.5 + 4.0);
     for (const Polyline& pond : plan.country.ponds) taken_.add_area(pond);
@@ -26,7 +26,7 @@ class Settler {
     const Street& street = plan_.streets[random_.index(plan_.streets.size())];
     const std::size_t i = random_.index(street.line.size() - 1);
     const PlanPoint along = direction(street.line, i);
-    const PlanPoint side = PlanPoint(-along.y, along.x) * (random_.chance(0.5) ? 1.0 : -1.0);
+    const PlanPoint side = perpendicular(along) * (random_.chance(0.5) ? 1.0 : -1.0);
     const PlanPoint gate = street.line[i];
     const Footprint yard{gate + side * random_.uniform(24.0, 55.0),
                          std::atan2(along.y, along.x) + 0.15 * random_.normal(), random_.uniform(22.0, 46.0),
@@ -88,7 +88,7 @@ class Settler {
 
 void lay_bales(std::vector<Box>& boxes, const Parcel& parcel, Random& random) {
   const PlanPoint along(std::cos(parcel.row_angle_rad), std::sin(parcel.row_angle_rad));
-  const PlanPoint side(-along.y, along.x);
+  const PlanPoint side = perpendicular(along);
   const PlanPoint middle = middle_of(parcel.outline);
   const Colour colour = random.chance(0.5) ? Colour(206, 190, 148) : Colour(214, 218, 208);
   const double spacing = random.uniform(16.0, 30.0);
@@ -107,8 +107,7 @@ void lay_bales(std::vector<Box>& boxes, const Parcel& parcel, Random& random) {
 void settle(Plan& plan, Random& random) {
   if (plan.streets.empty()) return;
   Settler settler(plan, random);
-  const double square_km = plan.width_m * plan.height_m / 1e6;
-  const int count = static_cast<int>(std::lround(square_km * kPerSquareKm * random.uniform(0.3, 2.0)));
+  const int count = static_cast<int>(std::lround(plan.square_km() * kPerSquareKm * random.uniform(0.3, 2.0)));
   for (int i = 0; i < count; ++i) settler.add_farm();
 }
 
@@ -126,7 +125,7 @@ std::vector<Box> country_traffic(const Plan& plan, Random& random) {
     const double busy = paved ? 0.08 : 0.015;
     walk(street.line, random.uniform(2.0, 12.0), 12.0, [&](PlanPoint p, PlanPoint along) {
       const double lane = paved ? street.width_m * (random.chance(0.5) ? 0.23 : -0.23) : 0.0;
-      if (random.chance(busy)) put(p + PlanPoint(-along.y, along.x) * lane, std::atan2(along.y, along.x));
+      if (random.chance(busy)) put(p + perpendicular(along) * lane, std::atan2(along.y, along.x));
     });
   }
   for (const Block& yard : plan.blocks) {

@@ -75,7 +75,7 @@ class Gardener {
     for (const double side : {-1.0, 1.0}) {
       if (random_.chance(0.25)) continue;
       walk(street.line, spacing / 2.0, spacing, [&](PlanPoint p, PlanPoint along) {
-        const PlanPoint beside = p + PlanPoint(-along.y, along.x) * (side * (street.width_m / 2.0 + 1.6));
+        const PlanPoint beside = p + perpendicular(along) * (side * (street.width_m / 2.0 + 1.6));
         if (random_.chance(0.72) && !on_street(beside, street)) tree(beside, random_.uniform(1.3, 2.5));
       });
     }
@@ -122,8 +122,7 @@ void plant(Plan& plan, const Site& site, Random& random) {
 std::vector<Box> traffic(const Plan& plan, Random& random) {
   std::vector<Box> cars;
   const auto put = [&](PlanPoint p, PlanPoint along, double across, bool bus) {
-    const Footprint footprint{p + PlanPoint(-along.y, along.x) * across,
-                              std::atan2(along.y, along.x) + 0.04 * random.normal(),
+    const Footprint footprint{p + perpendicular(along) * across, std::atan2(along.y, along.x) + 0.04 * random.normal(),
                               bus ? 11.5 : random.uniform(3.9, 4.9), bus ? 2.6 : 1.85};
     cars.push_back({footprint, bus ? 3.0 : 1.5, palette::car(random)});
   };

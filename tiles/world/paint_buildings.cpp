@@ -109,7 +109,7 @@ class BuildingPainter {
     const std::array<PlanPoint, 2> top{f.at(-ridge, 0.0) + lift, f.at(ridge, 0.0) + lift};
     const Polyline c = f.corners(0.3);
     const PlanPoint along(std::cos(f.angle_rad), std::sin(f.angle_rad));
-    const PlanPoint across(-along.y, along.x);
+    const PlanPoint across = perpendicular(along);
     const auto face = [&](const Polyline& polygon, PlanPoint uphill) {
       const Colour colour = dusty(building_.roof_colour) * lit(uphill, kRoofSlope, conditions_);
       canvas_.fill(polygon, colour, Material::kRoof, building_.height_m + rise * 0.5);
@@ -125,7 +125,7 @@ class BuildingPainter {
     const Colour colour = dusty(building_.roof_colour);
     const double slope = 0.15;
     const PlanPoint along(std::cos(roof_.angle_rad), std::sin(roof_.angle_rad));
-    const PlanPoint across(-along.y, along.x);
+    const PlanPoint across = perpendicular(along);
     for (const double side : {-1.0, 1.0}) {
       const Footprint half{roof_.at(0.0, side * roof_.width_m / 4.0), roof_.angle_rad, roof_.length_m,
                            roof_.width_m / 2.0};

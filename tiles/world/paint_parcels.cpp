@@ -41,7 +41,7 @@ class ParcelPainter {
         soil_(plan.country.soil),
         random_(parcel.seed, 41),
         along_(std::cos(parcel.row_angle_rad), std::sin(parcel.row_angle_rad)),
-        side_(-along_.y, along_.x),
+        side_(perpendicular(along_)),
         colour_(parcel.summer * (1.0 - winter) + parcel.winter * winter) {}
 
   void paint() {
@@ -124,7 +124,7 @@ class ParcelPainter {
     Polyline trail;
     const double reach = 0.3 * std::min(box.width, box.height);
     for (double t = -reach; t < reach; t += 4.0) {
-      trail.push_back(middle + heading * t + PlanPoint(-heading.y, heading.x) * (4.0 * std::sin(t / 13.0)));
+      trail.push_back(middle + heading * t + perpendicular(heading) * (4.0 * std::sin(t / 13.0)));
     }
     if (trail.size() > 1) canvas_.stroke(trail, 0.5, colour_ * 0.5 + soil_ * 0.52, Material::kBare);
   }

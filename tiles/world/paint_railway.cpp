@@ -8,11 +8,10 @@ namespace {
 
 constexpr double kGaugeM = 1.435;
 
-Polyline beside(const Polyline& line, double off_m) {
+Polyline moved_aside(const Polyline& line, double off_m) {
   Polyline result;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const PlanPoint along = direction(line, i);
-    result.push_back(line[i] + PlanPoint(-along.y, along.x) * off_m);
+    result.push_back(beside(line, i, off_m));
   }
   return result;
 }
@@ -31,12 +30,12 @@ void paint_railway(Canvas& canvas, const Countryside& country, const Conditions&
   const Colour sleeper = ballast * (random.chance(0.5) ? 0.78 : 1.12);
   canvas.stroke(country.railway, 2.4, ballast * 0.5 + sleeper * 0.5, Material::kBare);
   walk(country.railway, 0.0, 1.8, [&](PlanPoint p, PlanPoint along) {
-    const PlanPoint half = PlanPoint(-along.y, along.x) * 1.2;
+    const PlanPoint half = perpendicular(along) * 1.2;
     if (canvas.sees(p, 2.0)) canvas.stroke({p - half, p + half}, 0.5, sleeper, Material::kBare);
   });
   const Colour rail = Colour(112, 100, 92) * (1.0 - 0.4 * conditions.dust) * (random.chance(0.5) ? 0.7 : 1.45);
   for (const double side : {-1.0, 1.0}) {
-    canvas.stroke(beside(country.railway, side * kGaugeM / 2.0), 0.22, rail, Material::kSmooth);
+    canvas.stroke(moved_aside(country.railway, side * kGaugeM / 2.0), 0.22, rail, Material::kSmooth);
   }
 }
 

@@ -34,7 +34,7 @@ void paint_middle(Canvas& canvas, const Street& street, const Colour& marking) {
 
 /// Bars of a pedestrian crossing, across the street a few metres before its end.
 void paint_crossing(Canvas& canvas, const Street& street, PlanPoint end, PlanPoint inward, const Colour& marking) {
-  const PlanPoint across(-inward.y, inward.x);
+  const PlanPoint across = perpendicular(inward);
   const PlanPoint middle = end + inward * 13.0;
   if (!canvas.sees(middle, street.width_m)) return;
   for (double v = -street.width_m / 2.0 + 0.8; v < street.width_m / 2.0 - 0.5; v += 1.3) {

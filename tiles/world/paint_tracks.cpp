@@ -94,17 +94,12 @@ class TrackPainter {
       drift = 0.7 * drift + 0.7 * random_.uniform(-1.0, 1.0);
       const double tone = 1.0 + 0.07 * std::clamp(drift, -1.5, 1.5);
       const double wide = width * (1.0 + variation * std::clamp(drift + random_.uniform(-0.5, 0.5), -1.0, 1.0));
-      const PlanPoint from = beside(i, off);
-      const PlanPoint to = beside(i + 1, off);
+      const PlanPoint from = beside(street_.line, i, off);
+      const PlanPoint to = beside(street_.line, i + 1, off);
       if (canvas_.sees((from + to) / 2.0, 10.0 + width)) {
         canvas_.stroke({from, to}, wide, colour * tone, Material::kBare);
       }
     }
-  }
-
-  PlanPoint beside(std::size_t i, double off) const {
-    const PlanPoint along = direction(street_.line, std::min(i, street_.line.size() - 2));
-    return street_.line[i] + PlanPoint(-along.y, along.x) * off;
   }
 
   Canvas& canvas_;

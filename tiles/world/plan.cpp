@@ -1,5 +1,6 @@
 #include "tiles/world/plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadfix::world {
@@ -28,6 +29,10 @@ PlanPoint direction(const Polyline& line, std::size_t index) {
   const PlanPoint step = line[index + 1] - line[index];
   const double length = cv::norm(step);
   return length > 0.0 ? step / length : PlanPoint(1.0, 0.0);
+}
+
+PlanPoint beside(const Polyline& line, std::size_t index, double off_m) {
+  return line[index] + perpendicular(direction(line, std::min(index, line.size() - 2))) * off_m;
 }
 
 void walk(const Polyline& line, double start_m, double step_m, const std::function<void(PlanPoint, PlanPoint)>& visit) {

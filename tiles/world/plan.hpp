@@ -151,11 +151,17 @@ struct Plan {
   std::vector<Box> boxes;
   std::vector<Debris> debris;
   Countryside country;
+
+  double square_km() const { return width_m * height_m / 1e6; }
 };
+
+inline PlanPoint perpendicular(PlanPoint along) { return {-along.y, along.x}; }
 
 double length_m(const Polyline& line);
 /// Direction of the segment that starts at `index`, as a unit vector.
 PlanPoint direction(const Polyline& line, std::size_t index);
+/// The point of that index, moved to the side.
+PlanPoint beside(const Polyline& line, std::size_t index, double off_m);
 
 /// Calls visit(point, unit direction) every `step_m` along the line, starting at `start_m`.
 void walk(const Polyline& line, double start_m, double step_m, const std::function<void(PlanPoint, PlanPoint)>& visit);

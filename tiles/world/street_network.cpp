@@ -80,10 +80,10 @@ class Layout {
     const double target = target_area(middle_of(polygon)) * random_.uniform(0.6, 1.7);
     if (area < target) return;
     PlanPoint along = longest_side(polygon);
-    const PlanPoint across(-along.y, along.x);
+    const PlanPoint across = perpendicular(along);
     if (extent_along(polygon, across) > extent_along(polygon, along)) along = across;
     const double skew = random_.normal() * 0.09;
-    const PlanPoint normal(-along.y, along.x);
+    const PlanPoint normal = perpendicular(along);
     const PlanPoint street = normal * std::cos(skew) + along * std::sin(skew);
     const double shift = extent_along(polygon, along) * random_.uniform(-0.17, 0.17);
     const Cut halves = cut(polygon, middle_of(polygon) + along * shift, street);
@@ -138,10 +138,10 @@ class Layout {
     const double angle = random_.uniform(0.0, kTau);
     const PlanPoint along(std::cos(angle), std::sin(angle));
     const double reach = std::hypot(plan_.width_m, plan_.height_m);
-    const PlanPoint through = center_ + PlanPoint(-along.y, along.x) * (reach * 0.2);
+    const PlanPoint through = center_ + perpendicular(along) * (reach * 0.2);
     for (double t = -reach; t <= reach; t += kPointEveryM) {
       const double meander = 30.0 * std::sin(t / 140.0) + 45.0 * std::sin(t / 333.0 + 1.0);
-      plan_.river.push_back(bend_(through + along * t + PlanPoint(-along.y, along.x) * meander));
+      plan_.river.push_back(bend_(through + along * t + perpendicular(along) * meander));
     }
   }
 

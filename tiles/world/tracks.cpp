@@ -36,7 +36,7 @@ std::optional<PlanPoint> nearest(const std::vector<Street>& streets, PlanPoint p
 class Wanderer {
  public:
   Wanderer(Plan& plan, Random& random) : plan_(plan), random_(random), streets_(plan), barriers_(plan) {
-    for (const Street& street : plan.streets) streets_.add(street.line, street.width_m + 4.0);
+    streets_.add(plan.streets, 4.0);
     barriers_.add(plan.country.railway, 9.0);
     barriers_.add(plan.river, plan.river_width_m * 1.3 + 2.0);
     for (const Polyline& pond : plan.country.ponds) barriers_.add_area(pond);
@@ -107,8 +107,7 @@ Street unpaved(Random& random) {
 void wander(Plan& plan, Random& random) {
   if (plan.streets.empty()) return;
   Wanderer wanderer(plan, random);
-  const double square_km = plan.width_m * plan.height_m / 1e6;
-  const int count = static_cast<int>(std::lround(square_km * kPerSquareKm * random.uniform(0.5, 1.5)));
+  const int count = static_cast<int>(std::lround(plan.square_km() * kPerSquareKm * random.uniform(0.5, 1.5)));
   for (int i = 0; i < count; ++i) wanderer.add_track();
 }
 

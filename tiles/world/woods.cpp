@@ -37,7 +37,7 @@ class Forester {
         phase_{random.uniform(0.0, 6.3), random.uniform(0.0, 6.3)},
         closeness_(random.uniform(-0.8, 1.7)) {
     Corridor streets(plan);
-    for (const Street& street : plan.streets) streets.add(street.line, street.width_m);
+    streets.add(plan.streets, 0.0);
     to_street_ = streets.distances();
     blocked_.add(plan.country.railway, 10.0);
     blocked_.add(plan.river, plan.river_width_m * 1.1);
@@ -73,7 +73,7 @@ class Forester {
     const double trees = random_.chance(0.5) ? random_.uniform(0.02, 0.5) : 0.0;
     const double gaps = random_.uniform(0.0, 0.3);
     walk(line, 0.0, stand.radius_m * 1.3, [&](PlanPoint p, PlanPoint along) {
-      const PlanPoint at = p + PlanPoint(-along.y, along.x) * (0.4 * random_.normal());
+      const PlanPoint at = p + perpendicular(along) * (0.4 * random_.normal());
       if (!random_.chance(gaps)) tree(random_.chance(trees) ? tall : stand, at);
     });
   }
@@ -82,7 +82,7 @@ class Forester {
     const Stand stand = any_stand();
     walk(line, random_.uniform(0.0, spacing_m), spacing_m, [&](PlanPoint p, PlanPoint along) {
       for (const double side : {-1.0, 1.0}) {
-        const PlanPoint beside = p + PlanPoint(-along.y, along.x) * (side * (off_m + std::abs(random_.normal())));
+        const PlanPoint beside = p + perpendicular(along) * (side * (off_m + std::abs(random_.normal())));
         if (random_.chance(share)) tree(stand, beside);
       }
     });
@@ -162,7 +162,7 @@ class Forester {
   template <typename Visit>
   void rows(const Parcel& parcel, double angle, double spacing, double jitter, const Visit& visit) {
     const PlanPoint along(std::cos(angle), std::sin(angle));
-    const PlanPoint side(-along.y, along.x);
+    const PlanPoint side = perpendicular(along);
     const PlanPoint middle = middle_of(parcel.outline);
     const double reach = std::hypot(box_of(parcel.outline).width, box_of(parcel.outline).height);
     for (double across = -reach; across < reach; across += spacing) {

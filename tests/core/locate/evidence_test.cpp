@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/match_sums.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -14,14 +15,7 @@ namespace {
 /// Sums over binary cells, road in the map where `m`, in the feature map where `l`.
 MatchSums sums_of(const std::vector<bool>& m, const std::vector<bool>& l) {
   MatchSums s;
-  for (std::size_t i = 0; i < m.size(); ++i) {
-    ++s.n;
-    s.m += m[i];
-    s.l += l[i];
-    s.mm += m[i];
-    s.ll += l[i];
-    s.ml += m[i] && l[i];
-  }
+  for (std::size_t i = 0; i < m.size(); ++i) testing::add_cell(s, m[i] ? 1.0 : 0.0, l[i] ? 1.0 : 0.0);
   return s;
 }
 

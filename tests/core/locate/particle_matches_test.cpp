@@ -8,6 +8,7 @@
 #include "core/grid/resample.hpp"
 #include "tests/support/flight.hpp"
 #include "tests/support/map_view.hpp"
+#include "tests/support/match_sums.hpp"
 
 namespace roadfix {
 namespace {
@@ -36,14 +37,7 @@ TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
     for (int r = 0; r < 90; ++r) {
       for (int c = 0; c < 100; ++c) {
         if (!is_observed(below.cells.at(c, r))) continue;
-        const double m = probability(below.cells.at(c, r));
-        const double l = probability(features.cells.at(c, r));
-        ++exact.n;
-        exact.m += m;
-        exact.l += l;
-        exact.mm += m * m;
-        exact.ll += l * l;
-        exact.ml += m * l;
+        testing::add_cell(exact, probability(below.cells.at(c, r)), probability(features.cells.at(c, r)));
       }
     }
     difference += std::abs(*rho(sums[i]) - *rho(exact)) / 299.0;

@@ -5,19 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/match_sums.hpp"
+
 namespace roadfix {
 namespace {
 
 MatchSums sums_of(const std::vector<double>& m, const std::vector<double>& l) {
   MatchSums s;
-  s.n = static_cast<std::int64_t>(m.size());
-  for (std::size_t i = 0; i < m.size(); ++i) {
-    s.m += m[i];
-    s.l += l[i];
-    s.mm += m[i] * m[i];
-    s.ll += l[i] * l[i];
-    s.ml += m[i] * l[i];
-  }
+  for (std::size_t i = 0; i < m.size(); ++i) testing::add_cell(s, m[i], l[i]);
   return s;
 }
 

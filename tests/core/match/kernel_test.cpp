@@ -8,6 +8,7 @@
 #include "core/grid/resample.hpp"
 #include "core/match/kernel_vnni.hpp"
 #include "tests/support/ascii_map.hpp"
+#include "tests/support/match_sums.hpp"
 #include "tests/support/random_cells.hpp"
 
 namespace roadfix {
@@ -25,12 +26,7 @@ MatchSums scalar_sums(const CellArray& map, const FeatureMap& north_up, PlaneCel
       const Cell m = map.get(place.col + c - nadir_col, place.row + r - nadir_row);
       const Cell l = north_up.cells.at(c, r);
       if (!is_observed(m) || !is_observed(l)) continue;
-      ++s.n;
-      s.m += probability(m);
-      s.l += probability(l);
-      s.mm += probability(m) * probability(m);
-      s.ll += probability(l) * probability(l);
-      s.ml += probability(m) * probability(l);
+      testing::add_cell(s, probability(m), probability(l));
     }
   }
   return s;

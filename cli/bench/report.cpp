@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bench/honesty.hpp"
+#include "core/locate/calibration.hpp"
 #include "server/api/fix_json.hpp"
 
 namespace roadfix::bench {
@@ -23,11 +24,9 @@ json number_or_null(const std::optional<double>& value) {
 
 json evidence_json(const std::optional<SearchEvidence>& evidence) {
   if (!evidence) return nullptr;
-  return {{"surprise", evidence->surprise},
-          {"lead", evidence->lead},
-          {"gap", evidence->gap},
-          {"agreement", evidence->agreement},
-          {"ground", evidence->ground}};
+  json figures{{"agreement", evidence->agreement}};
+  for (const CountedFigure& figure : kCountedFigures) figures[figure.name] = (*evidence).*figure.value;
+  return figures;
 }
 
 json outcome_json(const Outcome& outcome) {

@@ -51,8 +51,7 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
   if (10 * coloured < values.size() / 3) return std::nullopt;
   return fmt::format(
       "{}: it is in colour, and its brightness is taken for the probability of road. If it shows the ground rather "
-      "than "
-      "roads, ingest it without --as roads (and --replace this source)",
+      "than roads, ingest it without --as roads (and --replace this source)",
       path);
 }
 
@@ -67,8 +66,7 @@ std::optional<std::string> note_on_likely_roads(const std::string& path, const R
   const bool probabilities = !file.holds_integers() && least < most && least >= 0.0F && most <= 1.0F;
   if (!mask && !probabilities) return std::nullopt;
   return fmt::format(
-      "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, give "
-      "--as roads",
+      "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, give --as roads",
       path, least, mask ? "and" : "to", most, mask ? "a mask of roads are" : "probabilities are");
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "core/grid/sampling.hpp"
 #include "core/grid/turnable_map.hpp"
@@ -77,6 +79,17 @@ FeatureMap resampled(const FeatureMap& map, double cell_m) {
 }
 
 FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }
+
+FeatureMap quarter_turned(const FeatureMap& map) {
+  const std::span<const Cell> cells = map.cells.cells();
+  const auto stride = static_cast<std::size_t>(map.cells.cols());
+  CellArray turned(map.cells.rows(), map.cells.cols());
+  for (int row = 0; row < turned.rows(); ++row) {
+    std::size_t behind = cells.size() + static_cast<std::size_t>(row);
+    for (Cell& cell : turned.row(row)) cell = cells[behind -= stride];
+  }
+  return {std::move(turned), map.cell_m, {map.cells.rows() - map.nadir.row, map.nadir.col}};
+}
 
 FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m) {
   assert(cols > 0 && rows > 0 && cell_m > 0.0);

@@ -20,6 +20,10 @@ FeatureMap resampled(const FeatureMap& map, double cell_m);
 /// The result is just large enough; corners that the map did not see are unobserved; nadir lies on a cell centre.
 FeatureMap rotated(const FeatureMap& map, Angle heading);
 
+/// Turned clockwise by a quarter, without rounding: rotated() by 90 degrees more, where the nadir lies on a cell
+/// centre.
+FeatureMap quarter_turned(const FeatureMap& map);
+
 /// The part of `grid` under a footprint of cols x rows cells centred on the pose, in the body frame
 /// (inverse of placing a feature map at that pose). Cells beyond the grid are unobserved.
 FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m);

@@ -1,9 +1,12 @@
 #include "core/locate/binned_matches.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <utility>
 
+#include "core/grid/resample.hpp"
+#include "core/grid/turnable_map.hpp"
 #include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
@@ -29,16 +32,18 @@ std::vector<BinnedPose> by_key(std::span<const BinnedPose> poses, std::size_t ke
   return result;
 }
 
-/// Block by block, and within a block heading by heading.
+/// Block by block, within a block heading by heading, and those a quarter turn apart behind each other.
 std::vector<BinnedPose> in_order(std::span<const BinnedPose> poses, const HeadingBins& bins) {
+  const int quarter = bins.count() / 4;
   std::vector<std::pair<int, int>> blocks;
   for (const BinnedPose& pose : poses) {
     if (blocks.empty() || block_of(pose) != blocks.back()) blocks.push_back(block_of(pose));
   }
   std::ranges::sort(blocks);
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  auto sorted = by_key(poses, static_cast<std::size_t>(bins.count()),
-                       [](const BinnedPose& pose) { return static_cast<std::size_t>(pose.bin); });
+  auto sorted = by_key(poses, static_cast<std::size_t>(bins.count()), [&](const BinnedPose& pose) {
+    return static_cast<std::size_t>(pose.bin % quarter * 4 + pose.bin / quarter);
+  });
   if (blocks.size() < 2) return sorted;
   return by_key(sorted, blocks.size(), [&](const BinnedPose& pose) {
     return static_cast<std::size_t>(std::ranges::lower_bound(blocks, block_of(pose)) - blocks.begin());
@@ -71,11 +76,23 @@ GridGeometry around(std::span<const BinnedPose> poses, double cell_m, int reach)
           high.row - low.row + 1 + 2 * reach};
 }
 
+/// All at one heading. `origin` is the plane's first cell.
+void match_at_heading(const MapPlane& plane, LatticeIndex origin, const Footprint& footprint,
+                      std::span<const BinnedPose> poses, std::span<MatchSums> sums) {
+  std::vector<PlaneCell> places;
+  for (const BinnedPose& pose : poses) places.push_back({pose.cell.col - origin.col, pose.cell.row - origin.row});
+  std::vector<MatchSums> found(places.size());
+  match_sums(plane, footprint, places, found);
+  for (std::size_t k = 0; k < poses.size(); ++k) sums[poses[k].index] = found[k];
+}
+
 }  // namespace
 
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
                   std::span<const BinnedPose> poses, int threads, const std::stop_token& stop,
                   std::span<MatchSums> sums) {
+  assert(bins.count() % 4 == 0);
+  const int quarter = bins.count() / 4;
   const int reach = footprint_reach(features);
   const TurnableMap turnable(features);
   const Deadline deadline(stop, {});
@@ -83,18 +100,16 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
   for (const auto block : runs(sorted, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
     const GridGeometry window = around(block, features.cell_m, reach);
     const MapPlane plane(map.read(window).cells, 0);
-    const auto by_bin = runs(block, [](const auto& a, const auto& b) { return a.bin == b.bin; });
-    parallel_for(static_cast<int>(by_bin.size()), threads, [&](int task) {
-      deadline.check();
-      const auto members = by_bin[static_cast<std::size_t>(task)];
-      const Footprint footprint = footprint_at(turnable, bins.heading(members.front().bin));
-      std::vector<PlaneCell> places;
-      for (const BinnedPose& pose : members) {
-        places.push_back({pose.cell.col - window.origin.col, pose.cell.row - window.origin.row});
+    const auto families = runs(block, [&](const auto& a, const auto& b) { return a.bin % quarter == b.bin % quarter; });
+    parallel_for(static_cast<int>(families.size()), threads, [&](int task) {
+      const auto family = families[static_cast<std::size_t>(task)];
+      int bin = family.front().bin % quarter;
+      FeatureMap turned = turnable.at(bins.heading(bin));
+      for (const auto members : runs(family, [](const auto&a, const auto&b) { return a.bin == b.bin; })) {
+        deadline.check();
+        for (; bin < members.front().bin; bin += quarter) turned = quarter_turned(turned);
+        match_at_heading(plane, window.origin, Footprint(turned), members, sums);
       }
-      std::vector<MatchSums> found(places.size());
-      match_sums(plane, footprint, places, found);
-      for (std::size_t k = 0; k < members.size(); ++k) sums[members[k].index] = found[k];
     });
   }
 }

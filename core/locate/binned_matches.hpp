@@ -20,8 +20,9 @@ struct BinnedPose {
   std::size_t index = 0;
 };
 
-/// sums[pose.index] of each pose (its bin within 0 to bins.count() - 1); the others are left as they are. `features`
-/// are in cells of the map or of an overview (see in_cells_of()). Throws Interrupted when asked to stop.
+/// sums[pose.index] of each pose (its bin within 0 to bins.count() - 1, a multiple of four: in_quarters()); the others
+/// are left as they are. `features` are in cells of the map or of an overview (see in_cells_of()). Throws Interrupted
+/// when asked to stop.
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
                   std::span<const BinnedPose> poses, int threads, const std::stop_token& stop,
                   std::span<MatchSums> sums);

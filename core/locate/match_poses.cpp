@@ -69,7 +69,7 @@ void match_in_bins(const MapView& map, const FeatureMap& features, std::span<con
                    const MatchOptions& options, std::span<MatchSums> sums) {
   constexpr double kMostBins = 1e6;
   const double wanted = std::ceil(2.0 * std::numbers::pi / options.heading_step.radians());
-  const HeadingBins bins(static_cast<int>(std::min(wanted, kMostBins)));
+  const HeadingBins bins = HeadingBins(static_cast<int>(std::min(wanted, kMostBins))).in_quarters();
   std::vector<BinnedPose> binned;
   binned.reserve(queries.size());
   for (const GridQuery& query : queries) {

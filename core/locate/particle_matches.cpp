@@ -11,7 +11,7 @@ std::vector<MatchSums> match_particles(const MapView& map, const FeatureMap& fea
                                        int threads, const std::stop_token& stop) {
   const Particles& p = particles;
   const double cell_m = features.cell_m;
-  const HeadingBins bins = HeadingBins::for_footprint(footprint_reach(features) * cell_m, 2.0 * cell_m);
+  const HeadingBins bins = HeadingBins::for_footprint(footprint_reach(features) * cell_m, 2.0 * cell_m).in_quarters();
   std::vector<BinnedPose> poses;
   poses.reserve(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -69,13 +69,13 @@ void Footprint::mask_and_count(Block& values, Block& mask) {
   // Loops that compilers turn into vectors.
   std::uint32_t observed = 0;
   std::uint32_t sum = 0;
-  std::uint32_t squares = 0;
+  std::int32_t squares = 0;
   for (std::size_t i = 0; i < kAlignment; ++i) {
     mask.cells[i] = is_observed(values.cells[i]) ? 255 : 0;
     values.cells[i] &= mask.cells[i];
-    const std::uint32_t value = values.cells[i];
+    const std::int16_t value = values.cells[i];
     observed += mask.cells[i] & 1U;
-    sum += value;
+    sum += values.cells[i];
     squares += value * value;
   }
   observed_cells_ += observed;

@@ -19,6 +19,8 @@ class HeadingBins {
   /// Bins between two, the shorter way round.
   int distance(int a, int b) const;
   HeadingBins halved() const { return HeadingBins(2 * count_); }
+  /// At most three bins more, so that a quarter turn is a whole number of them.
+  HeadingBins in_quarters() const { return HeadingBins((count_ + 3) / 4 * 4); }
 
  private:
   int count_;

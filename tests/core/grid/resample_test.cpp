@@ -43,6 +43,20 @@ TEST(Rotated, LeavesCornersUnobserved) {
   EXPECT_NEAR(static_cast<double>(turned.cells.observed_count()), 441.0, 25.0);
 }
 
+TEST(QuarterTurned, IsTheMapTurnedByNinetyDegreesMore) {
+  const FeatureMap map{from_ascii("##.# "
+                                  "..#. "
+                                  "?.## "),
+                       2.0,
+                       {1.5, 0.5}};
+  const FeatureMap turned = rotated(map, Angle::degrees(90));
+  EXPECT_EQ(quarter_turned(rotated(map, Angle())), turned);
+  EXPECT_EQ(quarter_turned(turned), rotated(map, Angle::degrees(180)));
+  const FeatureMap east = quarter_turned(map);
+  EXPECT_EQ(to_ascii(east.cells), "?.#\n..#\n##.\n#.#\n");
+  EXPECT_EQ(east.nadir, (GridGeometry::CellPosition{2.5, 1.5}));
+}
+
 TEST(CutOut, ReturnsTheGridItselfAtItsCentre) {
   const RoadGrid grid{{2.0, {10, 20}, 4, 4}, from_ascii("#..# .#.. ..#. ?..#")};
   const GridBox box = grid.geometry.box();

@@ -45,5 +45,24 @@ TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
   EXPECT_LT(difference, 0.05) << "nearest cell and shared heading bins";
 }
 
+TEST(ParticleMatches, FitBestAtTheirHeadingInEveryQuarterOfTheCompass) {
+  const RoadGrid map = testing::street_map(51, {2.0, {300'000, -3'200'000}, 800, 700});
+  std::mt19937_64 random(12);
+  for (const double heading : {25.0, 115.0, 205.0, 295.0}) {
+    const GridPose pose{{600'701.0, 6'399'399.0}, Angle::degrees(heading)};
+    const FeatureMap features = testing::observed_at(map, pose, 100, 90, 2.0, {0.0, 0.0}, random);
+    Particles p;
+    p.resize(4);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Angle turned = pose.heading + Angle::degrees(90.0 * static_cast<double>(i));
+      p.set(i, {pose.position.east_m, pose.position.north_m, turned.radians()});
+      p.weight[i] = 1.0;
+    }
+    const auto sums = match_particles(testing::view_of(map), features, p);
+    EXPECT_GT(*rho(sums[0]), 0.8) << heading;
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_LT(*rho(sums[i]), 0.4) << heading << ' ' << i;
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -20,6 +20,28 @@ fly::Handling handling_of(const FlyOptions& options) {
   return handling;
 }
 
+void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
+  if (options.server.empty()) {
+    throw InvalidInput("frames-without-service",
+                       "--send frames leaves it to a service to detect roads: name it with --server");
+  }
+  if (!over_imagery) {
+    throw InvalidInput("no-frames-to-send",
+                       "a map shows roads and no pictures: name imagery with --over, or leave out --send frames");
+  }
+  if (options.detector.name != "auto" || !options.detector.model.empty() || options.detector.orientations != 1) {
+    throw InvalidInput("detector-elsewhere",
+                       "with --send frames the service detects roads by its own detector: give --detector, --model and "
+                       "--orientations to roadfix serve");
+  }
+}
+
+fly::CameraErrors camera_errors_of(const FlyOptions& options) {
+  fly::CameraErrors errors = options.camera;
+  errors.attitude = Angle::degrees(options.attitude_deg);
+  return errors;
+}
+
 }  // namespace
 
 MapView map_of(const FlyOptions& options) {
@@ -34,7 +56,10 @@ Footprint footprint_of(const FlyOptions& options) { return {options.footprint_m.
 Ground ground_of(const FlyOptions& options, const MapView& map) {
   Ground ground;
   const Footprint footprint = footprint_of(options);
-  if (options.over.empty() || std::filesystem::path(options.over).extension() == ".gpkg") {
+  const bool over_imagery = !options.over.empty() && std::filesystem::path(options.over).extension() != ".gpkg";
+  const bool sends_frames = options.send == "frames";
+  if (sends_frames) require_sendable_frames(options, over_imagery);
+  if (!over_imagery) {
     const bool itself = options.over.empty();
     const MapView from = itself ? map : view_of(std::make_shared<const MapReader>(options.over), options.over);
     if (!(from.zone == map.zone)) {
@@ -47,13 +72,17 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
     ground.what = fmt::format("feature maps cut out of {}", itself ? options.map : options.over);
     return ground;
   }
-  ground.detector = make_detector(options.detector);
+  if (!sends_frames) ground.detector = make_detector(options.detector);
   ground.imagery = read_orthoimage(options.over, map.zone);
-  fly::CameraErrors errors = options.camera;
-  errors.attitude = Angle::degrees(options.attitude_deg);
-  ground.sensor = fly::make_imaging_sensor(*ground.imagery, *ground.detector, footprint, errors, map.cell_m);
   ground.box = ground.imagery->box();
-  ground.what = fmt::format("frames of {}, {}", options.over, ground.detector->describe());
+  const fly::CameraErrors errors = camera_errors_of(options);
+  if (sends_frames) {
+    ground.sensor = fly::make_camera(*ground.imagery, footprint, errors, map.cell_m);
+    ground.what = fmt::format("frames of {}, roads detected by the service", options.over);
+  } else {
+    ground.sensor = fly::make_imaging_sensor(*ground.imagery, *ground.detector, footprint, errors, map.cell_m);
+    ground.what = fmt::format("frames of {}, {}", options.over, ground.detector->describe());
+  }
   return ground;
 }
 

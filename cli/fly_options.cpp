@@ -115,6 +115,13 @@ void add_service_options(CLI::App& command, FlyOptions& o) {
       ->group(kGroup);
   command.add_option("--map", o.served_map, "The map's name there; default: that of the file")->group(kGroup);
   command
+      .add_option("--send", o.send,
+                  "What the vehicles send: features, the roads that they detect themselves; frames, the pictures (as "
+                  "PNG, without loss) in which the service detects roads by its own detector")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"features", "frames"}))
+      ->group(kGroup);
+  command
       .add_option("--vehicles", o.vehicles, "So many flights, all at the same time; default: --runs, --jobs of them")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);

@@ -41,6 +41,7 @@ struct FlyOptions {
   int jobs = 1;
   std::string server;
   std::string served_map;
+  std::string send = "features";
   int vehicles = 0;
   int patience_s = 60;
   bool keep_tracks = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/units/error.hpp"
 
@@ -47,11 +48,11 @@ class Sight {
     off_ = {plan.registration_m * normal(random), plan.registration_m * normal(random)};
   }
 
-  std::optional<FeatureMap> at(int step, const GridPose& pose) const {
+  Sighting at(int step, const GridPose& pose) const {
     Random random = stream(seed_, kCamera, static_cast<std::uint64_t>(step));
     const bool lost = uniform(random, 0.0, 1.0) < plan_.missing_share;
-    if (lost || step % plan_.frame_every != 0) return std::nullopt;
-    if (plan_.outage && plan_.outage->contains(step)) return std::nullopt;
+    if (lost || step % plan_.frame_every != 0) return {};
+    if (plan_.outage && plan_.outage->contains(step)) return {};
     return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
                        random);
   }
@@ -72,7 +73,7 @@ Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Senso
   const Sight sight(plan, sensor, seed);
   Flight flight;
   for (int step = 0; step < plan.steps; ++step) {
-    StepInput input;
+    Report input;
     input.sequence = step;
     input.time_us = std::llround(1e6 * plan.handling.step_s * (step + 1));
     if (step > 0) {
@@ -84,7 +85,9 @@ Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Senso
     if (plan.kidnapping && plan.kidnapping->step == step) {
       vehicle.jump_to(jumped(vehicle.pose(), plan.kidnapping->distance_m, box, sensor, random));
     }
-    input.features = sight.at(step, vehicle.pose());
+    Sighting seen_now = sight.at(step, vehicle.pose());
+    input.features = std::move(seen_now.features);
+    input.frame = std::move(seen_now.frame);
     flight.push_back({vehicle.pose(), std::move(input)});
     seen();
   }

@@ -41,9 +41,16 @@ struct FlightPlan {
   double registration_m = 0.0;
 };
 
+/// What the vehicle tells at a step.
+struct Report : StepInput {
+  Shutter frame;  ///< in place of features, where the detector is elsewhere
+
+  bool saw() const { return features.has_value() || frame != nullptr; }
+};
+
 struct Moment {
   GridPose truth;
-  StepInput input;
+  Report input;
 };
 
 using Flight = std::vector<Moment>;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <ctime>
 #include <utility>
@@ -17,7 +18,8 @@ class LibraryLocalizer : public Localizer {
     limits_.stop = std::move(stop);
   }
 
-  TrackEstimate advance(const StepInput& step) override {
+  TrackEstimate advance(const Report& step) override {
+    assert(step.frame == nullptr);
     StepResult result = tracker_.advance(state_, step, limits_);
     state_ = std::move(result.state);
     return std::move(result.estimate);
@@ -52,7 +54,7 @@ Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone)
   record.sequence = moment.input.sequence;
   record.time_s = 1e-6 * static_cast<double>(moment.input.time_us);
   record.truth = moment.truth;
-  record.saw = moment.input.features.has_value();
+  record.saw = moment.input.saw();
   record.estimate = std::move(estimate);
   const TrackCluster& best = record.estimate.clusters.front();
   record.best = on_grid(best.pose, zone);

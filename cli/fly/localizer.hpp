@@ -13,7 +13,7 @@ namespace roadfix::fly {
 class Localizer {
  public:
   virtual ~Localizer() = default;
-  virtual TrackEstimate advance(const StepInput& step) = 0;
+  virtual TrackEstimate advance(const Report& step) = 0;
   /// Of the belief after the last step.
   virtual std::vector<GeoPose> particles(std::size_t count) const = 0;
   /// The clock that a step's time is taken by.
@@ -22,7 +22,7 @@ class Localizer {
   virtual void finish() = 0;
 };
 
-/// The tracker of the library.
+/// The tracker of the library, for flights whose vehicle detects roads itself.
 std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop);
 
 /// From the paper's filter to the default, one improvement after the other.
@@ -42,7 +42,7 @@ struct Record {
   double error_m = 0.0;
   double heading_error_deg = 0.0;
   double nees = 0.0;     ///< squared error of the position in units of the stated ellipse
-  double step_ms = 0.0;  ///< by the localizer's clock, without detection
+  double step_ms = 0.0;  ///< by the localizer's clock
 };
 
 /// Called after each step.

@@ -1,6 +1,8 @@
 #include "cli/fly/sensor.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cli/fly/vehicle.hpp"
 #include "core/detect/frame.hpp"
@@ -8,26 +10,37 @@
 namespace roadfix::fly {
 namespace {
 
-class ImagingSensor : public Sensor {
- public:
-  ImagingSensor(const Orthoimage& imagery, const RoadDetector& detector, const Footprint& footprint,
-                const CameraErrors& errors, double cell_m)
-      : imagery_(imagery), detector_(detector), footprint_(footprint), errors_(errors), cell_m_(cell_m) {}
+/// Where a frame is taken and how wrong, drawn before it is cut out.
+struct Shot {
+  GridPose pose;
+  double scale = 1.0;
+  std::uint64_t seed = 0;
+};
 
-  FeatureMap see(const GridPose& pose, bench::Random& random) const override {
+/// Cuts frames out of imagery.
+class Camera {
+ public:
+  Camera(const Orthoimage& imagery, const Footprint& footprint, const CameraErrors& errors, double cell_m)
+      : imagery_(imagery), footprint_(footprint), errors_(errors), cell_m_(cell_m) {}
+
+  Shot aim(const GridPose& pose, bench::Random& random) const {
     // A small tilt moves what is seen; that it also stretches it by a share of that is left out.
     const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double scale = std::max(0.5, 1.0 + errors_.altitude * normal(random));
-    const GridPose seen{beside(pose, right, forward), pose.heading};
-    const double gsd = imagery_.image.gsd_m;
-    const Footprint covered{scale * footprint_.width_m, scale * footprint_.height_m};
-    GroundImage frame = cut_out(around(seen, covered), seen, covered, scale * gsd);
-    frame.gsd_m = gsd;
-    return detect_features(detector_, rectified(std::move(frame)), cell_m_, random());
+    constexpr int kSeedBits = 31;
+    return {{beside(pose, right, forward), pose.heading}, scale, random() >> (64 - kSeedBits)};
   }
 
-  bool shows(GridPoint point) const override { return sees(imagery_, point); }
+  CameraFrame take(const Shot& shot) const {
+    const double gsd = imagery_.image.gsd_m;
+    const Footprint covered{shot.scale * footprint_.width_m, shot.scale * footprint_.height_m};
+    GroundImage frame = cut_out(around(shot.pose, covered), shot.pose, covered, shot.scale * gsd);
+    frame.gsd_m = gsd;
+    return {std::move(frame), cell_m_, shot.seed};
+  }
+
+  bool shows(GridPoint point) const { return sees(imagery_, point); }
 
  private:
   /// The part of the imagery that a cut can touch: what is blurred for it should not be the whole city.
@@ -45,10 +58,39 @@ class ImagingSensor : public Sensor {
   }
 
   const Orthoimage& imagery_;
-  const RoadDetector& detector_;
   Footprint footprint_;
   CameraErrors errors_;
   double cell_m_;
+};
+
+class ImagingSensor : public Sensor {
+ public:
+  ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
+
+  Sighting see(const GridPose& pose, bench::Random& random) const override {
+    CameraFrame frame = camera_.take(camera_.aim(pose, random));
+    return {detect_features(detector_, rectified(std::move(frame.image)), frame.cell_m, frame.seed), {}};
+  }
+
+  bool shows(GridPoint point) const override { return camera_.shows(point); }
+
+ private:
+  Camera camera_;
+  const RoadDetector& detector_;
+};
+
+class CameraSensor : public Sensor {
+ public:
+  explicit CameraSensor(const Camera& camera) : camera_(camera) {}
+
+  Sighting see(const GridPose& pose, bench::Random& random) const override {
+    return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, random)] { return camera.take(shot); }};
+  }
+
+  bool shows(GridPoint point) const override { return camera_.shows(point); }
+
+ private:
+  Camera camera_;
 };
 
 class SimulatedSensor : public Sensor {
@@ -59,8 +101,8 @@ class SimulatedSensor : public Sensor {
         rows_(static_cast<int>(std::lround(footprint.height_m / map.cell_m))),
         quality_(quality) {}
 
-  FeatureMap see(const GridPose& pose, bench::Random& random) const override {
-    return simulate_features(ground_, pose, cols_, rows_, quality_, random);
+  Sighting see(const GridPose& pose, bench::Random& random) const override {
+    return {simulate_features(ground_, pose, cols_, rows_, quality_, random), {}};
   }
 
   bool shows(GridPoint point) const override {
@@ -79,7 +121,12 @@ class SimulatedSensor : public Sensor {
 
 std::unique_ptr<Sensor> make_imaging_sensor(const Orthoimage& imagery, const RoadDetector& detector,
                                             const Footprint& footprint, const CameraErrors& errors, double cell_m) {
-  return std::make_unique<ImagingSensor>(imagery, detector, footprint, errors, cell_m);
+  return std::make_unique<ImagingSensor>(Camera(imagery, footprint, errors, cell_m), detector);
+}
+
+std::unique_ptr<Sensor> make_camera(const Orthoimage& imagery, const Footprint& footprint, const CameraErrors& errors,
+                                    double cell_m) {
+  return std::make_unique<CameraSensor>(Camera(imagery, footprint, errors, cell_m));
 }
 
 std::unique_ptr<Sensor> make_simulated_sensor(const MapView& map, const Footprint& footprint,

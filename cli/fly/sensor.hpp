@@ -1,6 +1,9 @@
-// What the vehicle sees of the ground below it, as a feature map in the body frame.
+// What the vehicle sees of the ground below it, in the body frame: a feature map, or the picture of which another side
+// makes one.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -13,11 +16,27 @@
 
 namespace roadfix::fly {
 
+/// A picture of the ground straight below, before its roads are detected.
+struct CameraFrame {
+  GroundImage image;
+  double cell_m = 0.0;     ///< of the feature map that is to be made of it
+  std::uint64_t seed = 0;  ///< of the detector; below 2^31, as a service takes it
+};
+
+/// Called when the picture is needed: those of whole flights would fill the memory. Equal calls give equal pictures.
+using Shutter = std::function<CameraFrame()>;
+
+/// One of the two.
+struct Sighting {
+  std::optional<FeatureMap> features;
+  Shutter frame;
+};
+
 class Sensor {
  public:
   virtual ~Sensor() = default;
   /// Safe to call from several threads with generators of their own.
-  virtual FeatureMap see(const GridPose& pose, bench::Random& random) const = 0;
+  virtual Sighting see(const GridPose& pose, bench::Random& random) const = 0;
   /// Whether the middle of the frame would show ground.
   virtual bool shows(GridPoint point) const = 0;
 };
@@ -32,6 +51,10 @@ struct CameraErrors {
 /// Frames cut out of imagery and given to the detector. Both must outlive the sensor.
 std::unique_ptr<Sensor> make_imaging_sensor(const Orthoimage& imagery, const RoadDetector& detector,
                                             const Footprint& footprint, const CameraErrors& errors, double cell_m);
+
+/// The same frames, for a detector elsewhere. The imagery must outlive the flights too.
+std::unique_ptr<Sensor> make_camera(const Orthoimage& imagery, const Footprint& footprint, const CameraErrors& errors,
+                                    double cell_m);
 
 /// Feature maps of stated quality cut out of the map itself.
 std::unique_ptr<Sensor> make_simulated_sensor(const MapView& map, const Footprint& footprint,

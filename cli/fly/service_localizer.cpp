@@ -44,9 +44,18 @@ class Connection {
       : client_(plan.base, kAnswerTime), base_(plan.base), patience_(plan.patience), stop_(plan.stop) {}
 
   json ask(const Send& send) {
+    const Clock::time_point began = Clock::now();
+    json content = answered(send, began);
+    waited_ += Clock::now() - began;
+    return content;
+  }
+
+  std::chrono::duration<double, std::milli> waited() const { return waited_; }
+
+ private:
+  json answered(const Send& send, Clock::time_point began) {
     constexpr std::chrono::milliseconds kFirstPause{20};
     constexpr std::chrono::milliseconds kLongestPause{2000};
-    const Clock::time_point began = Clock::now();
     for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
       const std::optional<Answer> answer = send(client_);
       if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
@@ -59,7 +68,6 @@ class Connection {
     }
   }
 
- private:
   static json content_of(const Answer& answer) {
     if (answer.status >= 400) throw InvalidInput("service-refused", "the service refused: " + reason_of(answer));
     return answer.body.empty() ? json() : json::parse(answer.body, nullptr, false);
@@ -76,6 +84,7 @@ class Connection {
   const std::string base_;
   const std::chrono::seconds patience_;
   const std::stop_token stop_;
+  std::chrono::duration<double, std::milli> waited_{0.0};
 };
 
 json track_request(const ServicePlan& plan, const std::string& filter, std::uint64_t seed) {
@@ -100,6 +109,24 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
   return request;
 }
 
+/// A picture and the values that describe it.
+struct Picture {
+  json fields = json::object();
+  std::string png;
+};
+
+Picture picture_of(const FeatureMap& features) {
+  const auto png = encode_feature_map(features.cells);
+  return {{{"cell_m", features.cell_m}, {"nadir_col", features.nadir.col}, {"nadir_row", features.nadir.row}},
+          {png.begin(), png.end()}};
+}
+
+Picture picture_of(const CameraFrame& frame) {
+  const auto png = encode_frame(frame.image);
+  return {{{"kind", "frame"}, {"gsd_m", frame.image.gsd_m}, {"cell_m", frame.cell_m}, {"seed", frame.seed}},
+          {png.begin(), png.end()}};
+}
+
 json told(const StepInput& step) {
   json fields{{"sequence", step.sequence}, {"time_us", step.time_us}};
   if (step.odometry) {
@@ -107,17 +134,14 @@ json told(const StepInput& step) {
     fields["right_m"] = step.odometry->right_m;
     fields["turn_deg"] = step.odometry->turn.degrees();
   }
-  if (step.features) {
-    fields["cell_m"] = step.features->cell_m;
-    fields["nadir_col"] = step.features->nadir.col;
-    fields["nadir_row"] = step.features->nadir.row;
-  }
   return fields;
 }
 
 std::string as_query(const json& fields) {
   std::string query;
-  for (const auto& [name, value] : fields.items()) query += (query.empty() ? "?" : "&") + name + "=" + value.dump();
+  for (const auto& [name, value] : fields.items()) {
+    query += (query.empty() ? "?" : "&") + name + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
   return query;
 }
 
@@ -135,17 +159,18 @@ class ServiceLocalizer : public Localizer {
     path_ = "/v1/tracks/" + track.at("id").get<std::string>();
   }
 
-  TrackEstimate advance(const StepInput& step) override {
-    const json fields = told(step);
-    if (!step.features) {
+  TrackEstimate advance(const Report& step) override {
+    json fields = told(step);
+    if (!step.saw()) {
       const std::string body = fields.dump();
       return estimate_of(connection_.ask(
           [&](http::Client& client) { return client.post(path_ + "/steps", body, "application/json"); }));
     }
-    const auto picture = encode_feature_map(step.features->cells);
-    const std::string body(picture.begin(), picture.end());
+    const Picture picture = step.frame ? picture_of(step.frame()) : picture_of(*step.features);
+    fields.update(picture.fields);
     const std::string target = path_ + "/steps" + as_query(fields);
-    return estimate_of(connection_.ask([&](http::Client& client) { return client.post(target, body, "image/png"); }));
+    return estimate_of(
+        connection_.ask([&](http::Client& client) { return client.post(target, picture.png, "image/png"); }));
   }
 
   std::vector<GeoPose> particles(std::size_t count) const override {
@@ -154,10 +179,8 @@ class ServiceLocalizer : public Localizer {
     return track.contains("particles") ? particles_of(track.at("particles")) : std::vector<GeoPose>();
   }
 
-  /// What a vehicle waits for, the network and the other vehicles included.
-  double clock_ms() const override {
-    return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
-  }
+  /// Of all that the vehicle waited for, the network and the other vehicles included.
+  double clock_ms() const override { return connection_.waited().count(); }
 
   void finish() override {
     if (keeps_) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "core/detect/frame_image.hpp"
 #include "core/detect/ground_scale.hpp"
@@ -111,6 +112,17 @@ std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
       const Cell cell = cells.at(col, row);
       picture.at<cv::Vec4b>(row, col) = is_observed(cell) ? cv::Vec4b(cell, cell, cell, 255) : cv::Vec4b(0, 0, 0, 0);
     }
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", picture, png);
+  return png;
+}
+
+std::vector<std::uint8_t> encode_frame(const GroundImage& image) {
+  cv::Mat picture = image.pixels;
+  if (cv::countNonZero(image.observed) != static_cast<int>(image.observed.total())) {
+    cv::cvtColor(image.pixels, picture, image.pixels.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
+    cv::insertChannel(image.observed, picture, 3);
   }
   std::vector<std::uint8_t> png;
   cv::imencode(".png", picture, png);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/detect/road_detector.hpp"
 #include "core/grid/cell_array.hpp"
 
 namespace roadfix {
@@ -36,5 +37,9 @@ CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels);
 
 /// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell.
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
+
+/// A picture of the ground as PNG, of which decode_image() and frame_image() make the same again (grey as BGR where not
+/// all of it was seen): what was not seen is transparent. At least one pixel.
+std::vector<std::uint8_t> encode_frame(const GroundImage& image);
 
 }  // namespace roadfix

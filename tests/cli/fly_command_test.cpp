@@ -86,5 +86,16 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));
 }
 
+TEST_F(FlyCommand, SendsFramesOnlyWhereItHasSomeAndAServiceDetectsTheirRoads) {
+  const std::string frames = "fly " + map() + " --footprint-m 200 --steps 1 --send frames";
+  const std::string service = " --server http://127.0.0.1:1 --patience 0";
+  EXPECT_THAT(roadfix(frames + " --over " + after()).err, HasSubstr("frames-without-service"));
+  EXPECT_THAT(roadfix(frames + service).err, HasSubstr("no-frames-to-send"));
+  EXPECT_THAT(roadfix(frames + service + " --over " + after() + " --detector tree").err,
+              HasSubstr("detector-elsewhere"));
+  EXPECT_THAT(roadfix(frames + service + " --over " + after()).err, HasSubstr("service-silent"));
+  EXPECT_EQ(roadfix("fly " + map() + " --send pictures").code, 2);
+}
+
 }  // namespace
 }  // namespace roadfix

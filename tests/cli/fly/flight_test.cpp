@@ -21,8 +21,8 @@ const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
 /// Shows everything, sees one cell.
 class Window : public Sensor {
  public:
-  FeatureMap see(const GridPose&, bench::Random& random) const override {
-    return FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0);
+  Sighting see(const GridPose&, bench::Random& random) const override {
+    return {FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0), {}};
   }
   bool shows(GridPoint) const override { return true; }
 };
@@ -112,7 +112,7 @@ TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEverySte
   /// Remembers from where it was looked.
   class Witness : public Window {
    public:
-    FeatureMap see(const GridPose& pose, bench::Random& random) const override {
+    Sighting see(const GridPose& pose, bench::Random& random) const override {
       seen.push_back(pose.position);
       return Window::see(pose, random);
     }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
+#include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -38,6 +40,21 @@ TEST(FeatureMapCodec, SixteenBitsScaleLinearly) {
   const CellArray cells = decode_feature_map(encoded(".png", deep), kMany);
   EXPECT_NEAR(probability(cells.at(1, 0)), 0.5, 0.005);
   EXPECT_EQ(cells.at(2, 0), kRoad);
+}
+
+TEST(FrameCodec, PicturesComeBackAsTheyWereWithWhatWasNotSeen) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    GroundImage frame{cv::Mat(40, 31, type), cv::Mat(40, 31, CV_8UC1, cv::Scalar(255)), 0.5};
+    cv::RNG(3).fill(frame.pixels, cv::RNG::UNIFORM, 0, 256);
+    const auto back = [&] { return frame_image(decode_image(encode_frame(frame), kMany), 0.5); };
+    EXPECT_EQ(cv::norm(back().pixels, frame.pixels, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(back().observed, frame.observed, cv::NORM_INF), 0.0);
+    frame.observed(cv::Rect(5, 0, 7, 40)) = 0;
+    EXPECT_EQ(cv::norm(back().observed, frame.observed, cv::NORM_INF), 0.0);
+    cv::Mat colour = frame.pixels;
+    if (type == CV_8UC1) cv::cvtColor(frame.pixels, colour, cv::COLOR_GRAY2BGR);
+    EXPECT_EQ(cv::norm(back().pixels, colour, cv::NORM_INF), 0.0) << "also below what was not seen";
+  }
 }
 
 TEST(ImageHeader, TellsTheSizeOfPngAndJpeg) {

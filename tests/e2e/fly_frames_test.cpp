@@ -1,0 +1,89 @@
+// roadfix fly over HTTP, once with roads that the vehicles detect themselves and once with frames in which the service
+// does: a rendered town is mapped before and flown over after its earthquake.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/e2e/service_process.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::ProgramResult;
+using testing::run_program;
+using testing::text_of;
+
+using Row = std::vector<std::string>;
+
+/// Without the last column, which is time.
+std::vector<Row> rows_of(const std::filesystem::path& csv) {
+  std::vector<Row> rows;
+  std::istringstream lines(text_of(csv));
+  for (std::string line; std::getline(lines, line);) {
+    Row& row = rows.emplace_back();
+    std::istringstream cells(line.substr(0, line.rfind(',')));
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+  }
+  return rows;
+}
+
+class FlownOverHttp : public ::testing::Test {
+ protected:
+  FlownOverHttp() {
+    EXPECT_EQ(roadfix("world " + town() + " --size-km 0.7x0.7 --frames 0").code, 0);
+    EXPECT_EQ(roadfix("ingest " + town() + "/pre.tif --detector tree --map " + (folder_ / "town.gpkg").string()).code,
+              0);
+  }
+
+  ProgramResult roadfix(const std::string& arguments) const { return run_program(folder_.path(), arguments); }
+  std::string town() const { return (folder_ / "town").string(); }
+
+  /// Two vehicles over what the earthquake left, by a prior of the whole map.
+  std::vector<Row> flown(const std::string& options, const std::string& csv) const {
+    const ProgramResult result =
+        roadfix("fly " + (folder_ / "town.gpkg").string() + " --over " + town() +
+                "/post.tif --footprint-m 300 --steps 6 --missing 0.2 --particles 500 --runs 2 --seed 3 --csv " +
+                (folder_ / csv).string() + options);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return rows_of(folder_ / csv);
+  }
+
+  const testing::TemporaryFolder folder_;
+};
+
+/// Text that is equal, or numbers that differ by their last digit.
+bool alike(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const std::size_t point = a.find('.');
+  if (point == std::string::npos || b.find('.') == std::string::npos) return false;
+  const double unit = std::pow(10.0, -static_cast<double>(a.size() - point - 1));
+  return std::abs(std::stod(a) - std::stod(b)) <= 1.5 * unit;
+}
+
+TEST_F(FlownOverHttp, FramesAreAnsweredWithTheNumbersThatTheirRoadsAre) {
+  // With time for everything: a loaded machine may take minutes.
+  const testing::ServiceProcess service(folder_.path(), {"--request-time", "600", "--tree-roots", "500"});
+  const std::string there = " --vehicles 2 --server http://127.0.0.1:" + std::to_string(service.port());
+  const std::string tree = " --detector tree --tree-roots 500";
+  const std::vector<Row> by_frames = flown(there + " --send frames", "frames.csv");
+  EXPECT_EQ(by_frames, flown(there + " --send features" + tree, "features.csv"));
+
+  const std::vector<Row> by_library = flown(tree, "library.csv");
+  ASSERT_EQ(by_frames.size(), 13U) << "a header and two flights of six steps";
+  ASSERT_EQ(by_library.size(), by_frames.size());
+  for (std::size_t i = 0; i < by_frames.size(); ++i) {
+    ASSERT_EQ(by_library[i].size(), by_frames[i].size());
+    for (std::size_t k = 0; k < by_frames[i].size(); ++k) {
+      EXPECT_TRUE(alike(by_library[i][k], by_frames[i][k]))
+          << by_frames[0][k] << " of line " << i << ": " << by_library[i][k] << " and " << by_frames[i][k];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

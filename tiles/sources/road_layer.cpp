@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string_view>
@@ -65,6 +66,16 @@ std::string class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
   return wanted;
 }
 
+/// Whether a line is among the parts of the geometry, however deep they are nested. The dimension of a collection is
+/// that of its largest part: it tells nothing of the lines beside an area.
+bool holds_a_line(const OGRGeometry& geometry) {
+  if (OGR_GT_IsSubClassOf(wkbFlatten(geometry.getGeometryType()), wkbGeometryCollection) == FALSE) {
+    return geometry.getDimension() == 1;
+  }
+  const OGRGeometryCollection& parts = *geometry.toGeometryCollection();
+  return std::any_of(parts.begin(), parts.end(), [](const OGRGeometry* part) { return holds_a_line(*part); });
+}
+
 }  // namespace
 
 RoadLayer::RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
@@ -84,7 +95,7 @@ std::string RoadLayer::attributes() const {
 
 std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
   FeatureTags tags(feature);
-  if (feature.GetGeometryRef()->getDimension() == 1) {
+  if (holds_a_line(*feature.GetGeometryRef())) {
     ++lines_;
     const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
     if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];

@@ -242,6 +242,18 @@ TEST_F(VectorRoads, CurvesAreDrawnHoweverTheyAreNested) {
   }
 }
 
+TEST_F(VectorRoads, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {
+  const std::string path = (folder / "mixed.csv").string();
+  std::ofstream(path) << "highway,WKT\nprimary,\"GEOMETRYCOLLECTION(POLYGON((0 0,9 0,9 9,0 0)),POINT(5 5),"
+                         "GEOMETRYCOLLECTION(LINESTRING(0 0,100 0),MULTILINESTRING((0 50,100 50))))\"\n";
+  VectorOptions options;
+  options.crs = "EPSG:32637";
+  const RoadNetwork network = read_road_network({path}, options, RoadRules(), kZone);
+  EXPECT_EQ(network.lines.size(), 2U);
+  EXPECT_EQ(network.left_out, 0);
+  EXPECT_EQ(network.covered.size(), 1U);
+}
+
 TEST_F(VectorRoads, ClassesThatNoRuleKnowsAreNamed) {
   const std::string some = geojson({feature(R"("highway":"primary")", at(-150, 40), at(150, 40)),
                                     feature(R"("highway":"Feldweg")", at(-150, 0), at(150, 0)),

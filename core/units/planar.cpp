@@ -1,8 +1,14 @@
 #include "core/units/planar.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadfix {
+
+GridBox united(const GridBox& a, const GridBox& b) {
+  return {{std::min(a.min.east_m, b.min.east_m), std::min(a.min.north_m, b.min.north_m)},
+          {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
+}
 
 double distance_m(GridPoint a, GridPoint b) { return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m); }
 

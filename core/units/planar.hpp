@@ -28,7 +28,15 @@ struct GridBox {
   bool contains(GridPoint p) const {
     return p.east_m >= min.east_m && p.east_m <= max.east_m && p.north_m >= min.north_m && p.north_m <= max.north_m;
   }
+  /// Whether they share more than a rim.
+  bool overlaps(const GridBox& other) const {
+    return min.east_m < other.max.east_m && other.min.east_m < max.east_m && min.north_m < other.max.north_m &&
+           other.min.north_m < max.north_m;
+  }
 };
+
+/// The smallest box that holds both; neither is empty.
+GridBox united(const GridBox& a, const GridBox& b);
 
 double distance_m(GridPoint a, GridPoint b);
 

@@ -15,16 +15,6 @@ namespace {
 
 constexpr std::size_t kIdleHandles = 48;
 
-bool overlap(const GridBox& a, const GridBox& b) {
-  return a.min.east_m < b.max.east_m && b.min.east_m < a.max.east_m && a.min.north_m < b.max.north_m &&
-         b.min.north_m < a.max.north_m;
-}
-
-GridBox united(const GridBox& a, const GridBox& b) {
-  return {{std::min(a.min.east_m, b.min.east_m), std::min(a.min.north_m, b.min.north_m)},
-          {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
-}
-
 ValueRange percentile_range(std::vector<float> values) {
   if (values.empty()) return {0.0, 1.0};
   const auto at = [&values](double share) {
@@ -100,7 +90,7 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
 Mosaic::~Mosaic() = default;
 
 bool Mosaic::touches(const GridBox& box) const {
-  return std::ranges::any_of(images_, [&](const Image& image) { return overlap(image.footprint, box); });
+  return std::ranges::any_of(images_, [&](const Image& image) { return image.footprint.overlaps(box); });
 }
 
 GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
@@ -109,7 +99,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   GroundImage result{cv::Mat(size, CV_8UC(channels_), cv::Scalar::all(0)), cv::Mat(size, CV_8UC1, cv::Scalar(0)),
                      gsd_m};
   for (std::size_t i = 0; i < images_.size(); ++i) {
-    if (!overlap(images_[i].footprint, box)) continue;
+    if (!images_[i].footprint.overlaps(box)) continue;
     std::unique_ptr<Handle> handle = borrow(i, gsd_m);
     warp_into({*handle->file, handle->placement, range_, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));

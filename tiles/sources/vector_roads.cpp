@@ -15,59 +15,90 @@ namespace roadfix {
 namespace {
 
 constexpr double kVectorSigmaM = 4.0;
-constexpr double kBucketM = 512.0;
+constexpr double kSquareM = 512.0;
 
-bool overlap(const GridBox& a, const GridBox& b) {
-  return a.min.east_m < b.max.east_m && b.min.east_m < a.max.east_m && a.min.north_m < b.max.north_m &&
-         b.min.north_m < a.max.north_m;
+struct Segment {
+  GridPoint from;
+  GridPoint to;
+  double half_width_m = 0.0;
+};
+
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Eastings of the part of the segment between two northings.
+Range eastings_between(const Segment& s, double south_m, double north_m) {
+  const double rise = s.to.north_m - s.from.north_m;
+  if (rise == 0.0) return {std::min(s.from.east_m, s.to.east_m), std::max(s.from.east_m, s.to.east_m)};
+  const auto east_at = [&](double at_m) {
+    const double share = std::clamp((at_m - s.from.north_m) / rise, 0.0, 1.0);
+    return s.from.east_m + share * (s.to.east_m - s.from.east_m);
+  };
+  const auto [low, high] = std::minmax({east_at(south_m), east_at(north_m)});
+  return {low, high};
 }
 
 /// Segments by squares of the plane.
 class SegmentIndex {
  public:
-  explicit SegmentIndex(const RoadNetwork& network) {
-    for (std::size_t line = 0; line < network.lines.size(); ++line) {
-      const RoadLine& road = network.lines[line];
+  /// Of what reaches into the ground.
+  SegmentIndex(const RoadNetwork& network, const GridBox& ground) : ground_(ground) {
+    for (const RoadLine& road : network.lines) {
       for (std::size_t i = 0; i + 1 < road.points; ++i) {
-        const GridPoint a = network.points[road.first_point + i];
-        const GridPoint b = network.points[road.first_point + i + 1];
-        const double r = road.half_width_m;
-        const GridBox box{{std::min(a.east_m, b.east_m) - r, std::min(a.north_m, b.north_m) - r},
-                          {std::max(a.east_m, b.east_m) + r, std::max(a.north_m, b.north_m) + r}};
-        for_each_square(box, [&](Square square) { squares_[square].push_back({a, b, r}); });
+        const GridPoint* points = &network.points[road.first_point + i];
+        add({points[0], points[1], road.half_width_m});
       }
     }
   }
 
   template <typename Visit>
   void visit(const GridBox& box, Visit visit) const {
-    for_each_square(box, [&](Square square) {
-      const auto found = squares_.find(square);
-      if (found == squares_.end()) return;
-      for (const Segment& segment : found->second) visit(segment.from, segment.to, segment.half_width_m);
-    });
-  }
-
- private:
-  struct Segment {
-    GridPoint from;
-    GridPoint to;
-    double half_width_m;
-  };
-  using Square = std::pair<int, int>;
-
-  template <typename Visit>
-  static void for_each_square(const GridBox& box, Visit visit) {
-    const auto index = [](double metres) {
-      return static_cast<int>(std::floor(std::clamp(metres, -1e8, 1e8) / kBucketM));
-    };
-    for (int row = index(box.min.north_m); row <= index(box.max.north_m); ++row) {
-      for (int col = index(box.min.east_m); col <= index(box.max.east_m); ++col) visit(Square(col, row));
+    const Squares rows = squares({box.min.north_m, box.max.north_m});
+    const Squares cols = squares({box.min.east_m, box.max.east_m});
+    for (int row = rows.first; row <= rows.last; ++row) {
+      for (int col = cols.first; col <= cols.last; ++col) {
+        const auto found = squares_.find({col, row});
+        if (found == squares_.end()) continue;
+        for (const Segment& segment : found->second) visit(segment);
+      }
     }
   }
 
-  std::map<Square, std::vector<Segment>> squares_;
+ private:
+  struct Squares {
+    int first = 0;
+    int last = -1;
+  };
+
+  static Squares squares(Range metres) {
+    const auto index = [](double at) { return static_cast<int>(std::floor(std::clamp(at, -1e8, 1e8) / kSquareM)); };
+    return {index(metres.low), index(metres.high)};
+  }
+
+  /// Row by row, since the box around a long segment holds millions of squares that it is far from.
+  void add(const Segment& s) {
+    const double r = s.half_width_m;
+    const Squares rows = squares({std::max(ground_.min.north_m, std::min(s.from.north_m, s.to.north_m) - r),
+                                  std::min(ground_.max.north_m, std::max(s.from.north_m, s.to.north_m) + r)});
+    for (int row = rows.first; row <= rows.last; ++row) {
+      const Range near = eastings_between(s, row * kSquareM - r, (row + 1) * kSquareM + r);
+      const Squares cols =
+          squares({std::max(ground_.min.east_m, near.low - r), std::min(ground_.max.east_m, near.high + r)});
+      for (int col = cols.first; col <= cols.last; ++col) squares_[{col, row}].push_back(s);
+    }
+  }
+
+  GridBox ground_;
+  std::map<std::pair<int, int>, std::vector<Segment>> squares_;
 };
+
+GridBox extent_of(const std::vector<PlanePolygon>& polygons) {
+  GridBox extent = polygons.front().box();
+  for (const PlanePolygon& polygon : polygons) extent = united(extent, polygon.box());
+  return extent;
+}
 
 class RoadVectors final : public CellSource {
  public:
@@ -87,17 +118,17 @@ class RoadVectors final : public CellSource {
   SourceSummary summary() const override { return summary_; }
   GridBox extent() const override { return extent_; }
   bool touches(const GridBox& box) const override {
-    return std::ranges::any_of(covered_, [&](const PlanePolygon& polygon) { return overlap(polygon.box(), box); });
+    return std::ranges::any_of(covered_, [&](const PlanePolygon& polygon) { return polygon.box().overlaps(box); });
   }
 
   CellArray read(const GridGeometry& block, std::uint64_t) const override {
     const GridBox box = block.box();
     std::vector<bool> inside(static_cast<std::size_t>(block.cols) * static_cast<std::size_t>(block.rows), false);
     for (const PlanePolygon& polygon : covered_) {
-      if (overlap(polygon.box(), box)) polygon.mark(block, inside);
+      if (polygon.box().overlaps(box)) polygon.mark(block, inside);
     }
     LineCoverage coverage(block);
-    index_.visit(box, [&](GridPoint from, GridPoint to, double half_width_m) { coverage.add(from, to, half_width_m); });
+    index_.visit(box, [&](const Segment& s) { coverage.add(s.from, s.to, s.half_width_m); });
     const Certainty certainty;
     CellArray result(block.cols, block.rows);
     std::size_t i = 0;
@@ -111,13 +142,10 @@ class RoadVectors final : public CellSource {
 
  private:
   RoadVectors(RoadNetwork network, double cell_m)
-      : index_(network), covered_(std::move(network.covered)), class_attribute_(std::move(network.class_attribute)) {
-    extent_ = covered_.front().box();
-    for (const PlanePolygon& polygon : covered_) {
-      const GridBox& box = polygon.box();
-      extent_.min = {std::min(extent_.min.east_m, box.min.east_m), std::min(extent_.min.north_m, box.min.north_m)};
-      extent_.max = {std::max(extent_.max.east_m, box.max.east_m), std::max(extent_.max.north_m, box.max.north_m)};
-    }
+      : extent_(extent_of(network.covered)),
+        index_(network, extent_),
+        covered_(std::move(network.covered)),
+        class_attribute_(std::move(network.class_attribute)) {
     summary_.kind = "roads";
     summary_.crs = network.crs;
     summary_.chosen_gsd_m = cell_m;
@@ -127,10 +155,10 @@ class RoadVectors final : public CellSource {
     summary_.notes = std::move(network.notes);
   }
 
+  GridBox extent_;
   SegmentIndex index_;
   std::vector<PlanePolygon> covered_;
   std::string class_attribute_;
-  GridBox extent_;
   SourceSummary summary_;
 };
 

@@ -41,6 +41,12 @@ std::string feature(const std::string& properties, GridPoint from, GridPoint to)
 
 GridPoint at(double east, double north) { return {kCentre.east_m + east, kCentre.north_m + north}; }
 
+std::string extent_around_centre(double half_m) {
+  const LatLon low = kZone.unproject(at(-half_m, -half_m));
+  const LatLon high = kZone.unproject(at(half_m, half_m));
+  return fmt::format("{},{},{},{}", low.lon_deg, low.lat_deg, high.lon_deg, high.lat_deg);
+}
+
 class VectorRoads : public ::testing::Test {
  protected:
   std::string geojson(const std::vector<std::string>& features) {
@@ -82,10 +88,8 @@ TEST_F(VectorRoads, GroundBesideTheExtentIsUnobserved) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
   const CellArray own = cells(*open_road_vectors({path}, {}, RoadRules(), kZone, 2.0));
   EXPECT_NEAR(static_cast<double>(own.observed_count()), 2500.0, 110.0);
-  const LatLon low = kZone.unproject(at(-100, -100));
-  const LatLon high = kZone.unproject(at(100, 100));
   VectorOptions options;
-  options.extent = fmt::format("{},{},{},{}", low.lon_deg, low.lat_deg, high.lon_deg, high.lat_deg);
+  options.extent = extent_around_centre(100);
   const CellArray stated = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
   EXPECT_NEAR(static_cast<double>(stated.observed_count()), 10000.0, 300.0);
 }
@@ -129,6 +133,20 @@ TEST_F(VectorRoads, AreTheSameHoweverTheGroundIsCutIntoBlocks) {
     }
   }
   EXPECT_EQ(joined, whole);
+}
+
+TEST_F(VectorRoads, ARoadToAPointOfNoPlaceCostsNoMoreThanItsLength) {
+  // The square around it has 50 million squares of the index.
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0)),
+                                    R"({"type":"Feature","properties":{"highway":"primary"},"geometry":)"
+                                    R"({"type":"LineString","coordinates":[)" +
+                                        degrees(at(0, 100)) + ",[0,0]]}}"});
+  VectorOptions options;
+  options.extent = extent_around_centre(150);
+  const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  const Cell road = cell_from_probability(Certainty().on_road);
+  EXPECT_EQ(result.at(100, 100), road);
+  EXPECT_EQ(result.at(100, 50), road) << "where the long one begins";
 }
 
 TEST_F(VectorRoads, OpenStreetMapXmlIsReadWithAllItsTags) {

@@ -56,6 +56,12 @@ SourceKind kind_of(const std::string& path) {
   return kVectors;
 }
 
+/// The name that "." or "../" stand for, too.
+std::string name_of_folder(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
   SourceFiles result;
   std::vector<std::string> images;
@@ -97,7 +103,7 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
   SourceFiles result;
   if (fs::is_directory(path)) {
     result = files_below(path, meaning);
-    result.name = fs::absolute(path).filename().string();
+    result.name = name_of_folder(path);
   } else {
     result.paths = {argument};
     result.kind = kind_of(argument);

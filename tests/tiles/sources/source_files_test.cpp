@@ -71,6 +71,14 @@ TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
   EXPECT_EQ(files.kind, SourceKind::kRoadRaster);
 }
 
+TEST_F(SourceFilesTest, AFolderHasItsNameHoweverItIsReached) {
+  image("a.tif");
+  std::filesystem::create_directory(folder / "below");
+  for (const char* way : {"", "/", "/.", "/./", "/below/..", "/below/../"}) {
+    EXPECT_EQ(find_source(folder.path().string() + way, SourceMeaning::kAuto).name, folder.path().filename()) << way;
+  }
+}
+
 TEST_F(SourceFilesTest, VectorsBesideTheImagesOfAFolderAreLeftOutAndNamed) {
   const std::string a = image("a.tif");
   const std::string lines = (folder / "lines.geojson").string();

@@ -214,6 +214,10 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
 }
 
 LatLon centre_of_roads(const std::string& path, const VectorOptions& options) {
+  if (const std::optional<OGREnvelope> box = box_in_degrees(options.extent)) {
+    return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
+  }
+  if (!options.extent.empty()) return centre_of_roads(options.extent, {});
   VectorFile file(path, options);
   for (OGRLayer* layer : file.layers()) {
     const std::optional<OGREnvelope> box = file.extent_of(*layer);

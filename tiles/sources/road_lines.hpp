@@ -17,7 +17,8 @@ namespace roadfix {
 struct VectorOptions {
   std::string crs;    ///< replaces that of the file
   std::string layer;  ///< only this one; empty for all
-  /// Ground that the source covers: "W,S,E,N" in degrees or a file with polygons; empty = bounding box of each layer,
+  /// Ground that the source covers: "W,S,E,N" in degrees (W above E across the antimeridian) or a file with polygons,
+  /// which know nothing of their holes; empty = bounding box of each layer,
   /// at least 32 m and twice the widest road across (of the tile for vector tiles).
   std::string extent;
 };
@@ -47,7 +48,7 @@ struct RoadNetwork {
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);
 
-/// Geographic centre of a file, to choose a zone by.
+/// Geographic centre of the ground that is asked for, or of the file, to choose a zone by.
 LatLon centre_of_roads(const std::string& path, const VectorOptions& options);
 
 }  // namespace roadfix

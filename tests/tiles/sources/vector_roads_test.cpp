@@ -94,6 +94,71 @@ TEST_F(VectorRoads, GroundBesideTheExtentIsUnobserved) {
   EXPECT_NEAR(static_cast<double>(stated.observed_count()), 10000.0, 300.0);
 }
 
+TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
+  const auto ring = [](double half_m) {
+    return fmt::format("({0} {2},{1} {2},{1} {3},{0} {3},{0} {2})", kCentre.east_m - half_m, kCentre.east_m + half_m,
+                       kCentre.north_m - half_m, kCentre.north_m + half_m);
+  };
+  const std::string known = (folder / "known.gpkg").string();
+  {
+    const DatasetPtr file(
+        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(known.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRSpatialReference plane = utm_reference(kZone);
+    OGRLayer* layer = file->CreateLayer("known", &plane, wkbUnknown);
+    for (const std::string& wkt :
+         {std::string("POLYGON EMPTY"), fmt::format("MULTIPOLYGON(({},{}))", ring(100), ring(50))}) {
+      OGRGeometry* geometry = nullptr;
+      OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
+      OGRFeature feature(layer->GetLayerDefn());
+      feature.SetGeometryDirectly(geometry);
+      ASSERT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
+    }
+  }
+  VectorOptions options;
+  options.extent = known;
+  const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  EXPECT_EQ(result.observed_count(), 100U * 100U - 50U * 50U);
+  EXPECT_TRUE(is_observed(result.at(60, 100)));
+  EXPECT_FALSE(is_observed(result.at(100, 100))) << "in the hole";
+  EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
+}
+
+TEST_F(VectorRoads, TheCentreIsThatOfTheGroundThatIsAskedFor) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-9000, 0), at(0, 0))});
+  EXPECT_NEAR(kZone.project(centre_of_roads(path, {})).east_m, kCentre.east_m - 4500.0, 1.0);
+  VectorOptions options;
+  options.extent = extent_around_centre(100);
+  EXPECT_NEAR(kZone.project(centre_of_roads(path, options)).east_m, kCentre.east_m, 1.0);
+  const std::string known = (folder / "known.geojson").string();
+  std::ofstream(known) << R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[)"
+                       << degrees(at(-9, -9)) << ',' << degrees(at(9, -9)) << ',' << degrees(at(9, 9)) << ','
+                       << degrees(at(-9, -9)) << "]]}}";
+  options.extent = known;
+  EXPECT_NEAR(kZone.project(centre_of_roads(path, options)).east_m, kCentre.east_m, 1.0);
+}
+
+TEST_F(VectorRoads, AnExtentMayCrossTheAntimeridian) {
+  const std::string path = geojson({R"({"type":"Feature","properties":{"highway":"primary"},"geometry":)"
+                                    R"({"type":"LineString","coordinates":[[179.995,-17],[180,-17]]}})",
+                                    R"({"type":"Feature","properties":{"highway":"primary"},"geometry":)"
+                                    R"({"type":"LineString","coordinates":[[-180,-17],[-179.995,-17]]}})"});
+  VectorOptions options;
+  options.extent = "179.99,-17.01,-179.99,-16.99";
+  const LatLon centre = centre_of_roads(path, options);
+  const UtmZone zone = *UtmZone::from_epsg(32760);
+  EXPECT_EQ(UtmZone::containing({centre.lat_deg, centre.lon_deg - 1e-6}), zone);
+  const auto source = open_road_vectors({path}, options, RoadRules(), zone, 2.0);
+  const GridPoint middle = zone.project({-17.0, 180.0});
+  const CellArray result =
+      source->read(GridGeometry::covering(
+                       {{middle.east_m - 300, middle.north_m - 300}, {middle.east_m + 300, middle.north_m + 300}}, 2.0),
+                   1);
+  EXPECT_EQ(result.observed_count(), result.cells().size());
+  for (const int col : {30, 150, 270}) EXPECT_GT(result.at(col, 150), kRoad / 2) << col;
+  EXPECT_LT(result.at(150, 250), kRoad / 2);
+}
+
 TEST_F(VectorRoads, AStraightRoadAloneIsKnownWithTheGroundBesideIt) {
   const auto check = [](const std::string& path, const std::string& crs, const std::string& about) {
     VectorOptions options;

@@ -84,6 +84,7 @@ TrackSettings filter_named(const std::string& name, int particles) {
   if (name == "injection") return settings;
   settings.start = TrackStart::kSearch;
   settings.recovers = true;
+  settings.beyond_map_m = TrackSettings().beyond_map_m;
   if (name == "search") return settings;
   settings.filter.adapts_count = true;
   if (name == "default") return settings;

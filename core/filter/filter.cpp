@@ -102,7 +102,7 @@ void Filter::begin_step() {
 bool Filter::keep_within_region() {
   Particles& p = state_.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!region_.contains({p.east_m[i], p.north_m[i]})) p.weight[i] = 0.0;
+    if (!region_.keeps({p.east_m[i], p.north_m[i]})) p.weight[i] = 0.0;
   }
   if (normalise(p.weight)) return true;
   start_uniformly(region_);

@@ -79,8 +79,8 @@ class Filter {
   /// The same where a search tells more about a belief that has just begun; no further reset.
   void restart_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
 
-  /// Moves the particles; those that leave the region lose their weight. Returns false where none was left and the
-  /// belief became uniform over the region.
+  /// Moves the particles; those that the region does not keep lose their weight. Returns false where none was left and
+  /// the belief became uniform over the region.
   template <MotionModel Motion>
   bool predict(const Motion& motion) {
     begin_step();

@@ -18,8 +18,11 @@ struct AcceptanceRegion {
   std::optional<Circle> circle;  ///< intersects the box in more than a point
   Angle heading;                 ///< centre of the range
   Angle heading_half_width = Angle::degrees(180.0);
+  double beyond_m = 0.0;  ///< so far outside particles live on, though none is drawn there
 
   bool contains(GridPoint point) const;
+  /// Whether a particle that has come there lives on.
+  bool keeps(GridPoint point) const;
   /// Uniform over the region and its headings, without drift.
   ParticleState draw(RandomStream& random) const;
 };

@@ -53,6 +53,7 @@ TrackSettings TrackSettings::paper(int particles) {
   TrackSettings settings;
   settings.start = TrackStart::kUniform;
   settings.recovers = false;
+  settings.beyond_map_m = 0.0;
   settings.filter = FilterOptions::paper(particles);
   settings.evidence.kind = EvidenceKind::kEquation7;
   return settings;
@@ -62,7 +63,9 @@ Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
       settings_(std::move(settings)),
       start_(acceptance_of(region_of(map_, settings_.prior))),
-      region_(acceptance_of(region_of(map_, {}))) {}
+      region_(acceptance_of(region_of(map_, {}))) {
+  region_.beyond_m = settings_.beyond_map_m;
+}
 
 /// One step on its way.
 class Tracker::Step {
@@ -256,8 +259,8 @@ class Tracker::Step {
     }
   }
 
-  /// A circle around all that the belief holds for possible.
-  Prior belief() const {
+  /// A circle around all that the belief holds for possible; nullopt where that is beyond the map.
+  std::optional<Prior> belief() const {
     const Particles& p = filter_.particles();
     GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -265,16 +268,23 @@ class Tracker::Step {
       box.max = {std::max(box.max.east_m, p.east_m[i]), std::max(box.max.north_m, p.north_m[i])};
     }
     const GridPoint centre{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
+    const double radius_m = distance_m(box.min, box.max) / 2.0;
+    const GridBox& map = tracker_.map_.extent;
+    const GridPoint nearest{std::clamp(centre.east_m, map.min.east_m, map.max.east_m),
+                            std::clamp(centre.north_m, map.min.north_m, map.max.north_m)};
+    if (distance_m(nearest, centre) > radius_m) return std::nullopt;
     Prior prior;
-    prior.circle = GeoCircle{tracker_.map_.zone.unproject(centre), distance_m(box.min, box.max) / 2.0 + 1.0};
+    prior.circle = GeoCircle{tracker_.map_.zone.unproject(centre), radius_m + 1.0};
     return prior;
   }
 
   /// The prior as it was given holds for the first step only.
   bool start_by_search() {
-    state_.searched = true;
     const bool first = state_.sequence < 0;
-    const std::optional<Fix> fix = searched(first ? settings_.prior : belief());
+    const std::optional<Prior> prior = first ? settings_.prior : belief();
+    if (!prior) return false;
+    state_.searched = true;
+    const std::optional<Fix> fix = searched(*prior);
     if (!fix || fix->modes.empty()) return false;
     double known = 0.0;
     for (const FixMode& mode : fix->modes) known += mode.weight;

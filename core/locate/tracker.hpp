@@ -55,11 +55,14 @@ struct TrackSettings {
   int measure_every = 1;  ///< weight by every k-th feature map only
   double converged_weight = 0.9;
   double converged_sigma_m = 25.0;
+  /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
+  /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
+  double beyond_map_m = 1000.0;
   double max_search_km2 = 500.0;          ///< larger priors start uniformly; recovery looks around the last place
   std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
   std::shared_ptr<const Calibration> calibration;  ///< of its searches; nullptr = the one that is shipped
 
-  /// The paper's filter: uniform start, no search, equation (7).
+  /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.
   static TrackSettings paper(int particles);
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -105,6 +106,33 @@ TEST(Filter, NeedsFewerParticlesOnceItKnowsWhereItIs) {
     filter.correct(seen_at(filter.particles(), {500.0, 300.0}, 15.0));
   }
   EXPECT_EQ(filter.particles().size(), 1'000U);
+}
+
+TEST(Filter, KeepsParticlesBeyondTheRegionAsFarAsItSaysAndDrawsNoneThere) {
+  AcceptanceRegion wide = kSquare;
+  wide.beyond_m = 200.0;
+  FilterOptions options = FilterOptions::paper(4000);
+  options.injected_share = 0.5;
+  Filter filter(options, wide, 5);
+  const auto beyond = [&](double north_m) {
+    return std::ranges::count_if(filter.particles().north_m, [&](double n) { return n > north_m; });
+  };
+  filter.start_uniformly(wide);
+  EXPECT_EQ(beyond(1000.0), 0);
+  const OdometryMotion ahead({150.0, 0.0, Angle()}, {});
+  // In particles of every heading, a share of about 150 / (1000 pi) crosses a side of the square.
+  filter.predict(ahead);
+  EXPECT_NEAR(static_cast<double>(beyond(1000.0)), 191.0, 5.0 * std::sqrt(191.0));
+  for (std::size_t i = 0; i < filter.particles().size(); ++i) {
+    EXPECT_GT(filter.particles().weight[i], 0.0) << "150 m are fewer than 200";
+  }
+  filter.predict(ahead);
+  double weight = 0.0;
+  for (std::size_t i = 0; i < filter.particles().size(); ++i) {
+    if (filter.particles().north_m[i] > 1200.0) weight += filter.particles().weight[i];
+  }
+  EXPECT_GT(beyond(1200.0), 0);
+  EXPECT_EQ(weight, 0.0);
 }
 
 TEST(Filter, TakesParticlesThatLeaveTheRegionOutOfTheBelief) {

@@ -82,6 +82,38 @@ TEST_F(Track, CountsLostStepsAndWidensForThem) {
   EXPECT_GT(late.clusters[0].sigma_m[0], sure + 5.0);
 }
 
+TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
+  // The map ends where the vehicle turns round: it flies up to 230 m beyond, where its frames show nothing of the map.
+  const RoadGrid west = view_.read({2.0, {300'000, -3'200'000}, 400, 700});
+  const MapView part = testing::view_of(west);
+  const double rim_m = west.geometry.box().max.east_m;
+  std::mt19937_64 random(12);
+  GridPose pose{{rim_m - 160.0, 6'399'500.0}, Angle::degrees(90.0)};
+  const auto flown = [&](const Tracker& tracker, int i) {
+    StepInput input;
+    input.sequence = i;
+    input.time_us = 1'000'000 * (input.sequence + 1);
+    if (i > 0) {
+      const Angle turn = Angle::degrees(i >= 13 && i < 33 ? 9.0 : 0.0);
+      pose.position = beside(pose, 0.0, 20.0);
+      pose.heading = (pose.heading + turn).wrapped();
+      input.odometry = Odometry{20.0 * testing::uniform(random, 0.98, 1.02), 0.0, turn};
+    }
+    input.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random);
+    return advance(tracker, input);
+  };
+  const Tracker tracker(part, settings());
+  double farthest_m = 0.0;
+  for (int i = 0; i < 48; ++i) {
+    const TrackEstimate estimate = flown(tracker, i);
+    if (i < 5) continue;
+    farthest_m = std::max(farthest_m, pose.position.east_m - rim_m);
+    EXPECT_LT(error_m(estimate, pose), i < 42 ? 40.0 : 12.0) << "step " << i;
+    EXPECT_EQ(estimate.resets, 0U);
+  }
+  EXPECT_GT(farthest_m, 200.0);
+}
+
 TEST_F(Track, BeginsAnewAfterALongGap) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 8);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "core/detect/frame_image.hpp"
 #include "core/detect/ground_scale.hpp"
@@ -66,6 +68,24 @@ bool is_whole(Bytes bytes, const ImageHeader& header) {
   return std::search(rest.begin(), rest.end(), kEnd.begin(), kEnd.end()) != rest.end();
 }
 
+/// A frame that was sent as a feature map would be searched for as if its brightness were road.
+void refuse_coloured(const GroundImage& picture) {
+  constexpr int kStillGrey = 12;
+  constexpr double kStray = 0.01;
+  if (picture.pixels.channels() == 1) return;
+  std::vector<cv::Mat> channels;
+  cv::split(picture.pixels, channels);
+  const cv::Mat spread =
+      cv::max(cv::max(channels[0], channels[1]), channels[2]) - cv::min(cv::min(channels[0], channels[1]), channels[2]);
+  const int coloured = cv::countNonZero((spread > kStillGrey) & picture.observed);
+  if (coloured <= kStray * cv::countNonZero(picture.observed)) return;
+  throw InvalidInput(
+      "feature-map-coloured",
+      fmt::format("a feature map is grey, and {} pixels of this picture are coloured: is it a frame? Then "
+                  "say so, with its metres per pixel or its camera",
+                  coloured));
+}
+
 }  // namespace
 
 std::optional<ImageHeader> read_image_header(Bytes bytes) {
@@ -95,6 +115,7 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
 
 CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
   const GroundImage frame = frame_image(decode_image(bytes, max_pixels), 1.0);
+  refuse_coloured(frame);
   const cv::Mat grey = brightness_of(frame);
   CellArray cells(grey.cols, grey.rows);
   for (int row = 0; row < grey.rows; ++row) {

@@ -27,12 +27,14 @@ struct ImageHeader {
 /// nullopt for bytes that are neither PNG (W3C PNG 5.2, 11.2.2) nor JPEG (ITU-T T.81 B.2.2).
 std::optional<ImageHeader> read_image_header(Bytes bytes);
 
-/// The image as it is stored: 8 or 16 bits; grey, BGR or BGR with alpha; frame_image() makes a picture of the ground of
-/// it. Throws InvalidInput ("image-format", "image-damaged") and LimitExceeded ("image-too-large").
+/// The image as it is stored, whatever EXIF says of how it is to be turned: 8 or 16 bits; grey, BGR or BGR with alpha;
+/// frame_image() makes a picture of the ground of it. Throws InvalidInput ("image-format", "image-damaged") and
+/// LimitExceeded ("image-too-large").
 cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels);
 
 /// A feature map as a picture: grey k = probability k / 254 (255 counts as 254, so that 0/255 masks work); alpha below
-/// one half = unobserved. 16-bit grey is scaled linearly. Throws as decode_image.
+/// one half = unobserved. 16-bit grey is scaled linearly. Throws as decode_image, and InvalidInput
+/// ("feature-map-coloured").
 CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels);
 
 /// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell.

@@ -40,7 +40,9 @@ struct Mosaic::Image {
   std::string path;
   GridBox footprint;
   double gsd_m = 0.0;
-  std::shared_ptr<const Collar> collar;
+  std::optional<ValueRange> declared;
+  ValueRange range = {};
+  std::shared_ptr<const Collar> collar = nullptr;
 };
 
 struct Mosaic::Handle {
@@ -53,21 +55,18 @@ struct Mosaic::Handle {
 
 Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
     : options_(options), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
-  bool declared = rule == ValueRule::kPicture;
   std::vector<float> values;
   for (std::string& path : paths) {
     RasterFile file(path, options);
     const Placement placement(file, zone);
-    Image image{std::move(path), placement.footprint(), placement.gsd_m(), nullptr};
+    Image image{std::move(path), placement.footprint(), placement.gsd_m(),
+                rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};
     extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
     gsd_m_ = std::min(gsd_m_, image.gsd_m);
     channels_ = std::max(channels_, file.channels());
     integers_ = integers_ || file.holds_integers();
     if (images_.empty()) crs_ = crs_name(file.crs());
-    declared = declared && file.declared_range().has_value();
-    if (declared) {
-      range_ = *file.declared_range();
-    } else {
+    if (!image.declared) {
       const std::vector<float> sample = file.sample_values();
       values.insert(values.end(), sample.begin(), sample.end());
     }
@@ -77,13 +76,18 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     const auto [least, most] = std::ranges::minmax_element(values);
     sampled_ = {static_cast<double>(*least), static_cast<double>(*most)};
   }
-  if (!declared)
+  const bool all_declared = std::ranges::all_of(images_, [](const Image& image) { return image.declared.has_value(); });
+  if (all_declared) {
+    range_ = *images_.front().declared;
+  } else {
     range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
+  }
   if (rule == ValueRule::kShare) channels_ = 1;
   for (Image& image : images_) {
-    if (!options.collar) break;
+    image.range = image.declared.value_or(range_);
+    if (!options.collar) continue;
     RasterFile file(image.path, options);
-    image.collar = std::make_shared<Collar>(file, *options.collar, range_);
+    image.collar = std::make_shared<Collar>(file, *options.collar, image.range);
   }
 }
 
@@ -101,7 +105,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   for (std::size_t i = 0; i < images_.size(); ++i) {
     if (!images_[i].footprint.overlaps(box)) continue;
     std::unique_ptr<Handle> handle = borrow(i, gsd_m);
-    warp_into({*handle->file, handle->placement, range_, images_[i].collar.get()}, box, result);
+    warp_into({*handle->file, handle->placement, images_[i].range, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));
   }
   return result;

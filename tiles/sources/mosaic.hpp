@@ -21,8 +21,8 @@ namespace roadfix {
 
 /// How values become 0..255 where the type does not say it.
 enum class ValueRule {
-  /// Bytes as they are (NBITS respected), anything else from the 0.5th to the 99.5th percentile of values sampled
-  /// evenly over all images of the source: one range for all bands, images and blocks.
+  /// Bytes as they are (NBITS of each image respected), anything else from the 0.5th to the 99.5th percentile of values
+  /// sampled evenly over all such images of the source: one range for all their bands, images and blocks.
   kPicture,
   /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
   kShare,
@@ -39,6 +39,7 @@ class Mosaic {
   /// Of the finest image.
   double gsd_m() const { return gsd_m_; }
   bool holds_integers() const { return integers_; }
+  /// Of the images whose type does not say it; of the first one where all types do.
   ValueRange range() const { return range_; }
   /// Least and largest value sampled of a source of shares; low > high where none is valid, or they are colours.
   ValueRange sampled() const { return sampled_; }

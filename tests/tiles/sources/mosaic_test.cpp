@@ -11,8 +11,10 @@
 
 #include "core/geodesy/utm.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/collar.hpp"
 
 namespace roadfix {
 namespace {
@@ -237,6 +239,26 @@ TEST_F(MosaicTest, SixteenBitImagesOfOneSourceShareOneRange) {
   const Mosaic mosaic({image("a.tif", 0, 1000), image("b.tif", 64, 3000)}, {}, ValueRule::kPicture, kZone);
   EXPECT_NEAR(mosaic.range().low, 1000.0, 20.0);
   EXPECT_NEAR(mosaic.range().high, 3630.0, 20.0);
+}
+
+TEST_F(MosaicTest, BytesStayAsTheyAreBesideImagesOfOtherTypes) {
+  RasterSpec deep{.type = GDT_UInt16};
+  deep.transform = {kCentre.east_m + 64, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
+  const std::string wide =
+      write_raster(folder / "wide.tif", deep, [](int, int col, int) { return 1000.0 + 10.0 * col; });
+  RasterSpec bit{.creation = {"NBITS=1"}};
+  bit.transform = {kCentre.east_m + 128, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
+  const std::string drawn = write_raster(folder / "drawn.tif", bit, [](int, int, int) { return 1.0; });
+  const std::string bytes = square("bytes.tif", 0, 0, 64, 100);
+  for (const auto& paths : {std::vector{bytes, wide, drawn}, std::vector{drawn, wide, bytes}}) {
+    const Mosaic mosaic(paths, {}, ValueRule::kPicture, kZone);
+    cv::Mat grey;
+    cv::extractChannel(mosaic.view(box(0, 0, 192), 1.0).pixels, grey, 0);
+    const int row = 192 - 32;
+    EXPECT_EQ(grey.at<std::uint8_t>(row, 32), 100);
+    EXPECT_NEAR(grey.at<std::uint8_t>(row, 96), 128, 4);
+    EXPECT_EQ(grey.at<std::uint8_t>(row, 160), 255);
+  }
 }
 
 TEST_F(MosaicTest, ADeclaredCollarIsNotObservedButAWhiteRoofIs) {

@@ -63,8 +63,10 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--date", a.record.date, "Date of the content, ISO 8601");
   command.add_option("--licence", a.record.licence, "Licence of the content");
   command.add_option("--attribution", a.record.attribution, "Whom to name");
-  command.add_option("--registration-sigma", a.registration_sigma_m,
-                     "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors");
+  command
+      .add_option("--registration-sigma", a.registration_sigma_m,
+                  "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "core/units/error.hpp"
 
@@ -77,20 +77,17 @@ void Collar::clear(cv::Rect window, RasterPixels& pixels) const {
 Rgb parse_colour(const std::string& text) {
   if (text == "white") return {255, 255, 255};
   if (text == "black") return {0, 0, 0};
-  std::vector<std::uint8_t> parts;
+  std::array<std::uint8_t, 3> parts{};
   const char* at = text.data();
-  const char* end = at + text.size();
-  while (at <= end) {
-    std::uint8_t value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc{}) break;
-    parts.push_back(value);
-    at = next;
-    if (at == end) break;
-    if (*at != ',') break;
-    ++at;
+  const char* const end = at + text.size();
+  bool good = true;
+  for (std::size_t i = 0; good && i < parts.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, parts[i]);
+    const bool last = i + 1 == parts.size();
+    good = error == std::errc{} && (last ? next == end : next != end && *next == ',');
+    at = next + (good && !last ? 1 : 0);
   }
-  if (parts.size() != 3 || at != end) {
+  if (!good) {
     throw InvalidInput("colour-unknown",
                        fmt::format("'{}' is no colour: write white, black or red,green,blue with 0 to 255 each", text));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -18,13 +19,6 @@ constexpr std::size_t kMaxBoundary = 70;  // RFC 2046 5.1.1
 
 [[noreturn]] void refuse(const std::string& what, std::size_t byte) {
   throw InvalidField("bad-multipart", "body", fmt::format("the body is not multipart/form-data: {}", what), byte);
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return result;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -44,7 +38,7 @@ std::optional<std::string> attribute(std::string_view header, std::string_view n
     const bool is_quoted = value.starts_with('"');
     const std::size_t end = is_quoted ? value.find('"', 1) : std::min(value.find(';'), value.size());
     if (end == std::string_view::npos) return std::nullopt;
-    if (lower(trimmed(rest.substr(0, equals))) == name) {
+    if (lower_case(trimmed(rest.substr(0, equals))) == name) {
       return std::string(is_quoted ? value.substr(1, end - 1) : trimmed(value.substr(0, end)));
     }
     const std::string_view after = value.substr(end);
@@ -66,9 +60,9 @@ Part headers_of(std::string_view body, std::size_t& at) {
     if (line.empty()) break;
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) refuse("a part's header has no colon", line_at);
-    const std::string name = lower(trimmed(line.substr(0, colon)));
+    const std::string name = lower_case(trimmed(line.substr(0, colon)));
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (name == "content-type") part.media_type = lower(trimmed(value.substr(0, value.find(';'))));
+    if (name == "content-type") part.media_type = lower_case(trimmed(value.substr(0, value.find(';'))));
     if (name != "content-disposition") continue;
     const auto found = attribute(value, "name");
     if (!found) refuse("a part has no name", line_at);

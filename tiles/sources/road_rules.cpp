@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix {
 namespace {
@@ -73,10 +74,7 @@ std::string plain(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kBlank);
   if (first == std::string_view::npos) return {};
-  std::string result(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
-  std::ranges::transform(result, result.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
+  return lower_case(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
 }
 
 bool yes(const std::string& value) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -21,11 +21,7 @@ constexpr std::array<std::string_view, 9> kImageEndings{".tif", ".tiff", ".jpg",
 constexpr std::array<std::string_view, 8> kVectorEndings{".shp", ".geojson", ".json", ".gpkg",
                                                          ".pbf", ".osm",     ".mvt",  ".fgb"};
 
-std::string ending_of(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
+std::string ending_of(const fs::path& path) { return lower_case(path.extension().string()); }
 
 template <typename List>
 bool listed(const List& list, std::string_view value) {

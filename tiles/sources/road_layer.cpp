@@ -93,6 +93,10 @@ std::string RoadLayer::attributes() const {
   return names.empty() ? "no attributes" : names;
 }
 
+std::string RoadLayer::class_of(const OGRFeature& feature) const {
+  return classified_ ? FeatureTags(feature)(rules_.class_attribute()) : std::string();
+}
+
 std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
   FeatureTags tags(feature);
   if (holds_a_line(*feature.GetGeometryRef())) {

@@ -30,6 +30,8 @@ class RoadLayer {
 
   /// Width in metres to draw the feature with, nullopt to leave it out. Its geometry must not be null.
   std::optional<double> width_of(const OGRFeature& feature);
+  /// As it stands in the file; empty where the layer or the feature has none.
+  std::string class_of(const OGRFeature& feature) const;
   /// Lines that width_of() was asked about, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }

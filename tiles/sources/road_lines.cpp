@@ -21,7 +21,14 @@
 namespace roadfix {
 namespace {
 
-bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, double width_m, RoadNetwork& network) {
+/// How the lines of a feature are drawn.
+struct Drawing {
+  double width_m = 0.0;
+  std::size_t road_class = 0;
+};
+
+bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
+              RoadNetwork& network) {
   const int count = line.getNumPoints();
   if (count < 2) return false;
   std::vector<double> x(static_cast<std::size_t>(count));
@@ -40,28 +47,35 @@ bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, 
     }
     network.points.push_back({x[i], y[i]});
   }
-  network.lines.push_back({first, x.size(), width_m / 2.0});
+  network.lines.push_back({first, x.size(), drawing.width_m / 2.0, drawing.road_class});
   return true;
 }
 
 /// Every line of the geometry, however deep it is nested. False when it has none that could be placed.
-bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, double width_m,
+bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
                   RoadNetwork& network) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbLineString) return add_line(*geometry.toLineString(), to_plane, width_m, network);
+  if (type == wkbLineString) return add_line(*geometry.toLineString(), to_plane, drawing, network);
   if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != FALSE) {
     bool any = false;
     for (const OGRGeometry* part : *geometry.toGeometryCollection()) {
-      any = add_geometry(*part, to_plane, width_m, network) || any;
+      any = add_geometry(*part, to_plane, drawing, network) || any;
     }
     return any;
   }
   if (OGR_GT_IsCurve(type) != FALSE) {
     const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
     return straight && wkbFlatten(straight->getGeometryType()) == wkbLineString &&
-           add_line(*straight->toLineString(), to_plane, width_m, network);
+           add_line(*straight->toLineString(), to_plane, drawing, network);
   }
   return false;
+}
+
+std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
+  const auto found = std::ranges::find(network.classes, road_class);
+  const auto index = static_cast<std::size_t>(found - network.classes.begin());
+  if (found == network.classes.end()) network.classes.push_back(road_class);
+  return index;
 }
 
 /// Lines of the layers that tell roads apart, and of those that do not.
@@ -130,7 +144,10 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     RoadLayer& layer = found->second;
     RoadNetwork& network = layer.classified() ? parts.classified : parts.plain;
     const std::optional<double> width = layer.width_of(feature);
-    if (!width || !add_geometry(*geometry, layer.to_plane(), *width, network)) ++network.left_out;
+    if (!width ||
+        !add_geometry(*geometry, layer.to_plane(), {*width, index_of(layer.class_of(feature), network)}, network)) {
+      ++network.left_out;
+    }
   });
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);

@@ -1,6 +1,6 @@
 // Reads road centrelines from anything that OGR reads into memory, in the plane of a zone.
 //
-// Memory: 16 bytes a point and 24 bytes a line, about 40 MB for a country of a million road segments.
+// Memory: 16 bytes a point and 32 bytes a line, about 40 MB for a country of a million road segments.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,13 @@ struct RoadLine {
   std::size_t first_point = 0;
   std::size_t points = 0;
   double half_width_m = 0.0;
+  std::size_t road_class = 0;  ///< index into RoadNetwork::classes
 };
 
 struct RoadNetwork {
   std::vector<GridPoint> points;
   std::vector<RoadLine> lines;
+  std::vector<std::string> classes;  ///< each once, as it stands in the file; empty of lines without
   std::vector<PlanePolygon> covered;
   std::int64_t left_out = 0;  ///< features that the rules leave out or that have no place in the zone
   std::string crs;

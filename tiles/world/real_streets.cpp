@@ -3,14 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <memory>
-#include <optional>
+#include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/osm_tags.hpp"
-#include "tiles/sources/road_rules.hpp"
-#include "tiles/sources/vector_file.hpp"
+#include "tiles/sources/road_lines.hpp"
 #include "tiles/world/street_network.hpp"
 
 namespace roadfix::world {
@@ -18,30 +14,11 @@ namespace {
 
 constexpr double kSurroundingsM = 150.0;
 
-std::string tag_of(const OGRFeature& feature, std::string_view key) {
-  const int field = feature.GetFieldIndex(std::string(key).c_str());
-  if (field >= 0 && feature.IsFieldSetAndNotNull(field) != 0) return feature.GetFieldAsString(field);
-  const int packed = feature.GetFieldIndex("other_tags");
-  if (packed < 0 || feature.IsFieldSetAndNotNull(packed) == 0) return {};
-  const auto tags = parse_hstore(feature.GetFieldAsString(packed));
-  const auto found = tags.find(key);
-  return found != tags.end() ? found->second : std::string();
-}
-
-/// Calls visit for each line of the geometry, however deep it is nested.
-void for_each_line(const OGRGeometry& geometry, const std::function<void(const OGRLineString&)>& visit) {
-  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbLineString) {
-    visit(*geometry.toLineString());
-  } else if (type == wkbMultiLineString || type == wkbGeometryCollection) {
-    for (const OGRGeometry* part : *geometry.toGeometryCollection()) for_each_line(*part, visit);
-  }
-}
-
-Polyline plan_line(const OGRLineString& line, const Placement& placement) {
+Polyline plan_line(const RoadNetwork& network, const RoadLine& road, const Placement& placement) {
   Polyline result;
-  for (int i = 0; i < line.getNumPoints(); ++i) {
-    result.emplace_back(line.getX(i) - placement.north_west.east_m, placement.north_west.north_m - line.getY(i));
+  for (std::size_t i = 0; i < road.points; ++i) {
+    const GridPoint p = network.points[road.first_point + i];
+    result.emplace_back(p.east_m - placement.north_west.east_m, placement.north_west.north_m - p.north_m);
   }
   return result;
 }
@@ -57,30 +34,28 @@ cv::Rect2d picture(const Placement& placement, double margin_m) {
           placement.rows * placement.gsd_m + 2.0 * margin_m};
 }
 
+/// The extent of a large country may have no place in the zone; the picture has.
+VectorOptions around(const Placement& placement, const cv::Rect2d& wanted) {
+  const GridPoint corner = placement.north_west;
+  const LatLon low = placement.zone.unproject({corner.east_m + wanted.x, corner.north_m - wanted.y - wanted.height});
+  const LatLon high = placement.zone.unproject({corner.east_m + wanted.x + wanted.width, corner.north_m - wanted.y});
+  VectorOptions options;
+  options.extent = fmt::format("{},{},{},{}", low.lon_deg, low.lat_deg, high.lon_deg, high.lat_deg);
+  return options;
+}
+
 }  // namespace
 
 std::vector<Street> read_streets(const std::string& path, const Placement& placement) {
-  const RoadRules rules;
-  VectorFile file(path, {});
-  const OGRSpatialReference plane = utm_reference(placement.zone);
-  std::map<const OGRLayer*, TransformationPtr> to_plane;
-  for (OGRLayer* layer : file.layers()) to_plane[layer] = transformation(file.crs_of(*layer), plane, path);
   const cv::Rect2d wanted = picture(placement, kSurroundingsM);
+  const RoadNetwork network = read_road_network({path}, around(placement, wanted), RoadRules(), placement.zone);
   std::vector<Street> streets;
-  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-    if (feature.GetGeometryRef() == nullptr || !to_plane.contains(&layer)) return;
-    const TagLookup tags = [&](std::string_view key) { return tag_of(feature, key); };
-    const bool classified = layer.GetLayerDefn()->GetFieldIndex(rules.class_attribute().c_str()) >= 0;
-    const std::optional<double> width = rules.width_of(tags, classified);
-    if (!width) return;
-    const std::unique_ptr<OGRGeometry> geometry(feature.GetGeometryRef()->clone());
-    if (geometry->transform(to_plane.at(&layer).get()) != OGRERR_NONE) return;
-    const std::string road_class = classified ? tags(rules.class_attribute()) : "road";
-    for_each_line(*geometry, [&](const OGRLineString& line) {
-      Polyline points = plan_line(line, placement);
-      if (points.size() >= 2 && touches(points, wanted)) streets.push_back({road_class, *width, std::move(points)});
-    });
-  });
+  for (const RoadLine& road : network.lines) {
+    Polyline line = plan_line(network, road, placement);
+    if (!touches(line, wanted)) continue;
+    const std::string& road_class = network.classes[road.road_class];
+    streets.push_back({road_class.empty() ? "road" : road_class, 2.0 * road.half_width_m, std::move(line)});
+  }
   if (std::ranges::none_of(streets, [&](const Street& s) { return touches(s.line, picture(placement, 0.0)); })) {
     throw InvalidInput(
         "world-without-roads",

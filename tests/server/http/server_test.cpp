@@ -158,7 +158,7 @@ TEST_F(HttpServer, ClosesConnectionsThatStayIdle) {
   const auto server = started();
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(raw(""), "");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, 3s);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 10s) << "not the usual 15 s";
 }
 
 TEST_F(HttpServer, TellsConnectionsBeyondItsQueueToComeBack) {

@@ -102,6 +102,10 @@ TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {
   const std::string before = fingerprint({path}, "x");
   EXPECT_EQ(fingerprint({path}, "x"), before);
   EXPECT_NE(fingerprint({path}, "y"), before);
+  std::ofstream(path + ".aux.xml") << "<PAMDataset><Metadata><MDI key=\"a\">b</MDI></Metadata></PAMDataset>";
+  EXPECT_NE(fingerprint({path}, "x"), before);
+  std::filesystem::remove(path + ".aux.xml");
+  EXPECT_EQ(fingerprint({path}, "x"), before);
   image("a.tif", 2.0);
   EXPECT_NE(fingerprint({path}, "x"), before);
 }

@@ -55,7 +55,8 @@ class RasterFile {
   /// The range that the type declares: 0..255, less where NBITS says so; nullopt where the values must be looked at.
   std::optional<ValueRange> declared_range() const;
   bool holds_integers() const;
-  /// Width of the coarsest overview that is still at least `reduction` times finer than needed; -1 for none.
+  /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image; -1 for
+  /// none.
   int overview_for(double reduction) const;
 
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".

@@ -72,7 +72,7 @@ cv::Rect source_window(const PixelCoordinates& coordinates, cv::Size image, int 
   const auto last = [&](double x, int limit) {
     return std::min(limit, static_cast<int>(std::min(std::ceil(x) + margin, static_cast<double>(limit))));
   };
-  const cv::Point from(first(std::min(low.x, 1e9)), first(std::min(low.y, 1e9)));
+  const cv::Point from(first(std::clamp(low.x, 0.0, 1e9)), first(std::clamp(low.y, 0.0, 1e9)));
   const cv::Point to(last(high.x, image.width), last(high.y, image.height));
   if (to.x <= from.x || to.y <= from.y) return {};
   return {from, to};

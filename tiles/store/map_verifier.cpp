@@ -114,7 +114,9 @@ class Verifier {
                    "s.in_force = 1 AND b.done = 0 GROUP BY s.id");
     while (open.step()) {
       report("ledger-broken",
-             fmt::format("source '{}' is in force but lacks {} blocks. {}", open.text(0), open.integer(1), kRepair));
+             fmt::format("source '{}' is in force but lacks {} blocks. Ingest it again with --replace, or restore the "
+                         "map from a copy",
+                         open.text(0), open.integer(1)));
     }
   }
 

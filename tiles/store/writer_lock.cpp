@@ -33,7 +33,14 @@ WriterLock::WriterLock(const std::filesystem::path& map) : path_(map.string() + 
                                                       map.string(), std::strerror(errno)));
     }
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
       close(descriptor_);
+      if (reason != EWOULDBLOCK) {
+        throw IoFailure("map-not-writable",
+                        fmt::format("{}: the map cannot be locked against other writers: {}. Put it on a file system "
+                                    "that has locks",
+                                    map.string(), std::strerror(reason)));
+      }
       throw Interrupted("map-in-use",
                         fmt::format("{}: another process is writing this map. Wait until it has ended", map.string()));
     }

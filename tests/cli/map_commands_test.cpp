@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tests/support/run_program.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -41,7 +42,15 @@ TEST_F(MapCommands, InfoTellsWhatTheMapHolds) {
   EXPECT_EQ(json["epsg"], 32637);
   EXPECT_EQ(json["tiles"], 4);
   EXPECT_EQ(json["sources"][0]["name"], "a");
-  EXPECT_NEAR(json["bbox"][1].get<double>(), 37.76, 0.01);
+  const std::vector<double> bbox = json["bbox"];
+  EXPECT_NEAR(bbox[1], 37.76, 0.01);
+  const std::vector<double> extent = json["extent_m"];
+  for (const GridPoint corner : {GridPoint{extent[0], extent[1]}, GridPoint{extent[0], extent[3]},
+                                 GridPoint{extent[2], extent[1]}, GridPoint{extent[2], extent[3]}}) {
+    const LatLon place = settings_37n().zone.unproject(corner);
+    EXPECT_TRUE(place.lon_deg >= bbox[0] && place.lon_deg <= bbox[2]) << place.lon_deg;
+    EXPECT_TRUE(place.lat_deg >= bbox[1] && place.lat_deg <= bbox[3]) << place.lat_deg;
+  }
 }
 
 TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {

@@ -100,7 +100,7 @@ Street unpaved(Random& random) {
   track.width_m = std::round(random.uniform(2.5, 4.0) * 10.0) / 10.0;
   track.surface = kSurfaces[random.index(kSurfaces.size())];
   track.grass_strip = track.width_m < 3.5 && random.chance(0.4);
-  track.wear = random.uniform(0.6, 1.0);
+  track.wear = random.uniform(0.4, 1.0);
   return track;
 }
 

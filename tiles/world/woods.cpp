@@ -35,7 +35,7 @@ class Forester {
         conifers_(random.unit()),
         blocked_(plan),
         phase_{random.uniform(0.0, 6.3), random.uniform(0.0, 6.3)},
-        closeness_(random.uniform(-0.8, 1.7)) {
+        closeness_(random.uniform(-0.8, 3.0)) {
     Corridor streets(plan);
     streets.add(plan.streets, 0.0);
     to_street_ = streets.distances();

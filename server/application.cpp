@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "core/units/error.hpp"
 #include "server/api/problem.hpp"
+#include "server/failure_log.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
 #include "server/service.hpp"
@@ -14,17 +14,12 @@ namespace roadfix::server {
 namespace {
 
 /// Faults of the service reach its log whole; the client learns only what it can act on.
-http::Response error_response(std::exception_ptr thrown) {
-  http::Response response = api::problem(thrown);
-  if (response.status != 500) return response;
-  try {
-    std::rethrow_exception(std::move(thrown));
-  } catch (const Error& error) {
-    spdlog::error("a request failed: {} [{}]", error.what(), error.code());
-  } catch (const std::exception& error) {
-    spdlog::error("a request failed: {}", error.what());
-  }
-  return response;
+http::ErrorResponse error_response() {
+  return [failures = std::make_shared<FailureLog>()](const std::exception_ptr& thrown, const http::Request& request) {
+    http::Response response = api::problem(thrown);
+    if (const auto line = failures->line(thrown, response.status, request.id)) spdlog::error("{}", *line);
+    return response;
+  };
 }
 
 }  // namespace
@@ -39,7 +34,14 @@ struct Application::Parts {
                configuration.track_limits, maps, configuration.limits, configuration.calibration),
         service{maps,     *detector, configuration.limits,         configuration.http,       metrics,
                 pictures, tracks,    configuration.search_threads, configuration.calibration},
-        server(configuration.http, make_router(service), error_response, metrics) {
+        server(configuration.http, make_router(service), error_response(), metrics) {
+    metrics.describe(kAnswers, "Fixes and steps of tracks by their status.");
+    metrics.gauge("process_start_time_seconds", "When the service started, in seconds since 1970.",
+                  [start = std::chrono::system_clock::now()] {
+                    return std::chrono::duration<double>(start.time_since_epoch()).count();
+                  });
+    metrics.gauge("roadfix_tracks_available", "1 where the store of the tracks can be opened, else 0.",
+                  [this] { return tracks.problem() ? 0.0 : 1.0; });
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",
                   [this] { return static_cast<double>(maps.unreadable().size()); });

@@ -28,6 +28,9 @@ struct Service {
   std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
 };
 
+/// How often what was answered: the one figure that tells a service that works from one that only runs.
+constexpr const char* kAnswers = "roadfix_answers_total";
+
 /// Every route of the service; schema/openapi.json describes them. `service` must outlive the router's handlers.
 http::Router make_router(const Service& service);
 

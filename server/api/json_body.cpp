@@ -57,6 +57,13 @@ class NamesOnce {
   std::vector<std::set<std::string>> seen_;  ///< of the objects that are open, outermost first
 };
 
+/// Without the library's own name of the error: "[json.exception.parse_error.101] parse error at line 1, ...".
+std::string reason_of(const json::exception& error) {
+  const std::string text = error.what();
+  const std::size_t end = text.starts_with('[') ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
+
 }  // namespace
 
 json parse_json(std::string_view text, const JsonLimits& limits) {
@@ -64,9 +71,9 @@ json parse_json(std::string_view text, const JsonLimits& limits) {
   try {
     return json::parse(text, NamesOnce());
   } catch (const json::parse_error& error) {
-    throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", error.what()), error.byte);
+    throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", reason_of(error)), error.byte);
   } catch (const json::exception& error) {
-    throw InvalidField("bad-json", "body", fmt::format("the body is not usable JSON: {}", error.what()));
+    throw InvalidField("bad-json", "body", fmt::format("the body is not usable JSON: {}", reason_of(error)));
   }
 }
 

@@ -36,6 +36,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"head-too-large", 431},
       // Requests that cannot be read as HTTP, or were not sent whole.
       {"bad-request", 400},
+      {"bad-header", 400},
       {"bad-url", 400},
       {"bad-content-length", 400},
       {"bad-body-encoding", 400},

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -41,6 +43,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   options.threads = service.search_threads;
   api::shorten(options, request.deadline);
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
+  service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));
   if (format.is_json()) return json_response(answer);
   return api::position_response(answer, format, time_of(request, content.fields));
 }

@@ -39,7 +39,9 @@ http::Response limits(const Service& service) {
 }  // namespace
 
 void add_operations_routes(http::Router& router, const Service& service) {
-  router.add({"GET", "/healthz", {}, false, [](const http::Request&) { return json_response({{"status", "ok"}}); }});
+  router.add({"GET", "/healthz", {}, false, [](const http::Request&) {
+                return json_response({{"status", "ok"}, {"version", ROADFIX_VERSION}});
+              }});
   router.add({"GET", "/readyz", {}, false, [&service](const http::Request&) { return ready(service); }});
   router.add({"GET", "/metrics", {}, false, [&service](const http::Request&) {
                 return http::Response{200, "text/plain; version=0.0.4", service.metrics.text()};

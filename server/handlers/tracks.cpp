@@ -101,7 +101,10 @@ http::Response post_step(const Service& service, const http::Request& request) {
   // Two searches, and the rest of the step.
   limits.search_time = std::max(api::time_left(request.deadline) / 3, std::chrono::milliseconds(1));
   limits.stop = limit.token();
-  return step_response(request, format, input, service.tracks.step(track.id, input, digest, limits));
+  std::string answer = service.tracks.step(track.id, input, digest, limits);
+  const std::string status = api::stored_json(answer).at("status");
+  service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
+  return step_response(request, format, input, std::move(answer));
 }
 
 http::Response list_tracks(const Service& service, const http::Request& request) {
@@ -145,7 +148,8 @@ std::int64_t last_event(const http::Request& request) {
 
 http::Response get_events(const Service& service, const http::Request& request) {
   const auto stream = service.tracks.stream(id_of(request), last_event(request));
-  http::Response response{200, "text/event-stream", {}, {{"Cache-Control", "no-store"}}};
+  // nginx would collect events until its buffer is full.
+  http::Response response{200, "text/event-stream", {}, {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}}};
   bool over = false;
   response.stream = [stream, over]() mutable -> std::optional<std::string> {
     if (over) return std::nullopt;

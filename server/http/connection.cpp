@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kLinger = 500ms;
+constexpr milliseconds kSlice = 100ms;
 
 bool poll_for(int socket, short events, milliseconds time) {
   pollfd entry{socket, events, 0};
@@ -58,12 +59,16 @@ void Connection::begin_head() {
   in_head_ = true;
   head_bytes_ = 0;
   failure_ = Failure::kNone;
-  deadline_ = Clock::now() + limits_.head;
+  begun_ = Clock::now();
+  received_ = 0;
+  deadline_ = begun_ + limits_.head;
 }
 
 void Connection::begin_body() {
   in_head_ = false;
-  deadline_ = Clock::now() + limits_.body;
+  begun_ = Clock::now();
+  received_ = 0;
+  deadline_ = begun_ + limits_.body;
 }
 
 void Connection::linger() {
@@ -79,9 +84,21 @@ bool Connection::is_readable() const { return begin_ < end_ || poll_for(socket_,
 
 bool Connection::is_writable() const { return poll_for(socket_, POLLOUT, limits_.write); }
 
+bool Connection::wait_for(short events, milliseconds time, Clock::time_point since, std::size_t bytes) const {
+  const auto until = Clock::now() + time;
+  for (;;) {
+    const auto now = Clock::now();
+    const auto passed = std::chrono::duration<double>(now - since);
+    const bool slow = passed > limits_.grace &&
+                      static_cast<double>(bytes) < passed.count() * static_cast<double>(limits_.bytes_per_s);
+    if (now >= until || (slow && limits_.others_wait())) return false;
+    if (poll_for(socket_, events, std::min(kSlice, std::chrono::ceil<milliseconds>(until - now)))) return true;
+  }
+}
+
 bool Connection::fill() {
   const auto left = std::chrono::duration_cast<milliseconds>(deadline_ - Clock::now());
-  if (left <= 0ms || !poll_for(socket_, POLLIN, left)) {
+  if (left <= 0ms || !wait_for(POLLIN, left, begun_, received_)) {
     failure_ = Failure::kTimeout;
     return false;
   }
@@ -93,6 +110,7 @@ bool Connection::fill() {
   }
   begin_ = 0;
   end_ = static_cast<std::size_t>(n);
+  received_ += end_;
   return true;
 }
 
@@ -109,13 +127,14 @@ ssize_t Connection::read(char* data, std::size_t size) {
 }
 
 ssize_t Connection::write(const char* data, std::size_t size) {
+  const auto begun = Clock::now();
   std::size_t sent = 0;
   while (sent < size) {
     const ssize_t n = ::send(socket_, data + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n > 0) {
       sent += static_cast<std::size_t>(n);
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
-      if (!is_writable()) return -1;
+      if (!wait_for(POLLOUT, limits_.write, begun, sent)) return -1;
     } else if (errno != EINTR) {
       return -1;
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace roadfix::http {
@@ -16,6 +17,10 @@ struct ConnectionLimits {
   std::chrono::milliseconds body{60'000};  ///< for the whole body
   std::chrono::milliseconds write{30'000};
   std::size_t head_bytes = 64 << 10;
+  /// While others wait for a thread, a peer that sends or takes less than so much is let go of after the grace.
+  std::chrono::milliseconds grace{2'000};
+  std::size_t bytes_per_s = 4 << 10;
+  std::function<bool()> others_wait = [] { return false; };
 };
 
 class Connection : public httplib::Stream {
@@ -49,6 +54,8 @@ class Connection : public httplib::Stream {
  private:
   using Clock = std::chrono::steady_clock;
   bool fill();
+  /// Waits at most `time`, or until the peer holds up others; `bytes` have passed since `since`.
+  bool wait_for(short events, std::chrono::milliseconds time, Clock::time_point since, std::size_t bytes) const;
 
   const int socket_;
   const ConnectionLimits limits_;
@@ -58,6 +65,8 @@ class Connection : public httplib::Stream {
   bool at_end_ = false;
   bool in_head_ = true;
   std::size_t head_bytes_ = 0;
+  Clock::time_point begun_ = Clock::now();  ///< of the head or body that is being read
+  std::size_t received_ = 0;                ///< since then
   Clock::time_point deadline_ = Clock::time_point::max();
   Failure failure_ = Failure::kNone;
 };

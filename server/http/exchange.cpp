@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <optional>
+#include <string_view>
 
 #include "core/units/error.hpp"
 
@@ -24,6 +26,33 @@ bool is_usable_id(const std::string& id) {
   return !id.empty() && id.size() <= kMaxIdLength && std::ranges::all_of(id, [](char c) { return c > ' ' && c < 127; });
 }
 
+/// RFC 9110 12.5.3: named, or covered by "*", and not with a weight of 0.
+bool accepts_gzip(const std::string& accept_encoding) {
+  std::string text = lower(accept_encoding);
+  std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
+  std::optional<bool> named;
+  bool any = false;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string coding = text.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t weight = coding.find(";q=");
+    const bool wanted = weight == std::string::npos || coding.find_first_of("123456789", weight) != std::string::npos;
+    const std::string name = coding.substr(0, coding.find(';'));
+    if (name == "gzip" || name == "x-gzip") named = wanted;
+    if (name == "*") any = wanted;
+  }
+  return named.value_or(any);
+}
+
+bool is_token(const std::string& name) {
+  constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
+  return !name.empty() && std::ranges::all_of(name, [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           kMarks.find(c) != std::string_view::npos;
+  });
+}
+
 std::string new_id() {
   static const auto kStart = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
   static std::atomic<std::uint64_t> next{0};
@@ -38,23 +67,32 @@ void take_over(httplib::Request& head, Exchange& exchange) {
   head.ranges.clear();
   exchange.content_type = head.get_header_value("Content-Type");
   head.headers.erase("Content-Type");
-  const bool gzip = lower(head.get_header_value("Accept-Encoding")).find("gzip") != std::string::npos;
+  const bool gzip = accepts_gzip(head.get_header_value("Accept-Encoding"));
   head.headers.erase("Accept-Encoding");
   if (gzip) head.headers.emplace("Accept-Encoding", "gzip");
 }
 
-Request translated(const httplib::Request& head, const Exchange& exchange) {
+Request translated(const httplib::Request& head, const Exchange& exchange, const Proxies& proxies) {
   Request request;
   request.method = head.method;
-  request.client = head.remote_addr;
   for (const auto& [name, value] : head.headers) {
     const auto [place, is_new] = request.headers.emplace(lower(name), value);
     if (!is_new) place->second += ", " + value;
   }
   if (!exchange.content_type.empty()) request.headers["content-type"] = exchange.content_type;
+  request.client = proxies.client(head.remote_addr, request.header("x-forwarded-for"));
   const std::string& id = request.header("x-request-id");
   request.id = is_usable_id(id) ? id : new_id();
   return request;
+}
+
+void check_header_names(const httplib::Request& head) {
+  for (const auto& [name, value] : head.headers) {
+    if (is_token(name)) continue;
+    throw InvalidInput("bad-header", fmt::format("'{}' is no name of a header: letters, digits and hyphens, directly "
+                                                 "followed by the colon",
+                                                 name.substr(0, 40)));
+  }
 }
 
 bool announces_body(const Request& request) {
@@ -119,7 +157,10 @@ std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_byt
     case Connection::Failure::kTimeout:
       return std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
     default:
-      return std::make_exception_ptr(InvalidInput("bad-request", "the head of the request is not HTTP/1.1"));
+      return std::make_exception_ptr(InvalidInput(
+          "bad-request",
+          "this is no request of HTTP/1.1 with a method that is known: does the client speak TLS or HTTP/2 "
+          "to this port? Plain HTTP is spoken here; a proxy in front adds what else is needed"));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "server/http/connection.hpp"
 #include "server/http/message.hpp"
+#include "server/http/proxies.hpp"
 #include "server/http/router.hpp"
 
 namespace roadfix::http {
@@ -32,11 +33,15 @@ struct Exchange {
 void take_over(httplib::Request& head, Exchange& exchange);
 
 /// Method, headers, id and client; not yet target, body and route.
-Request translated(const httplib::Request& head, const Exchange& exchange);
+Request translated(const httplib::Request& head, const Exchange& exchange, const Proxies& proxies);
 
 /// Throws InvalidInput ("length-required", "bad-content-length", "unsupported-content-encoding") or LimitExceeded
 /// ("body-too-large") by what the head says.
 void check_body_headers(const Request& request, std::size_t max_bytes);
+/// Throws InvalidInput "bad-header" for a name that is no token (RFC 9112 5.1): programs in front may read it
+/// otherwise.
+void check_header_names(const httplib::Request& head);
+
 bool announces_body(const Request& request);
 
 /// Throws LimitExceeded "body-too-large" beyond so many bytes after unpacking, Interrupted "request-timeout" or

@@ -27,11 +27,23 @@ void Metrics::count(const std::string& method, const std::string& route, int sta
   bytes_ += bytes;
 }
 
+void Metrics::count(const std::string& name, const std::string& labels) {
+  const std::lock_guard lock(mutex_);
+  ++counted_[name][labels];
+}
+
+void Metrics::describe(std::string name, std::string help) { described_.emplace(std::move(name), std::move(help)); }
+
 void Metrics::gauge(std::string name, std::string help, std::function<double()> value) {
   gauges_.push_back({std::move(name), std::move(help), std::move(value)});
 }
 
 std::string Metrics::text() const {
+  std::string gauges;  // first and without the lock: some take their time
+  for (const Gauge& gauge : gauges_) {
+    header(gauges, gauge.name, "gauge", gauge.help);
+    fmt::format_to(std::back_inserter(gauges), "{} {}\n", gauge.name, gauge.value());
+  }
   std::string text;
   const auto out = std::back_inserter(text);
   const std::lock_guard lock(mutex_);
@@ -52,17 +64,19 @@ std::string Metrics::text() const {
     fmt::format_to(out, "roadfix_request_seconds_sum{{{0}}} {1}\nroadfix_request_seconds_count{{{0}}} {2}\n", labels,
                    latency.sum_s, latency.count);
   }
+  for (const auto& [name, help] : described_) {
+    header(text, name, "counter", help);
+    const auto values = counted_.find(name);
+    if (values == counted_.end()) continue;
+    for (const auto& [labels, n] : values->second) fmt::format_to(out, "{}{{{}}} {}\n", name, labels, n);
+  }
   header(text, "roadfix_response_bytes_total", "counter", "Bytes of answers before compression.");
   fmt::format_to(out, "roadfix_response_bytes_total {}\n", bytes_);
   header(text, "roadfix_requests_in_flight", "gauge", "Requests being answered.");
   fmt::format_to(out, "roadfix_requests_in_flight {}\n", in_flight.load());
   header(text, "roadfix_connections", "gauge", "Open connections that have a thread.");
   fmt::format_to(out, "roadfix_connections {}\n", connections.load());
-  for (const Gauge& gauge : gauges_) {
-    header(text, gauge.name, "gauge", gauge.help);
-    fmt::format_to(out, "{} {}\n", gauge.name, gauge.value());
-  }
-  return text;
+  return text + gauges;
 }
 
 }  // namespace roadfix::http

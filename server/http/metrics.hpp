@@ -20,6 +20,11 @@ class Metrics {
   void count(const std::string& method, const std::string& route, int status, std::chrono::nanoseconds time,
              std::size_t bytes);
 
+  /// Counts one more of a kind: "roadfix_answers_total", "kind=\"fix\",status=\"no_fix\"". Few kinds.
+  void count(const std::string& name, const std::string& labels);
+  /// What `name` counts, said before its values. Register before the service starts.
+  void describe(std::string name, std::string help);
+
   /// A value read when it is asked for. Register before the service starts.
   void gauge(std::string name, std::string help, std::function<double()> value);
 
@@ -48,6 +53,8 @@ class Metrics {
   std::map<std::pair<RouteKey, int>, std::uint64_t> requests_;
   std::map<RouteKey, Latency> latencies_;
   std::uint64_t bytes_ = 0;
+  std::map<std::string, std::string> described_;                         ///< help by name
+  std::map<std::string, std::map<std::string, std::uint64_t>> counted_;  ///< by name and labels
   std::vector<Gauge> gauges_;
 };
 

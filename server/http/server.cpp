@@ -1,10 +1,12 @@
 #include "server/http/server.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <httplib.h>
 #include <sys/socket.h>
 
 #include <atomic>
+#include <ctime>
 #include <thread>
 
 #include "core/units/error.hpp"
@@ -41,6 +43,14 @@ class Counted {
   std::atomic<int>& counter_;
 };
 
+/// What browsers send as Origin and compare byte by byte (RFC 6454 7): a slash at its end, and no page is let in.
+bool is_origin(const std::string& text) {
+  if (text == "*") return true;
+  const std::size_t host = text.find("://");
+  return host != std::string::npos && host > 0 && host + 3 < text.size() &&
+         text.find_first_of("/?#, \t\r\n*", host + 3) == std::string::npos;
+}
+
 }  // namespace
 
 class Server::Impl : public httplib::Server {
@@ -54,12 +64,14 @@ class Server::Impl : public httplib::Server {
   bool process_and_close_socket(socket_t socket) override;
   bool wait_for_request(Connection& connection, bool first) const;
   void refuse_connection(Connection& connection) const;
+  Response failed(const Exchange& exchange, std::exception_ptr thrown) const;
 
   HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
   void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
   Response answered(Exchange& exchange);
   void reply(Exchange& exchange, httplib::Response& out, Response response) const;
   HandlerResponse complete_error(httplib::Response& out);
+  static void correct_head(httplib::Response& out);
   void finished(const httplib::Request& head, const httplib::Response& out);
 
   const ServerSettings settings_;
@@ -80,6 +92,13 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
       metrics_(metrics),
       admission_(settings_.heavy_running, settings_.heavy_waiting),
       access_log_(settings_.access_log) {
+  if (!settings_.cors_origin.empty() && !is_origin(settings_.cors_origin)) {
+    throw InvalidInput(
+        "bad-cors-origin",
+        fmt::format("'{}' is no origin that browsers send: give * or one like https://ops.example.org or "
+                    "http://10.0.0.5:3000, without a path",
+                    settings_.cors_origin));
+  }
   metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
   metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",
                  [this] { return admission_.waiting(); });
@@ -100,6 +119,7 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
   set_pre_routing_handler([this](const auto& head, auto& out) { return before_body(head, out); });
   Post(R"([\s\S]*)", [this](const auto& head, auto& out, const auto& reader) { with_body(head, out, reader); });
   set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
+  set_post_routing_handler([](const auto&, auto& out) { correct_head(out); });
   set_logger([this](const auto& head, const auto& out) { finished(head, out); });
 }
 
@@ -126,8 +146,11 @@ void Server::Impl::stop_and_join() {
 
 bool Server::Impl::process_and_close_socket(socket_t socket) {
   const Counted open(metrics_.connections);
-  Connection connection(socket, {settings_.idle_time, settings_.head_time, settings_.body_time, settings_.write_time,
-                                 settings_.head_bytes});
+  ConnectionLimits limits{settings_.idle_time, settings_.head_time, settings_.body_time, settings_.write_time,
+                          settings_.head_bytes};
+  limits.grace = settings_.crowded_time;
+  limits.others_wait = [this] { return pool_.load()->waiting() > 0; };
+  Connection connection(socket, limits);
   if (WorkerPool::overflow()) {
     refuse_connection(connection);
     return false;
@@ -160,7 +183,7 @@ bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
 }
 
 void Server::Impl::refuse_connection(Connection& connection) const {
-  const Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)));
+  const Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});
   const std::string text = fmt::format(
       "HTTP/1.1 {} Service Unavailable\r\nContent-Type: {}\r\nRetry-After: 1\r\nConnection: close\r\n"
       "Content-Length: {}\r\n\r\n{}",
@@ -168,14 +191,21 @@ void Server::Impl::refuse_connection(Connection& connection) const {
   connection.write(text.data(), text.size());
 }
 
+Response Server::Impl::failed(const Exchange& exchange, std::exception_ptr thrown) const {
+  return on_error_(std::move(thrown), exchange.request);
+}
+
 HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib::Response& out) {
   Exchange& exchange = *t_exchange;
-  exchange.request = translated(head, exchange);
+  exchange.request = translated(head, exchange, settings_.proxies);
   Request& request = exchange.request;
   exchange.must_close =
       announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
                                   head.method != "POST" && head.method != "DELETE");
   try {
+    const bool close = std::exchange(exchange.must_close, true);
+    check_header_names(head);
+    exchange.must_close = close;
     if (head.target.size() > settings_.target_bytes) {
       throw LimitExceeded("url-too-long",
                           fmt::format("the request target is longer than {} bytes", settings_.target_bytes));
@@ -192,7 +222,9 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
              {},
              {{"Allow", allowed},
               {"Access-Control-Allow-Methods", allowed},
-              {"Access-Control-Allow-Headers", "Content-Type, X-Request-Id"}}});
+              {"Access-Control-Allow-Headers",
+               "Accept, Authorization, Content-Encoding, Content-Type, If-None-Match, Last-Event-ID, X-Request-Id"},
+              {"Access-Control-Max-Age", "600"}}});
       return HandlerResponse::Handled;
     }
     exchange.match = router_.find(request.method, exchange.target.segments);
@@ -204,7 +236,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
       return HandlerResponse::Unhandled;
     }
   } catch (...) {
-    reply(exchange, out, on_error_(std::current_exception()));
+    reply(exchange, out, failed(exchange, std::current_exception()));
     return HandlerResponse::Handled;
   }
   reply(exchange, out, answered(exchange));
@@ -217,7 +249,7 @@ void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, co
     read_body(exchange, reader, settings_.body_bytes);
   } catch (...) {
     exchange.must_close = true;
-    reply(exchange, out, on_error_(std::current_exception()));
+    reply(exchange, out, failed(exchange, std::current_exception()));
     return;
   }
   reply(exchange, out, answered(exchange));
@@ -235,7 +267,7 @@ Response Server::Impl::answered(Exchange& exchange) {
     request.deadline = Clock::now() + settings_.request_time;
     return route.handler(request);
   } catch (...) {
-    return on_error_(std::current_exception());
+    return failed(exchange, std::current_exception());
   }
 }
 
@@ -256,10 +288,24 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
 HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
   Exchange& exchange = *t_exchange;
-  if (exchange.request.id.empty()) exchange.request = translated({}, exchange);
+  if (exchange.request.id.empty()) {
+    exchange.request = translated({}, exchange, settings_.proxies);
+    int port = 0;
+    exchange.connection->get_remote_ip_and_port(exchange.request.client, port);
+  }
   exchange.must_close = true;
-  reply(exchange, out, on_error_(failure_of_head(exchange, settings_.head_bytes)));
+  reply(exchange, out, failed(exchange, failure_of_head(exchange, settings_.head_bytes)));
   return HandlerResponse::Handled;
+}
+
+/// cpp-httplib adds a length of 0 to answers that have none (RFC 9110 8.6), byte ranges that are not served, and the
+/// time that a connection is kept which is closed; it gives no date.
+void Server::Impl::correct_head(httplib::Response& out) {
+  if (out.status == 204) out.headers.erase("Content-Length");  // of a 304 it stays: clients of cpp-httplib wait for it
+  out.headers.erase("Accept-Ranges");
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  out.set_header("Date", fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(now)));  // RFC 9110 6.6.1
+  if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
 }
 
 void Server::Impl::finished(const httplib::Request& head, const httplib::Response& out) {

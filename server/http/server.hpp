@@ -10,6 +10,7 @@
 #include "server/http/admission.hpp"
 #include "server/http/message.hpp"
 #include "server/http/metrics.hpp"
+#include "server/http/proxies.hpp"
 #include "server/http/router.hpp"
 
 namespace roadfix::http {
@@ -24,6 +25,8 @@ struct ServerSettings {
   std::chrono::milliseconds head_time{10'000};
   std::chrono::milliseconds body_time{60'000};
   std::chrono::milliseconds write_time{30'000};
+  /// While connections wait for a thread, a peer that has become slower than 4 KiB/s is let go of after this.
+  std::chrono::milliseconds crowded_time{2'000};
   /// From the end of the body to the answer, or for what waits its turn from its turn on: Request::deadline.
   std::chrono::milliseconds request_time{30'000};
   std::chrono::milliseconds turn_time{30'000};  ///< that a heavy request waits for its turn
@@ -33,11 +36,13 @@ struct ServerSettings {
   int heavy_running = 2;
   int heavy_waiting = 32;
   std::string cors_origin = {};  ///< value of Access-Control-Allow-Origin; empty = no CORS
+  Proxies proxies = {};          ///< whose X-Forwarded-For says who asks
   std::string access_log = {};   ///< see AccessLog
 };
 
-/// Renders whatever a handler or the protocol threw.
-using ErrorResponse = std::function<Response(std::exception_ptr)>;
+/// Renders whatever a handler or the protocol threw, for a request of which at least the id is there (but for
+/// connections that are turned away).
+using ErrorResponse = std::function<Response(std::exception_ptr, const Request&)>;
 
 class Server {
  public:

@@ -49,6 +49,7 @@ TEST(JsonBody, SaysWhereJsonIsBroken) {
     } catch (const http::InvalidField& error) {
       EXPECT_EQ(error.code(), "bad-json") << text;
       EXPECT_EQ(error.field(), "body");
+      EXPECT_EQ(std::string(error.what()).find("json.exception"), std::string::npos) << error.what();
     }
   }
 }

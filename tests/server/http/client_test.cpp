@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using roadfix::testing::code_of;
 
-Response refusal(std::exception_ptr thrown) {
+Response refusal(std::exception_ptr thrown, const Request&) {
   try {
     std::rethrow_exception(std::move(thrown));
   } catch (const Busy& busy) {

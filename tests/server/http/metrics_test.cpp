@@ -23,5 +23,25 @@ TEST(Metrics, CountsByRouteAndStatusWithCumulativeBuckets) {
   EXPECT_THAT(text, HasSubstr("# TYPE roadfix_maps gauge\nroadfix_maps 3\n"));
 }
 
+TEST(Metrics, CountsKindsOfAnswersByTheirLabels) {
+  Metrics metrics;
+  metrics.describe("roadfix_answers_total", "Answers.");
+  EXPECT_THAT(metrics.text(), HasSubstr("# TYPE roadfix_answers_total counter\n")) << "also before the first";
+  metrics.count("roadfix_answers_total", "status=\"fix\"");
+  metrics.count("roadfix_answers_total", "status=\"no_fix\"");
+  metrics.count("roadfix_answers_total", "status=\"fix\"");
+  EXPECT_THAT(metrics.text(),
+              HasSubstr("roadfix_answers_total{status=\"fix\"} 2\nroadfix_answers_total{status=\"no_fix\"} 1\n"));
+}
+
+TEST(Metrics, CountsWhileAGaugeIsRead) {
+  Metrics metrics;
+  metrics.gauge("slow", "One that waits for a request.", [&] {
+    metrics.count("GET", "/", 200, std::chrono::milliseconds(1), 1);
+    return 1.0;
+  });
+  EXPECT_THAT(metrics.text(), HasSubstr("slow 1\n"));
+}
+
 }  // namespace
 }  // namespace roadfix::http

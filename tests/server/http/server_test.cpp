@@ -17,13 +17,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Response plain_error(std::exception_ptr thrown) {
+Response plain_error(std::exception_ptr thrown, const Request& request) {
   try {
     std::rethrow_exception(std::move(thrown));
   } catch (const Error& error) {
     return {error.code() == "server-busy" ? 503 : 400, "text/plain", error.code()};
   } catch (const std::exception&) {
-    return {500, "text/plain", "unexpected"};
+    return {500, "text/plain", "unexpected " + request.id};
   }
 }
 
@@ -62,6 +62,7 @@ class HttpServer : public ::testing::Test {
                    return response;
                  }});
     settings_.port = 0;
+    settings_.crowded_time = 10min;  // however slow the machine is
     settings_.threads = 8;
   }
 
@@ -128,9 +129,26 @@ TEST_F(HttpServer, FinishesWhatHasBegunWhenItStops) {
   EXPECT_EQ(answer, "waited");
 }
 
-TEST_F(HttpServer, TurnsWhatAHandlerThrowsIntoAnAnswer) {
+TEST_F(HttpServer, TurnsWhatAHandlerThrowsIntoAnAnswerThatKnowsTheRequest) {
   const auto server = started();
-  EXPECT_EQ(client().Get("/throw")->status, 500);
+  const auto answer = client().Get("/throw", httplib::Headers{{"X-Request-Id", "flight-7"}});
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 500);
+  EXPECT_EQ(answer->body, "unexpected flight-7") << "the log names the request by it";
+}
+
+TEST_F(HttpServer, KnowsClientsBehindAProxyByTheirOwnAddress) {
+  router_.add({"GET", "/me", {}, false, [](const Request& request) {
+                 return Response{200, "text/plain", request.client};
+               }});
+  const httplib::Headers forwarded{{"X-Forwarded-For", "203.0.113.9"}};
+  {
+    const auto server = started();
+    EXPECT_EQ(client().Get("/me", forwarded)->body, "127.0.0.1") << "anybody can write this header";
+  }
+  settings_.proxies = Proxies({"127.0.0.1"});
+  const auto server = started();
+  EXPECT_EQ(client().Get("/me", forwarded)->body, "203.0.113.9");
 }
 
 TEST_F(HttpServer, StreamsPiecesAndCutsOffAStreamThatFails) {
@@ -151,6 +169,74 @@ TEST_F(HttpServer, EndsABodyThatComesTooSlowly) {
   const auto server = started();
   EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nabc"),
               ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServer, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
+  settings_.threads = 1;
+  settings_.body_time = 10min;
+  settings_.crowded_time = 10ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
+  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  httplib::Client other = client();
+  other.set_read_timeout(60s);
+  const auto echo = other.Get("/echo?text=alive");
+  ASSERT_TRUE(echo) << "the only thread was kept by a client that sends nothing";
+  EXPECT_EQ(echo->body, "alive");
+  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServer, WaitsForASlowSenderWhileNobodyElseDoes) {
+  settings_.threads = 1;
+  settings_.crowded_time = 1ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 5\r\n\r\nab");
+  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  std::this_thread::sleep_for(20ms);
+  slow.send("cde");
+  EXPECT_THAT(slow.read_all(), ::testing::EndsWith("\r\n\r\n5"));
+}
+
+TEST_F(HttpServer, GivesNoLengthToAnswersThatHaveNone) {
+  const auto server = started();
+  const std::string options = raw("OPTIONS /echo HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(options, ::testing::StartsWith("HTTP/1.1 204"));
+  EXPECT_THAT(options, ::testing::Not(::testing::HasSubstr("Content-Length")));
+  EXPECT_THAT(options, ::testing::Not(::testing::HasSubstr("Keep-Alive")));
+  const std::string head = raw("HEAD /echo?text=abc HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(head, ::testing::HasSubstr("Content-Length: 3"));
+  EXPECT_THAT(head, ::testing::Not(::testing::HasSubstr("Accept-Ranges"))) << "there are none";
+}
+
+TEST_F(HttpServer, SaysWhenItAnswered) {
+  const auto server = started();
+  EXPECT_THAT(client().Get("/echo?text=a")->get_header_value("Date"),
+              ::testing::MatchesRegex("[A-Z][a-z][a-z], [0-9][0-9] [A-Z][a-z][a-z] [0-9]+ [0-9:]+ GMT"));
+}
+
+TEST_F(HttpServer, PacksOnlyForClientsThatWantIt) {
+  const std::string text(2000, 'x');
+  router_.add({"GET", "/long", {}, false, [&](const Request&) { return Response{200, "text/plain", text}; }});
+  const auto server = started();
+  const auto is_packed = [&](const std::string& accepted) {
+    return raw("GET /long HTTP/1.1\r\nHost: x\r\nConnection: close\r\nAccept-Encoding: " + accepted + "\r\n\r\n")
+               .find("Content-Encoding: gzip") != std::string::npos;
+  };
+  for (const char* accepted : {"gzip", "br, gzip;q=0.5", "*", "GZIP", "deflate, x-gzip"}) {
+    EXPECT_TRUE(is_packed(accepted)) << accepted;
+  }
+  for (const char* accepted : {"gzip;q=0", "gzip; q=0.0, *", "br", "identity", "*;q=0"}) {
+    EXPECT_FALSE(is_packed(accepted)) << accepted;
+  }
+}
+
+TEST_F(HttpServer, RefusesHeaderNamesThatOthersReadDifferently) {
+  const auto server = started();
+  EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nTransfer-Encoding : chunked\r\n\r\nx"),
+              ::testing::HasSubstr("bad-header"));
+  EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHost: x\r\nX-A: b\r\n folded: c\r\n\r\n"), ::testing::HasSubstr("bad-header"));
 }
 
 TEST_F(HttpServer, ClosesConnectionsThatStayIdle) {
@@ -213,6 +299,18 @@ TEST_F(HttpServer, SaysWhenItsAddressIsTaken) {
   Metrics metrics;
   Server second(settings_, router_, plain_error, metrics);
   EXPECT_THROW(second.start(), IoFailure);
+}
+
+TEST_F(HttpServer, RefusesAnOriginThatNoBrowserSends) {
+  for (const char* origin : {"https://ops.example.org", "http://[fd00::1]:3000", "*"}) {
+    settings_.cors_origin = origin;
+    EXPECT_NO_THROW(Server(settings_, router_, plain_error, metrics_)) << origin;
+  }
+  for (const char* origin :
+       {"https://ops.example.org/", "ops.example.org", "https://", "https://a, https://b", "nonsense"}) {
+    settings_.cors_origin = origin;
+    EXPECT_THROW(Server(settings_, router_, plain_error, metrics_), InvalidInput) << origin;
+  }
 }
 
 TEST_F(HttpServer, CanBeStoppedBeforeItStarted) {

@@ -1,0 +1,93 @@
+#include "server/http/proxies.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using Address = std::array<std::uint8_t, 16>;
+constexpr int kV4Bits = 32;
+constexpr int kV6Bits = 128;
+
+struct Parsed {
+  Address address{};
+  int bits = kV6Bits;  ///< of an address of its kind: 32 or 128
+};
+
+std::optional<Parsed> parsed(std::string_view text) {
+  const std::string terminated(text);
+  Parsed result;
+  if (inet_pton(AF_INET6, terminated.c_str(), result.address.data()) == 1) return result;
+  result.address[10] = result.address[11] = 0xff;
+  result.bits = kV4Bits;
+  if (inet_pton(AF_INET, terminated.c_str(), result.address.data() + 12) == 1) return result;
+  return std::nullopt;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// Some proxies add the port: "192.0.2.1:4711", "[2001:db8::1]:4711".
+std::string_view without_port(std::string_view text) {
+  if (text.starts_with('[')) return text.substr(1, std::min(text.find(']'), text.size()) - 1);
+  return std::ranges::count(text, ':') == 1 ? text.substr(0, text.find(':')) : text;
+}
+
+bool same_bits(const Address& a, const Address& b, int bits) {
+  const auto whole = static_cast<std::size_t>(bits / 8);
+  if (!std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(whole), b.begin())) return false;
+  const int rest = bits % 8;
+  return rest == 0 || (a[whole] ^ b[whole]) >> (8 - rest) == 0;
+}
+
+}  // namespace
+
+Proxies::Proxies(const std::vector<std::string>& networks) {
+  for (const std::string& text : networks) {
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const auto address = parsed(std::string_view(text).substr(0, slash));
+    int bits = address ? address->bits : 0;
+    const char* end = text.data() + text.size();
+    const bool has_bits = slash < text.size();
+    const auto [last, error] =
+        has_bits ? std::from_chars(text.data() + slash + 1, end, bits) : std::from_chars_result{end, std::errc{}};
+    if (!address || error != std::errc{} || last != end || bits < 0 || bits > address->bits) {
+      throw InvalidInput(
+          "bad-proxy",
+          fmt::format("'{}' is no address or network of a proxy: give one like 127.0.0.1 or 10.0.0.0/8", text));
+    }
+    networks_.push_back({address->address, bits + kV6Bits - address->bits});
+  }
+}
+
+bool Proxies::contains(std::string_view address) const {
+  const auto parts = parsed(address);
+  return parts && std::ranges::any_of(networks_, [&](const Network& network) {
+           return same_bits(parts->address, network.address, network.bits);
+         });
+}
+
+std::string Proxies::client(const std::string& peer, std::string_view forwarded_for) const {
+  std::string client = peer;
+  while (contains(client) && !forwarded_for.empty()) {
+    const std::size_t comma = forwarded_for.rfind(',');
+    const std::string_view last = comma == std::string_view::npos ? forwarded_for : forwarded_for.substr(comma + 1);
+    forwarded_for = comma == std::string_view::npos ? std::string_view() : forwarded_for.substr(0, comma);
+    const std::string_view address = without_port(trimmed(last));
+    if (!parsed(address)) break;
+    client = address;
+  }
+  return client;
+}
+
+}  // namespace roadfix::http

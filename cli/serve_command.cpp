@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
@@ -22,6 +23,10 @@ namespace roadfix::cli {
 namespace {
 
 constexpr std::size_t kMiB = std::size_t{1} << 20;
+constexpr double kMostSeconds = 1e6;
+constexpr double kMostMiB = 1 << 20;  // a TiB
+constexpr double kMostThreads = 10'000;
+constexpr double kMostOfAll = 2e9;
 
 struct ServeOptions {
   server::Configuration service;
@@ -38,7 +43,18 @@ struct ServeOptions {
   std::size_t tracks_mib = static_cast<std::size_t>(service.track_limits.store_bytes) / kMiB;
   std::string log_level = "info";
   std::string calibration;
+  std::vector<std::string> proxies;
 };
+
+/// Above 0 and not beyond what can be counted in milliseconds, bytes or threads.
+CLI::Validator positive(double most) {
+  return {[most](std::string& text) -> std::string {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(text, value) && value > 0.0 && value <= most) return {};
+            return fmt::format("must be a number above 0 and at most {:.0f}, not {}", most, text);
+          },
+          "POSITIVE"};
+}
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
@@ -49,6 +65,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
+  result.http.proxies = http::Proxies(options.proxies);
   result.http.body_bytes = options.body_mib * kMiB;
   result.map_cache_bytes = options.map_cache_mib * kMiB;
   result.search_cache_bytes = options.search_cache_mib * kMiB;
@@ -79,7 +96,12 @@ void also_from_environment(CLI::App& command) {
 void also_from_file(CLI::App& command, const std::string& path) {
   for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_file(path)) {
     CLI::Option* option = item.parents.empty() ? command.get_option_no_throw("--" + item.name) : nullptr;
-    if (option == nullptr) throw CLI::ConfigError::NotConfigurable(item.fullname());
+    if (option == nullptr) {
+      throw CLI::ConfigError(
+          fmt::format("{}: '{}' is no option of serve: they are named as on the command line, like "
+                      "max-body, without a section",
+                      path, item.fullname()));
+    }
     if (option->count() > 0) continue;
     option->add_result(item.inputs);
     option->run_callback();
@@ -88,52 +110,51 @@ void also_from_file(CLI::App& command, const std::string& path) {
 
 void add_limits(CLI::App& command, ServeOptions& o) {
   auto& limits = o.service.limits;
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    command.add_option(name, value, text)
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber)
-        ->group("Limits of one request");
+  const auto add = [&](const char* name, auto& value, const char* text, double most = kMostOfAll) {
+    command.add_option(name, value, text)->capture_default_str()->check(positive(most))->group("Limits of one request");
   };
-  add("--max-body", o.body_mib, "Body in MiB, after unpacking");
+  add("--max-body", o.body_mib, "Body in MiB, after unpacking", kMostMiB);
   add("--max-pixels", limits.pixels, "Pixels of a picture");
   add("--max-cells", limits.cells, "Cells of a window or feature map");
   add("--max-poses", limits.poses, "Poses of a match");
   add("--max-search", limits.search_km2, "Area of a search in km2");
   add("--max-particles", limits.particles, "Particles of a track");
-  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on");
+  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on",
+      kMostSeconds);
   command
       .add_option("--turn-time", o.turn_time_s,
                   "Seconds that a search or detection may wait for its turn; as many as --request-time unless given")
-      ->check(CLI::PositiveNumber)
+      ->check(positive(kMostSeconds))
       ->group("Limits of one request");
 }
 
 void add_resources(CLI::App& command, ServeOptions& o) {
   auto& http = o.service.http;
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    return command.add_option(name, value, text)->capture_default_str()->check(CLI::PositiveNumber)->group("Resources");
+  const auto add = [&](const char* name, auto& value, const char* text, double most = kMostOfAll) {
+    return command.add_option(name, value, text)->capture_default_str()->check(positive(most))->group("Resources");
   };
-  add("--threads", http.threads, "Connections served at the same time");
+  add("--threads", http.threads, "Connections served at the same time", kMostThreads);
   add("--searches", http.heavy_running, "Searches and detections at the same time");
   add("--searches-waiting", http.heavy_waiting, "Further ones that wait; others are told to come back");
-  add("--search-threads", o.service.search_threads, "Threads of one search");
-  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept");
-  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB");
-  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB");
-  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB");
+  add("--search-threads", o.service.search_threads, "Threads of one search", kMostThreads);
+  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept", kMostSeconds);
+  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB", kMostMiB);
+  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB", kMostMiB);
+  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB", kMostMiB);
   add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
   add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");
   add("--max-streams", o.service.track_limits.streams, "Streams of events at the same time, at most half of --threads");
-  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB");
-  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook");
-  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends");
-  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps");
+  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB", kMostMiB);
+  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook", kMostSeconds);
+  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends", kMostSeconds);
+  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps", kMostSeconds);
 }
 
 void run_serve(const ServeOptions& options) {
   const std::stop_token stop = stop_on_signals();
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("roadfix", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ [%l] %v", spdlog::pattern_time_type::utc);  // as the access log's times
   spdlog::set_level(spdlog::level::from_str(options.log_level));
   server::Application application(configuration(options));
   const int port = application.start();
@@ -169,6 +190,12 @@ void add_serve_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
   command->add_option("--cors-origin", o.service.http.cors_origin, "Web pages that may ask: an origin, or * for all");
+  command
+      ->add_option(
+          "--proxy", o.proxies,
+          "Address or network of a proxy (127.0.0.1, 10.0.0.0/8), whose X-Forwarded-For says which client asks; may "
+          "be given again")
+      ->delimiter(',');
   command->add_option("--access-log", o.service.http.access_log,
                       "A JSON line for each request: a file, or - for standard error");
   command->add_option("--log-level", o.log_level, "Of the other messages on standard error")

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/locate/calibration.hpp"
+#include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
 #include "tiles/store/sqlite.hpp"
@@ -214,6 +215,40 @@ TEST(ServiceLife, TakesOptionsFromTheEnvironmentAndAFile) {
   EXPECT_EQ(limits["poses"], 77);
   EXPECT_EQ(limits["search_km2"], 12.5);
   EXPECT_EQ(limits["cells"], 555);
+}
+
+TEST(ServiceLife, SaysWhichSettingCannotBeUsed) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "roadfix.conf") << "cors_origin = \"*\"\n";
+  const auto refused = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"serve", "--maps", folder.path().string(), "--port", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = testing::run_child(ROADFIX_PROGRAM, arguments, folder.path());
+    return std::to_string(result.code) + " " + result.err;
+  };
+  using ::testing::AllOf;
+  using ::testing::HasSubstr;
+  using ::testing::StartsWith;
+  EXPECT_THAT(refused({"--request-time", "1e30"}),
+              AllOf(StartsWith("2"), HasSubstr("--request-time: must be a number above 0")));
+  EXPECT_THAT(refused({"--threads", "-1"}), AllOf(StartsWith("2"), HasSubstr("at most 10000, not -1")));
+  EXPECT_THAT(refused({"--config", (folder / "roadfix.conf").string()}),
+              AllOf(StartsWith("2"), HasSubstr("'cors_origin' is no option of serve")));
+  EXPECT_THAT(refused({"--cors-origin", "https://ops.example.org/"}),
+              AllOf(StartsWith("1"), HasSubstr("bad-cors-origin")));
+  EXPECT_THAT(refused({"--proxy", "nginx"}), AllOf(StartsWith("1"), HasSubstr("bad-proxy")));
+}
+
+TEST(ServiceLife, ListsTracksOfOneClientBehindAProxyToNoOther) {
+  const testing::TemporaryFolder folder;
+  testing::write_map_file(folder / "town.gpkg", testing::Town().roads, 2.0);
+  const testing::ServiceProcess service(folder.path(), {"--proxy", "10.0.0.0/8,127.0.0.1"});
+  httplib::Client client = testing::client_of(service);
+  const httplib::Headers one{{"X-Forwarded-For", "203.0.113.1"}};
+  const httplib::Headers other{{"X-Forwarded-For", "203.0.113.2"}};
+  ASSERT_EQ(client.Post("/v1/tracks", one, R"({"map":"town"})", "application/json")->status, 201);
+  EXPECT_EQ(testing::json_of(client.Get("/v1/tracks", one))["tracks"].size(), 1U);
+  EXPECT_EQ(testing::json_of(client.Get("/v1/tracks", other))["tracks"].size(), 0U);
 }
 
 TEST(ServiceLife, WritesALineForEachRequest) {

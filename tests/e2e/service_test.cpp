@@ -321,6 +321,8 @@ TEST_F(Service, AnswersBrowsersOfOtherOrigins) {
   const auto preflight = client_.Options("/v1/maps/town/fix");
   EXPECT_EQ(preflight->status, 204);
   EXPECT_EQ(preflight->get_header_value("Allow"), "OPTIONS, POST");
+  EXPECT_EQ(preflight->get_header_value("Access-Control-Max-Age"), "600");
+  EXPECT_THAT(preflight->get_header_value("Access-Control-Allow-Headers"), HasSubstr("Authorization"));
 }
 
 TEST_F(Service, CountsWhatItDoes) {
@@ -328,6 +330,11 @@ TEST_F(Service, CountsWhatItDoes) {
   const std::string text = client_.Get("/metrics")->body;
   EXPECT_THAT(text, HasSubstr("roadfix_requests_total{method=\"GET\",route=\"/v1/maps/{map}\",status=\"200\"}"));
   EXPECT_THAT(text, HasSubstr("roadfix_maps 1\n"));
+  EXPECT_THAT(text, HasSubstr("roadfix_tracks_available 1\n"));
+  const std::string nothing = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
+  EXPECT_EQ(testing::json_of(client_.Post("/v1/maps/town/fix?cell_m=2", nothing, "image/png"))["status"], "no_fix");
+  EXPECT_THAT(client_.Get("/metrics")->body, HasSubstr("roadfix_answers_total{kind=\"fix\",status=\"no_fix\"}"));
+  EXPECT_FALSE(testing::json_of(client_.Get("/healthz"))["version"].get<std::string>().empty());
 }
 
 }  // namespace

@@ -146,11 +146,13 @@ TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   const auto listen = [&](const httplib::Headers& headers, std::atomic<bool>& connected) {
     httplib::Client other = client_of(*running);
     std::string text;
-    other.Get(("/v1/tracks/" + id + "/events").c_str(), headers, [&](const char* data, std::size_t size) {
+    const auto receive = [&](const char* data, std::size_t size) {
       text.append(data, size);
       connected = true;
       return true;
-    });
+    };
+    const auto answer = other.Get(("/v1/tracks/" + id + "/events").c_str(), headers, receive);
+    EXPECT_TRUE(answer && answer->get_header_value("X-Accel-Buffering") == "no") << "nginx would hold events back";
     return text;
   };
   std::atomic<bool> connected = false;

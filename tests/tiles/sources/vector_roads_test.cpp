@@ -13,6 +13,7 @@
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
@@ -101,6 +102,7 @@ TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
                        kCentre.north_m - half_m, kCentre.north_m + half_m);
   };
   const std::string known = (folder / "known.gpkg").string();
+  require_gdal();
   {
     const DatasetPtr file(
         GetGDALDriverManager()->GetDriverByName("GPKG")->Create(known.c_str(), 0, 0, 0, GDT_Unknown, nullptr));

@@ -9,4 +9,7 @@ namespace roadfix {
 /// Letters A to Z become small, whatever the locale; all other bytes stay.
 std::string lower_case(std::string_view text);
 
+/// Without the spaces and tabs around it.
+std::string_view trimmed(std::string_view text);
+
 }  // namespace roadfix

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "server/api/fields.hpp"
 
 namespace roadfix::api {
@@ -17,10 +18,8 @@ struct Preference {
 };
 
 std::string without_spaces(std::string_view text) {
-  std::string result(text);
+  std::string result = lower_case(text);
   std::erase_if(result, [](char c) { return c == ' ' || c == '\t'; });
-  std::ranges::transform(result, result.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return result;
 }
 

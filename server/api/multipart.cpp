@@ -21,12 +21,6 @@ constexpr std::size_t kMaxBoundary = 70;  // RFC 2046 5.1.1
   throw InvalidField("bad-multipart", "body", fmt::format("the body is not multipart/form-data: {}", what), byte);
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 /// Value of `; name=value` or `; name="value"` in a header.
 std::optional<std::string> attribute(std::string_view header, std::string_view name) {
   std::size_t at = header.find(';');

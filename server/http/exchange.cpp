@@ -10,17 +10,12 @@
 #include <string_view>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::http {
 namespace {
 
 constexpr std::size_t kMaxIdLength = 128;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
 
 bool is_usable_id(const std::string& id) {
   return !id.empty() && id.size() <= kMaxIdLength && std::ranges::all_of(id, [](char c) { return c > ' ' && c < 127; });
@@ -28,7 +23,7 @@ bool is_usable_id(const std::string& id) {
 
 /// RFC 9110 12.5.3: named, or covered by "*", and not with a weight of 0.
 bool accepts_gzip(const std::string& accept_encoding) {
-  std::string text = lower(accept_encoding);
+  std::string text = lower_case(accept_encoding);
   std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
   std::optional<bool> named;
   bool any = false;
@@ -76,7 +71,7 @@ Request translated(const httplib::Request& head, const Exchange& exchange, const
   Request request;
   request.method = head.method;
   for (const auto& [name, value] : head.headers) {
-    const auto [place, is_new] = request.headers.emplace(lower(name), value);
+    const auto [place, is_new] = request.headers.emplace(lower_case(name), value);
     if (!is_new) place->second += ", " + value;
   }
   if (!exchange.content_type.empty()) request.headers["content-type"] = exchange.content_type;
@@ -101,12 +96,12 @@ bool announces_body(const Request& request) {
 }
 
 void check_body_headers(const Request& request, std::size_t max_bytes) {
-  const std::string encoding = lower(request.header("content-encoding"));
+  const std::string encoding = lower_case(request.header("content-encoding"));
   if (!encoding.empty() && encoding != "identity" && encoding != "gzip") {
     throw InvalidInput("unsupported-content-encoding",
                        fmt::format("a body packed with '{}' cannot be read; send it with gzip or as it is", encoding));
   }
-  const std::string transfer = lower(request.header("transfer-encoding"));
+  const std::string transfer = lower_case(request.header("transfer-encoding"));
   const std::string& length = request.header("content-length");
   if (!transfer.empty() && (transfer != "chunked" || !length.empty())) {
     throw InvalidInput("bad-content-length",

@@ -1,6 +1,8 @@
 #include "server/http/message.hpp"
 
-#include <algorithm>
+#include <string_view>
+
+#include "core/units/text.hpp"
 
 namespace roadfix::http {
 
@@ -11,12 +13,8 @@ const std::string& Request::header(const std::string& lower_case_name) const {
 }
 
 std::string Request::media_type() const {
-  const std::string& value = header("content-type");
-  std::string type = value.substr(0, value.find(';'));
-  while (!type.empty() && (type.back() == ' ' || type.back() == '\t')) type.pop_back();
-  std::ranges::transform(type, type.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return type;
+  const std::string_view value = header("content-type");
+  return lower_case(trimmed(value.substr(0, value.find(';'))));
 }
 
 }  // namespace roadfix::http

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::http {
 namespace {
@@ -29,12 +30,6 @@ std::optional<Parsed> parsed(std::string_view text) {
   result.bits = kV4Bits;
   if (inet_pton(AF_INET, terminated.c_str(), result.address.data() + 12) == 1) return result;
   return std::nullopt;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
 }
 
 /// Some proxies add the port: "192.0.2.1:4711", "[2001:db8::1]:4711".

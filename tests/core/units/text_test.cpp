@@ -11,5 +11,11 @@ TEST(LowerCase, ChangesTheLettersOfAsciiAlone) {
   EXPECT_EQ(lower_case(""), "");
 }
 
+TEST(Trimmed, TakesSpacesAndTabsFromBothEndsAlone) {
+  EXPECT_EQ(trimmed(" \t a b\t "), "a b");
+  EXPECT_EQ(trimmed("\na"), "\na");
+  EXPECT_EQ(trimmed(" \t"), "");
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -19,9 +19,8 @@ bool AcceptanceRegion::contains(GridPoint point) const {
 }
 
 bool AcceptanceRegion::keeps(GridPoint point) const {
-  const GridBox kept{{box.min.east_m - beyond_m, box.min.north_m - beyond_m},
-                     {box.max.east_m + beyond_m, box.max.north_m + beyond_m}};
-  return kept.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m + beyond_m);
+  return grown(box, beyond_m).contains(point) &&
+         (!circle || distance_m(point, circle->centre) <= circle->radius_m + beyond_m);
 }
 
 ParticleState AcceptanceRegion::draw(RandomStream& random) const {

@@ -25,8 +25,7 @@ struct GridQuery {
 
 /// Where the poses lie; those off the map are left out, since nothing is observed there.
 std::vector<GridQuery> queries_of(const MapView& map, std::span<const GeoPose> poses, double cell_m, double reach_m) {
-  const GridBox wide{{map.extent.min.east_m - reach_m, map.extent.min.north_m - reach_m},
-                     {map.extent.max.east_m + reach_m, map.extent.max.north_m + reach_m}};
+  const GridBox wide = grown(map.extent, reach_m);
   PointProjector project(map.zone);
   std::vector<GridQuery> queries;
   queries.reserve(poses.size());

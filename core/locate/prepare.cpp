@@ -107,12 +107,8 @@ SearchRegion region_of(const MapView& map, const Prior& prior) {
   if (prior.box) region.box = intersection(region.box, box_in(map.zone, *prior.box));
   const GridPoint middle{0.5 * (region.box.min.east_m + region.box.max.east_m),
                          0.5 * (region.box.min.north_m + region.box.max.north_m)};
-  const auto nearest = [&](GridPoint p) {
-    return GridPoint{std::clamp(p.east_m, region.box.min.east_m, region.box.max.east_m),
-                     std::clamp(p.north_m, region.box.min.north_m, region.box.max.north_m)};
-  };
-  if (region.box.empty() ||
-      (region.circle && distance_m(nearest(region.circle->centre), region.circle->centre) > region.circle->radius_m)) {
+  if (region.box.empty() || (region.circle && distance_m(nearest(region.box, region.circle->centre),
+                                                         region.circle->centre) > region.circle->radius_m)) {
     throw InvalidInput(
         "prior-outside-map",
         fmt::format("the prior does not meet the map {}: check its position, or search without it", map.name));

@@ -269,10 +269,7 @@ class Tracker::Step {
     }
     const GridPoint centre{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
     const double radius_m = distance_m(box.min, box.max) / 2.0;
-    const GridBox& map = tracker_.map_.extent;
-    const GridPoint nearest{std::clamp(centre.east_m, map.min.east_m, map.max.east_m),
-                            std::clamp(centre.north_m, map.min.north_m, map.max.north_m)};
-    if (distance_m(nearest, centre) > radius_m) return std::nullopt;
+    if (distance_m(nearest(tracker_.map_.extent, centre), centre) > radius_m) return std::nullopt;
     Prior prior;
     prior.circle = GeoCircle{tracker_.map_.zone.unproject(centre), radius_m + 1.0};
     return prior;

@@ -22,7 +22,7 @@ double SearchRegion::area_km2() const {
 
 SearchRegion SearchRegion::grown(double by_m, Angle by_heading) const {
   SearchRegion result = *this;
-  result.box = {{box.min.east_m - by_m, box.min.north_m - by_m}, {box.max.east_m + by_m, box.max.north_m + by_m}};
+  result.box = roadfix::grown(box, by_m);
   if (result.circle) result.circle->radius_m += by_m;
   result.heading_half_width += by_heading;
   return result;

@@ -10,6 +10,15 @@ GridBox united(const GridBox& a, const GridBox& b) {
           {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
 }
 
+GridBox grown(const GridBox& box, double by_m) {
+  return {{box.min.east_m - by_m, box.min.north_m - by_m}, {box.max.east_m + by_m, box.max.north_m + by_m}};
+}
+
+GridPoint nearest(const GridBox& box, GridPoint point) {
+  return {std::clamp(point.east_m, box.min.east_m, box.max.east_m),
+          std::clamp(point.north_m, box.min.north_m, box.max.north_m)};
+}
+
 double distance_m(GridPoint a, GridPoint b) { return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m); }
 
 GridPoint beside(const GridPose& pose, double right_m, double forward_m) {

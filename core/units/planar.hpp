@@ -38,6 +38,12 @@ struct GridBox {
 /// The smallest box that holds both; neither is empty.
 GridBox united(const GridBox& a, const GridBox& b);
 
+/// The box and `by_m` on each side of it.
+GridBox grown(const GridBox& box, double by_m);
+
+/// The point of the box, which is not empty, that lies nearest to the point.
+GridPoint nearest(const GridBox& box, GridPoint point);
+
 double distance_m(GridPoint a, GridPoint b);
 
 /// The point that lies so far to the right of a body at the pose and ahead of it.

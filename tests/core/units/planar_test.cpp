@@ -23,5 +23,16 @@ TEST(GridBox, UnitedHoldsBoth) {
   EXPECT_EQ(both.max, (GridPoint{30.0, 99.0}));
 }
 
+TEST(GridBox, GrowsOnEachSide) {
+  EXPECT_EQ(grown(kBox, 5.0).min, (GridPoint{5.0, 15.0}));
+  EXPECT_EQ(grown(kBox, 5.0).max, (GridPoint{35.0, 55.0}));
+}
+
+TEST(GridBox, ItsNearestPointIsThePointItselfInsideAndOnTheRimOutside) {
+  EXPECT_EQ(nearest(kBox, {12.0, 49.0}), (GridPoint{12.0, 49.0}));
+  EXPECT_EQ(nearest(kBox, {0.0, 30.0}), (GridPoint{10.0, 30.0}));
+  EXPECT_EQ(nearest(kBox, {99.0, 99.0}), (GridPoint{30.0, 50.0}));
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -13,8 +13,7 @@ enum class EvidenceKind {
   kCorrelation,
   /// Each cell by its own: P(l = 1) = m a + (1 - m) b with detection rates a and b (method.md section 6), against a
   /// chance of l as often as it is on average. Between no road and road, log P is taken as linear in m, so that three
-  /// sums are
-  /// enough.
+  /// sums are enough.
   kDetectionRates,
   /// Equation (7) as it is.
   kEquation7,

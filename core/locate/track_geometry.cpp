@@ -19,6 +19,20 @@ bool is_same_place(const GridPose& a, const GridPose& b) {
   return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
 }
 
+std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
+  GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    box.min = {std::min(box.min.east_m, p.east_m[i]), std::min(box.min.north_m, p.north_m[i])};
+    box.max = {std::max(box.max.east_m, p.east_m[i]), std::max(box.max.north_m, p.north_m[i])};
+  }
+  const GridPoint centre{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
+  const double radius_m = distance_m(box.min, box.max) / 2.0;
+  if (distance_m(nearest(map.extent, centre), centre) > radius_m) return std::nullopt;
+  Prior prior;
+  prior.circle = GeoCircle{map.zone.unproject(centre), radius_m + 1.0};
+  return prior;
+}
+
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
   constexpr double kWiden = 4.0;
   constexpr double kLeastWeight = 0.02;

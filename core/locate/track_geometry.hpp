@@ -1,6 +1,7 @@
 // Between the places of a search, which are geographic, and those of the filter on the grid.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/filter/clusters.hpp"
@@ -14,6 +15,9 @@ AcceptanceRegion acceptance_of(const SearchRegion& region);
 
 /// So near that a search and the particles mean one place.
 bool is_same_place(const GridPose& a, const GridPose& b);
+
+/// A circle around all that the particles hold for possible; nullopt where that is beyond the map.
+std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 
 /// Modes of a search as places to draw from; wider than they say, since particles move on before they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix);

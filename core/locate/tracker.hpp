@@ -20,6 +20,7 @@
 #include "core/locate/fix.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/recent_frames.hpp"
+#include "core/locate/track_claim.hpp"
 
 namespace roadfix {
 
@@ -44,8 +45,7 @@ struct TrackSettings {
   Prior prior;  ///< of the place at the first step
   TrackStart start = TrackStart::kSearch;
   /// Searches anew when the measurements speak against the belief, and before the first claim where no search has told
-  /// it from other places: frames that follow each other show much the same ground, so that what agrees by chance goes
-  /// on agreeing. Without it a track converges by its particles alone.
+  /// it from other places (see TrackClaim). Without it a track converges by its particles alone.
   bool recovers = true;
   FilterOptions filter;
   EvidenceModel evidence;
@@ -78,16 +78,11 @@ struct TrackerState {
   FilterState filter;
   bool started = false;
   bool searched = false;  ///< the search of the start has been tried
-  /// A search has told the belief from all other places: a fix, or nearly one at the place that was believed before
-  /// it. Until measurements speak against it. See TrackSettings::recovers.
-  bool compared = false;
   std::int64_t sequence = -1;
   std::int64_t time_us = 0;
   std::int64_t measured = 0;     ///< feature maps so far
   std::int64_t last_search = 0;  ///< `measured` at the last search
-  std::int64_t supported = 0;    ///< of the last measurements: up by one when accepted, down when rejected
-  /// Log of the odds that the measurements gave the belief against chance, since they last spoke against it.
-  double evidence = 0.0;
+  TrackClaim claim;
   std::optional<std::int64_t> accepted_time_us;
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
   /// before a kidnapping is not laid with what is seen after it.

@@ -87,11 +87,11 @@ json counters_json(const TrackerState& state) {
   return {{"sequence", state.sequence},
           {"time_us", state.time_us},
           {"searched", state.searched},
-          {"compared", state.compared},
+          {"compared", state.claim.compared},
           {"measured", state.measured},
           {"last_search", state.last_search},
-          {"supported", state.supported},
-          {"evidence", state.evidence},
+          {"supported", state.claim.supported},
+          {"evidence", state.claim.log_odds},
           {"accepted_time_us", state.accepted_time_us ? json(*state.accepted_time_us) : json()}};
 }
 
@@ -103,11 +103,11 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.sequence = counters.at("sequence");
     state.time_us = counters.at("time_us");
     state.searched = counters.at("searched");
-    state.compared = counters.at("compared");
+    state.claim.compared = counters.at("compared");
     state.measured = counters.at("measured");
     state.last_search = counters.at("last_search");
-    state.supported = counters.at("supported");
-    state.evidence = counters.at("evidence");
+    state.claim.supported = counters.at("supported");
+    state.claim.log_odds = counters.at("evidence");
     if (!counters.at("accepted_time_us").is_null()) {
       state.accepted_time_us = counters.at("accepted_time_us").get<std::int64_t>();
     }

@@ -1,0 +1,38 @@
+// Whether a track may claim the place that it believes in. Particles gather somewhere also where nothing speaks for it,
+// and frames that follow each other show much the same ground, so that what agrees by chance goes on agreeing: a claim
+// wants measurements that bear it out, and a search that has told it from other places.
+#pragma once
+
+#include <cstdint>
+
+namespace roadfix {
+
+/// What measurements and searches have said of a belief since it began.
+struct TrackClaim {
+  /// Of the last measurements: up by one when accepted, down when rejected. Three rejections in a row take a claim
+  /// back.
+  std::int64_t supported = 0;
+  /// Log of the odds of the belief against chance, a sum that begins anew at 0 (Page's test): it forgets what came
+  /// before a kidnapping, and has an upper bound, so that a track that has long been right does not go on for long when
+  /// it is not any more.
+  double log_odds = 0.0;
+  /// A search has told the belief from all other places: a fix, or nearly one at the place that was believed before
+  /// it. Until measurements speak against it.
+  bool compared = false;
+
+  void accept();
+  /// A claim that is taken back waits for a search.
+  void reject();
+  /// `log_ratio`: how much likelier a measurement is under the belief than by chance.
+  void weigh(double log_ratio);
+  /// A search gave a fix of this probability, in [0, 1), there.
+  void confirm(double probability);
+
+  bool is_supported() const;
+  /// A hundred to one against chance.
+  bool outweighs_chance() const;
+
+  friend bool operator==(const TrackClaim&, const TrackClaim&) = default;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,104 @@
+// The searches of a track: where it begins, and where its belief has to be told from other places or found again.
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "core/locate/track_geometry.hpp"
+#include "core/locate/tracker_step.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::int64_t kMeasurementsBetweenSearches = 10;
+constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, where a claim waits for a search
+constexpr double kProbabilityForClaim = 0.95;         // of a search at the place that the measurements bear out
+constexpr double kInjectedShare = 0.3;
+constexpr double kMostOfAFix = 0.9;  // of the particles; the others begin anew
+constexpr double kRecoveryRadiusM = 3000.0;
+
+}  // namespace
+
+bool Tracker::Step::may_search() const { return settings_.recovers || settings_.start == TrackStart::kSearch; }
+
+/// The prior as it was given holds for the first step only. False where the particles stay as they are.
+bool Tracker::Step::start_by_search() {
+  const bool first = state_.sequence < 0;
+  const std::optional<Prior> prior = first ? settings_.prior : prior_around(tracker_.map_, filter_.particles());
+  if (!prior) return false;
+  state_.searched = true;
+  const std::optional<Fix> fix = searched(*prior);
+  if (!fix || fix->modes.empty()) return false;
+  double known = 0.0;
+  for (const FixMode& mode : fix->modes) known += mode.weight;
+  filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
+                       first ? tracker_.start_ : tracker_.region_);
+  estimate_.measurement = Measurement::kSearched;
+  if (fix->status == FixStatus::kFix) believe(*fix);
+  return true;
+}
+
+void Tracker::Step::search_where_due() {
+  const bool claim_waits = state_.claim.outweighs_chance() && !state_.claim.compared;
+  const std::int64_t wait = claim_waits ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
+  if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= wait) recover();
+}
+
+bool Tracker::Step::wants_search() const {
+  // Nothing has spoken for the belief for long, be it that nothing could.
+  const bool stale = since_accepted_s().value_or(0.0) >= kStaleAfterS;
+  if (filter_.doubt() > kMostDoubt || stale) return true;
+  if (state_.claim.outweighs_chance()) return !state_.claim.compared;
+  return state_.claim.log_odds == 0.0 && estimate_.measurement != Measurement::kUseless;
+}
+
+void Tracker::Step::recover() {
+  const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
+  std::optional<Fix> fix = searched({});
+  if (!fix) {
+    Prior near;
+    near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
+    fix = searched(near);
+  }
+  if (!fix || fix->modes.empty()) return;
+  const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
+  if (agrees && fix->probability >= kProbabilityForClaim) {
+    state_.claim.compared = true;
+  } else if (fix->status != FixStatus::kFix) {
+    filter_.inject(proposals_of(tracker_.map_, *fix), kInjectedShare);
+  } else {
+    filter_.start_from(proposals_of(tracker_.map_, *fix), 1.0 - kMostOfAFix, tracker_.region_);
+    estimate_.measurement = Measurement::kSearched;
+    forget_support();
+    state_.searched = true;
+    believe(*fix);
+  }
+}
+
+void Tracker::Step::believe(const Fix& fix) {
+  state_.claim.confirm(fix.probability);
+  state_.accepted_time_us = input_.time_us;
+}
+
+/// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it
+/// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
+std::optional<Fix> Tracker::Step::searched(const Prior& prior) {
+  FixOptions options;
+  options.max_search_km2 = settings_.max_search_km2;
+  options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
+  options.time_limit = limits_.search_time;
+  options.stop = limits_.stop;
+  options.calibration = settings_.calibration;
+  state_.last_search = state_.measured;
+  try {
+    Fix fix = locate(tracker_.map_, state_.recent.laid_around(*features_), prior, options);
+    if (fix.complete) return fix;
+    // What it has depends on the machine, and a track must come out the same.
+    if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);
+    return std::nullopt;
+  } catch (const LimitExceeded&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace roadfix

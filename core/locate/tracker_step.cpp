@@ -1,0 +1,192 @@
+#include "core/locate/tracker_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/locate/particle_matches.hpp"
+#include "core/locate/prepare.hpp"
+#include "core/locate/track_geometry.hpp"
+#include "core/locate/track_motion.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+
+Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const StepInput& input,
+                    const StepLimits& limits)
+    : tracker_(tracker),
+      settings_(tracker.settings_),
+      input_(input),
+      limits_(limits),
+      state_(before),
+      filter_(before.started ? Filter(settings_.filter, tracker.region_, std::move(state_.filter), limits.threads)
+                             : Filter(settings_.filter, tracker.region_, settings_.seed, limits.threads)) {}
+
+StepResult Tracker::Step::run() {
+  require_in_order();
+  if (input_.features) features_ = in_cells_of(tracker_.map_, *input_.features);
+  if (state_.started) {
+    estimate_.missed_steps = input_.sequence - state_.sequence - 1;
+    move();
+  } else {
+    filter_.start_uniformly(tracker_.start_);
+    state_.started = true;
+  }
+  if (features_) {
+    measure();
+    if (may_search()) state_.recent.keep(*features_);
+  }
+  state_.sequence = input_.sequence;
+  state_.time_us = input_.time_us;
+  describe();
+  if (estimate_.converged) state_.recent.clear();
+  state_.filter = filter_.state();
+  return {std::move(state_), std::move(estimate_)};
+}
+
+void Tracker::Step::require_in_order() const {
+  if (!state_.started) return;
+  if (input_.sequence <= state_.sequence) {
+    throw InvalidInput("step-late", fmt::format("step {} comes after step {}: steps count up; leave late ones out",
+                                                input_.sequence, state_.sequence));
+  }
+  if (input_.time_us <= state_.time_us) {
+    throw InvalidInput("time-backwards",
+                       fmt::format("the capture time {} us is not after {} us of the step before: set the clock, or "
+                                   "begin a new track",
+                                   input_.time_us, state_.time_us));
+  }
+}
+
+double Tracker::Step::seconds() const { return 1e-6 * static_cast<double>(input_.time_us - state_.time_us); }
+
+std::optional<double> Tracker::Step::since_accepted_s() const {
+  if (!state_.accepted_time_us) return std::nullopt;
+  return 1e-6 * static_cast<double>(input_.time_us - *state_.accepted_time_us);
+}
+
+void Tracker::Step::move() {
+  if (seconds() > static_cast<double>(settings_.longest_gap.count())) {
+    filter_.start_uniformly(tracker_.region_);
+    forget_support();
+    state_.recent.clear();
+    return;
+  }
+  if (!moved()) forget_support();
+}
+
+/// False where the belief left the region and began anew.
+bool Tracker::Step::moved() {
+  const VehicleNoise& vehicle = settings_.vehicle;
+  if (input_.odometry) {
+    const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
+    const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind_walk);
+    carry_frames_on(*input_.odometry, told);
+    if (estimate_.missed_steps == 0) return filter_.predict(as_told);
+    const auto [odometry, covariance] =
+        with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
+    return filter_.predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind_walk));
+  }
+  state_.recent.clear();
+  if (vehicle.planar) {
+    return filter_.predict(
+        PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind_walk});
+  }
+  return filter_.predict(ConstantVelocityMotion{seconds()});
+}
+
+/// Only where the odometry tells how the ground below goes on.
+void Tracker::Step::carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance) {
+  if (settings_.vehicle.wind_walk > 0.0 || estimate_.missed_steps > 0) {
+    state_.recent.clear();
+  } else {
+    state_.recent.move(odometry, covariance);
+  }
+}
+
+void Tracker::Step::forget_support() {
+  state_.claim = {};
+  state_.searched = false;
+}
+
+void Tracker::Step::measure() {
+  ++state_.measured;
+  if (settings_.measure_every > 1 && state_.measured % settings_.measure_every != 1) {
+    estimate_.measurement = Measurement::kSkipped;
+    return;
+  }
+  if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
+  const std::vector<MatchSums> sums =
+      match_particles(tracker_.map_, *features_, filter_.particles(), limits_.threads, limits_.stop);
+  const auto frame_cells = static_cast<std::int64_t>(features_->cells.observed_count());
+  if (is_unseen_by_map(sums, frame_cells)) {
+    estimate_.measurement = Measurement::kUseless;
+  } else {
+    weigh(sums, frame_cells);
+  }
+  search_where_due();
+}
+
+void Tracker::Step::weigh(std::span<const MatchSums> sums, std::int64_t frame_cells) {
+  std::vector<double> log_likelihoods(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    log_likelihoods[i] = settings_.evidence.log_likelihood(sums[i], frame_cells, features_->cell_m);
+  }
+  const Correction correction = filter_.correct(log_likelihoods);
+  estimate_.mean_likelihood = correction.mean_likelihood;
+  if (!correction.usable) {
+    estimate_.measurement = Measurement::kUseless;
+    return;
+  }
+  if (settings_.evidence.supports(correction.mean_likelihood)) {
+    estimate_.measurement = Measurement::kAccepted;
+    state_.claim.accept();
+    state_.accepted_time_us = input_.time_us;
+  } else {
+    estimate_.measurement = Measurement::kRejected;
+    state_.claim.reject();
+  }
+  state_.claim.weigh(std::log(correction.mean_likelihood));
+}
+
+/// Whether the belief lies where the map shows next to nothing, so that a frame speaks neither for nor against it.
+bool Tracker::Step::is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const {
+  constexpr double kLeastShare = 0.25;
+  if (settings_.evidence.kind == EvidenceKind::kEquation7) return false;
+  const Particles& p = filter_.particles();
+  double seen = 0.0;
+  for (std::size_t i = 0; i < sums.size(); ++i) seen += p.weight[i] * static_cast<double>(sums[i].n);
+  return seen < kLeastShare * static_cast<double>(frame_cells);
+}
+
+void Tracker::Step::describe() {
+  estimate_.sequence = state_.sequence;
+  estimate_.time_us = state_.time_us;
+  const std::vector<Cluster> clusters = clusters_of(filter_.particles(), settings_.clusters);
+  estimate_.cluster_count = clusters.size();
+  for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMostClusters); ++i) {
+    estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i]));
+  }
+  estimate_.particles = filter_.particles().size();
+  estimate_.resets = filter_.state().resets;
+  estimate_.doubt = filter_.doubt();
+  estimate_.since_accepted_s = since_accepted_s();
+  estimate_.converged = has_converged(clusters.front());
+}
+
+bool Tracker::Step::has_converged(const Cluster& best) const {
+  return best.weight >= settings_.converged_weight && best.sigma_m() <= settings_.converged_sigma_m &&
+         state_.claim.is_supported() && is_borne_out() && filter_.doubt() <= kMostDoubt &&
+         since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
+}
+
+/// Equation (7) is no ratio to chance, and bears out what it does not reject.
+bool Tracker::Step::is_borne_out() const {
+  if (settings_.evidence.kind == EvidenceKind::kEquation7) return true;
+  return state_.claim.outweighs_chance() && (state_.claim.compared || !settings_.recovers);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,61 @@
+// One step of a track on its way: the belief is moved, weighted by what was seen, and searched for where that is due.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/locate/tracker.hpp"
+
+namespace roadfix {
+
+class Tracker::Step {
+  // Beyond either a place is not claimed, and is searched for.
+  static constexpr double kMostDoubt = 0.4;
+  static constexpr double kStaleAfterS = 60.0;
+
+ public:
+  /// Refers to all but `before`.
+  Step(const Tracker& tracker, const TrackerState& before, const StepInput& input, const StepLimits& limits);
+
+  /// Once. Throws as Tracker::advance does.
+  StepResult run();
+
+ private:
+  void require_in_order() const;
+  double seconds() const;
+  std::optional<double> since_accepted_s() const;
+
+  void move();
+  bool moved();
+  void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
+  void forget_support();
+
+  void measure();
+  void weigh(std::span<const MatchSums> sums, std::int64_t frame_cells);
+  bool is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const;
+
+  // tracker_search.cpp
+  bool may_search() const;
+  bool start_by_search();
+  void search_where_due();
+  bool wants_search() const;
+  void recover();
+  void believe(const Fix& fix);
+  std::optional<Fix> searched(const Prior& prior);
+
+  void describe();
+  bool has_converged(const Cluster& best) const;
+  bool is_borne_out() const;
+
+  const Tracker& tracker_;
+  const TrackSettings& settings_;
+  const StepInput& input_;
+  const StepLimits& limits_;
+  TrackerState state_;
+  Filter filter_;
+  std::optional<FeatureMap> features_;
+  TrackEstimate estimate_;
+};
+
+}  // namespace roadfix

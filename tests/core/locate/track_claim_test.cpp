@@ -1,0 +1,74 @@
+#include "core/locate/track_claim.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+const double kHundredToOne = std::log(100.0);
+
+TrackClaim supported_by(int measurements) {
+  TrackClaim claim;
+  for (int i = 0; i < measurements; ++i) claim.accept();
+  return claim;
+}
+
+TEST(TrackClaim, IsSupportedByThreeMeasurements) {
+  EXPECT_FALSE(supported_by(2).is_supported());
+  EXPECT_TRUE(supported_by(3).is_supported());
+}
+
+TEST(TrackClaim, IsTakenBackByThreeRejectionsInARowHoweverLongItWasSupported) {
+  TrackClaim claim = supported_by(1000);
+  claim.reject();
+  claim.reject();
+  EXPECT_TRUE(claim.is_supported());
+  claim.reject();
+  EXPECT_FALSE(claim.is_supported());
+}
+
+TEST(TrackClaim, WaitsForAnotherSearchWhereItWasTakenBack) {
+  TrackClaim claim = supported_by(3);
+  claim.compared = true;
+  claim.reject();
+  claim.accept();
+  EXPECT_TRUE(claim.is_supported());
+  EXPECT_FALSE(claim.compared);
+}
+
+TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
+  TrackClaim claim;
+  claim.weigh(kHundredToOne - 0.01);
+  EXPECT_FALSE(claim.outweighs_chance());
+  claim.weigh(0.02);
+  EXPECT_TRUE(claim.outweighs_chance());
+}
+
+TEST(TrackClaim, ForgetsWhatSpokeAgainstItBeforeMeasurementsSpeakForIt) {
+  TrackClaim claim;
+  claim.compared = true;
+  claim.weigh(-1000.0);
+  EXPECT_FALSE(claim.compared);
+  claim.weigh(kHundredToOne);
+  EXPECT_TRUE(claim.outweighs_chance());
+}
+
+TEST(TrackClaim, IsLostSoonAlsoWhereItWasRightForLong) {
+  TrackClaim claim;
+  for (int i = 0; i < 1000; ++i) claim.weigh(10.0);
+  claim.weigh(-kHundredToOne - 0.01);
+  EXPECT_FALSE(claim.outweighs_chance());
+}
+
+TEST(TrackClaim, IsAsSureOfAFixAsTheFixIs) {
+  TrackClaim claim;
+  claim.confirm(0.98);
+  EXPECT_TRUE(claim.compared);
+  EXPECT_NEAR(claim.log_odds, std::log(49.0), 1e-9);
+  EXPECT_FALSE(claim.is_supported());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -13,7 +13,6 @@
 #include <immintrin.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <vector>
 
@@ -28,21 +27,14 @@ static_assert(kStep == Footprint::kAlignment);
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 128 < (std::size_t{1} << 31));
 
-/// A vector's worth of the footprint, in the order of its values.
-struct Piece {
-  std::ptrdiff_t offset = 0;  ///< of the map's cell below its first one from that below the nadir
-  __mmask64 observed = 0;
-};
-
-ROADFIX_VNNI std::vector<Piece> pieces_of(const Footprint& footprint, std::ptrdiff_t stride) {
-  std::vector<Piece> pieces;
+/// Where the map's cells below each vector of the footprint's values lie, as seen from that below the nadir.
+std::vector<std::ptrdiff_t> offsets_of(const Footprint& footprint, std::ptrdiff_t stride) {
+  std::vector<std::ptrdiff_t> offsets;
+  offsets.reserve(2 * footprint.rows().size());
   for (const Footprint::Row& row : footprint.rows()) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(row.cells); i += kStep) {
-      const std::ptrdiff_t offset = row.row * stride + row.first_col + static_cast<std::ptrdiff_t>(i);
-      pieces.push_back({offset, _mm512_movepi8_mask(_mm512_load_si512(footprint.mask() + pieces.size() * kStep))});
-    }
+    for (int i = 0; i < row.cells; i += int{kStep}) offsets.push_back(row.row * stride + row.first_col + i);
   }
-  return pieces;
+  return offsets;
 }
 
 ROADFIX_VNNI inline std::int64_t emptied(__m512i& lanes) {
@@ -52,70 +44,75 @@ ROADFIX_VNNI inline std::int64_t emptied(__m512i& lanes) {
   return _mm512_reduce_add_epi64(_mm512_add_epi64(low, high));
 }
 
-/// The instruction wants signed bytes for one factor: 128 less, which is made good for in the end.
-ROADFIX_VNNI inline __m512i less_128(__m512i bytes) { return _mm512_xor_si512(bytes, _mm512_set1_epi8(-128)); }
+/// What lies below a place where the map has not observed: taken out of what the footprint's sums begin with.
+struct Hidden {
+  __m512i l_lanes, ll_lanes;
+  std::int64_t n = 0, l = 0, ll = 0;
 
-/// The sums at one place.
-struct Place {
-  const std::uint8_t* nadir = nullptr;
-  __m512i m, mm, ml;
-  __m512i hidden_l, hidden_ll;  ///< where the map has not observed: taken out of what the sums begin with
-  IntegerSums sums;
-
-  ROADFIX_VNNI Place() : m(_mm512_setzero_si512()), mm(m), ml(m), hidden_l(m), hidden_ll(m) {}
-  ROADFIX_VNNI void start(const std::uint8_t* cell, const Footprint& footprint) {
-    nadir = cell;
-    m = mm = ml = hidden_l = hidden_ll = _mm512_setzero_si512();
-    sums = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
+  ROADFIX_VNNI Hidden() : l_lanes(_mm512_setzero_si512()), ll_lanes(l_lanes) {}
+  ROADFIX_VNNI void add(__mmask64 where, __m512i values) {
+    const __m512i hidden = _mm512_maskz_mov_epi8(where, values);
+    l_lanes = _mm512_dpbusd_epi32(l_lanes, hidden, _mm512_set1_epi8(1));
+    ll_lanes = _mm512_dpbusd_epi32(ll_lanes, hidden, _mm512_xor_si512(hidden, _mm512_set1_epi8(-128)));
+    n += _mm_popcnt_u64(where);
   }
-  ROADFIX_VNNI void add(const Piece& piece, const std::uint8_t* values, __m512i l) {
-    __m512i cells = _mm512_maskz_loadu_epi8(piece.observed, nadir + piece.offset);
-    const __mmask64 hidden = _mm512_cmpeq_epi8_mask(cells, _mm512_set1_epi8(static_cast<char>(kUnobserved)));
-    if (hidden != 0) [[unlikely]]
-      cells = without(hidden, cells, values);
-    const __m512i signed_cells = less_128(cells);
-    m = _mm512_dpbusd_epi32(m, cells, _mm512_set1_epi8(1));
-    mm = _mm512_dpbusd_epi32(mm, cells, signed_cells);
-    ml = _mm512_dpbusd_epi32(ml, l, signed_cells);
-  }
-  ROADFIX_VNNI __m512i without(__mmask64 hidden, __m512i cells, const std::uint8_t* values) {
-    const __m512i l = _mm512_maskz_loadu_epi8(hidden, values);
-    hidden_l = _mm512_dpbusd_epi32(hidden_l, l, _mm512_set1_epi8(1));
-    hidden_ll = _mm512_dpbusd_epi32(hidden_ll, l, less_128(l));
-    sums.n -= _mm_popcnt_u64(hidden);
-    return _mm512_maskz_mov_epi8(static_cast<__mmask64>(~hidden), cells);
-  }
-  ROADFIX_VNNI void flush(std::int64_t all) {
-    sums.m += emptied(m);
-    sums.mm += emptied(mm);
-    sums.ml += emptied(ml);
-    if (sums.n == all) return;
-    const std::int64_t l = emptied(hidden_l);
-    sums.l -= l;
-    sums.ll -= emptied(hidden_ll) + 128 * l;
+  ROADFIX_VNNI void flush() {
+    if (n == 0) return;
+    l += emptied(l_lanes);
+    ll += emptied(ll_lanes);
   }
 };
 
-/// Several places at once: the processor need not wait for a sum of one before it adds to the others.
+/// Several places at once: the processor need not wait for a sum of one before it adds to the others. The instruction
+/// wants signed bytes for one factor: cells of the map less 128, 0 where the footprint has not observed.
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::span<const Piece> pieces,
+ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::span<const std::ptrdiff_t> offsets,
                          const PlaneCell* cells, IntegerSums* out) {
-  std::array<Place, kPlaces> places;
-  for (std::size_t k = 0; k < kPlaces; ++k) places[k].start(map.at(cells[k].col, cells[k].row), footprint);
-  for (std::size_t first = 0; first < pieces.size(); first += kVectorsPerFlush) {
-    const std::size_t last = std::min(pieces.size(), first + kVectorsPerFlush);
+  const __m512i high_bit = _mm512_set1_epi8(-128);
+  const __m512i unobserved = _mm512_set1_epi8(kUnobserved - 128);
+  const std::uint8_t* nadir[kPlaces];
+  __m512i m[kPlaces];
+  __m512i mm[kPlaces];
+  __m512i ml[kPlaces];
+  Hidden hidden[kPlaces];
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    nadir[k] = map.at(cells[k].col, cells[k].row);
+    m[k] = mm[k] = ml[k] = _mm512_setzero_si512();
+    out[k] = {};
+  }
+  for (std::size_t first = 0; first < offsets.size(); first += kVectorsPerFlush) {
+    const std::size_t last = std::min(offsets.size(), first + kVectorsPerFlush);
     for (std::size_t i = first; i < last; ++i) {
-      const std::uint8_t* values = footprint.values() + i * kStep;
-      const __m512i l = _mm512_load_si512(values);
-      for (std::size_t k = 0; k < kPlaces; ++k) places[k].add(pieces[i], values, l);
+      const __m512i l = _mm512_load_si512(footprint.values() + i * kStep);
+      const __m512i mask = _mm512_load_si512(footprint.mask() + i * kStep);
+      for (std::size_t k = 0; k < kPlaces; ++k) {
+        const __m512i below = _mm512_loadu_si512(nadir[k] + offsets[i]);
+        __m512i less_128 = _mm512_and_si512(_mm512_xor_si512(below, high_bit), mask);
+        const __mmask64 unseen = _mm512_cmpeq_epi8_mask(less_128, unobserved);
+        if (unseen != 0) [[unlikely]] {
+          hidden[k].add(unseen, l);
+          less_128 = _mm512_maskz_mov_epi8(~unseen, less_128);
+        }
+        m[k] = _mm512_dpbusd_epi32(m[k], below, mask);  // the mask's bytes are 0 and -1
+        mm[k] = _mm512_dpbusd_epi32(mm[k], below, less_128);
+        ml[k] = _mm512_dpbusd_epi32(ml[k], l, less_128);
+      }
     }
-    for (Place& place : places) place.flush(footprint.observed_cells());
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      out[k].m -= emptied(m[k]);
+      out[k].mm += emptied(mm[k]);
+      out[k].ml += emptied(ml[k]);
+      hidden[k].flush();
+    }
   }
   for (std::size_t k = 0; k < kPlaces; ++k) {
-    IntegerSums& sums = places[k].sums;
+    IntegerSums& sums = out[k];
+    sums.n = footprint.observed_cells() - hidden[k].n;
+    sums.m -= kUnobserved * hidden[k].n;
+    sums.l = footprint.sum() - hidden[k].l;
     sums.mm += 128 * sums.m;
-    sums.ml += 128 * footprint.sum();
-    out[k] = sums;
+    sums.ll = footprint.sum_of_squares() - hidden[k].ll - 128 * hidden[k].l;
+    sums.ml += 128 * sums.l;
   }
 }
 
@@ -133,10 +130,10 @@ void allow_byte_products_for_test(bool allow) { allowed = allow; }
 void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums) {
   assert(places.size() == sums.size());
-  const std::vector<Piece> pieces = pieces_of(footprint, map.stride());
+  const std::vector<std::ptrdiff_t> offsets = offsets_of(footprint, map.stride());
   std::size_t i = 0;
-  for (; i + 4 <= places.size(); i += 4) add_up<4>(map, footprint, pieces, &places[i], &sums[i]);
-  for (; i < places.size(); ++i) add_up<1>(map, footprint, pieces, &places[i], &sums[i]);
+  for (; i + 4 <= places.size(); i += 4) add_up<4>(map, footprint, offsets, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_up<1>(map, footprint, offsets, &places[i], &sums[i]);
 }
 
 }  // namespace roadfix

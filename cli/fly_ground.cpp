@@ -103,10 +103,7 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
 GridBox flying_box(const FlyOptions& options, const MapView& map, const GridBox& ground) {
   const Footprint footprint = footprint_of(options);
   const double margin = 0.5 * std::hypot(footprint.width_m, footprint.height_m);
-  const GridBox box{{std::max(map.extent.min.east_m, ground.min.east_m) + margin,
-                     std::max(map.extent.min.north_m, ground.min.north_m) + margin},
-                    {std::min(map.extent.max.east_m, ground.max.east_m) - margin,
-                     std::min(map.extent.max.north_m, ground.max.north_m) - margin}};
+  const GridBox box = grown(intersection(map.extent, ground), -margin);
   if (!box.empty()) return box;
   throw InvalidInput("no-place-to-fly",
                      "the footprint does not fit where map and imagery overlap: make it smaller with --footprint-m");

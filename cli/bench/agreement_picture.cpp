@@ -22,7 +22,7 @@ cv::Vec3b colour_of(double before, double after) {
 GridPose centre_of(const FeatureMap& features, const GridPose& pose) {
   const double right = (features.cells.cols() / 2.0 - features.nadir.col) * features.cell_m;
   const double forward = (features.nadir.row - features.cells.rows() / 2.0) * features.cell_m;
-  return {beside(pose, right, forward), pose.heading};
+  return moved(pose, {forward, right, {}});
 }
 
 cv::Mat ground_before(std::span<const Orthoimage> imagery, const FeatureMap& features, const GridPose& pose) {

@@ -56,7 +56,7 @@ std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, c
     const double across = (seen.x + 0.5 - frame.pixels.cols / 2.0) * frame.gsd_m;
     const double ahead = (frame.pixels.rows / 2.0 - 0.5 - seen.y) * frame.gsd_m;
     const GridPoint found{origin.east_m + known.x, origin.north_m - known.y};
-    right.push_back(distance_m(found, beside(truth, across, ahead)) <= tolerance_m);
+    right.push_back(distance_m(found, moved(truth, {ahead, across, {}}).position) <= tolerance_m);
   }
   return right;
 }

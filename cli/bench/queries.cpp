@@ -137,13 +137,7 @@ GroundImage picture_of(const FrameTruth& frame, const QuerySet& set) {
 
 /// As odometry without error would tell it.
 BodyOffset offset_of(const GeoPose& earlier, const GeoPose& reference, const UtmZone& zone) {
-  const GridPoint from = zone.project(reference.position);
-  const GridPoint to = zone.project(earlier.position);
-  const Angle heading = zone.grid_from_true(reference.heading, from);
-  const double east = to.east_m - from.east_m;
-  const double north = to.north_m - from.north_m;
-  return {east * sin(heading) + north * cos(heading), east * cos(heading) - north * sin(heading),
-          zone.grid_from_true(earlier.heading, to) - heading};
+  return offset_from(on_grid(reference, zone), on_grid(earlier, zone));
 }
 
 std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,

@@ -38,7 +38,7 @@ class RandomPilot : public Pilot {
   std::optional<Angle> steer(const GridPose& pose, Random& random) override {
     constexpr double kChange = 0.3;
     rate_ = std::clamp(rate_ + uniform(random, -kChange, kChange), -1.0, 1.0);
-    const GridPoint middle{0.5 * (box_.min.east_m + box_.max.east_m), 0.5 * (box_.min.north_m + box_.max.north_m)};
+    const GridPoint middle = box_.centre();
     if (!box_.contains(pose.position)) return turn_towards(bearing(pose.position, middle), pose, handling_);
     return (rate_ * handling_.step_s) * handling_.turn_rate;
   }

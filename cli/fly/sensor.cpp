@@ -29,7 +29,7 @@ class Camera {
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double scale = std::max(0.5, 1.0 + errors_.altitude * normal(random));
     constexpr int kSeedBits = 31;
-    return {{beside(pose, right, forward), pose.heading}, scale, random() >> (64 - kSeedBits)};
+    return {moved(pose, {forward, right, {}}), scale, random() >> (64 - kSeedBits)};
   }
 
   CameraFrame take(const Shot& shot) const {

@@ -30,12 +30,10 @@ Vehicle::Vehicle(const GridPose& start, const Handling& handling, const Odometry
       turn_drift_(normal(random) * errors.turn_drift) {}
 
 Odometry Vehicle::move(Angle turn, bench::Random& random) {
-  const Odometry moved = arc(handling_.speed_m_s * handling_.step_s, turn);
-  pose_.position.east_m += moved.forward_m * sin(pose_.heading) + moved.right_m * cos(pose_.heading);
-  pose_.position.north_m += moved.forward_m * cos(pose_.heading) - moved.right_m * sin(pose_.heading);
-  pose_.heading = (pose_.heading + turn).wrapped();
+  const Odometry step = arc(handling_.speed_m_s * handling_.step_s, turn);
+  pose_ = moved(pose_, step);
   const double spread = errors_.share * handling_.speed_m_s * handling_.step_s;
-  return {scale_ * moved.forward_m + spread * normal(random), scale_ * moved.right_m + spread * normal(random),
+  return {scale_ * step.forward_m + spread * normal(random), scale_ * step.right_m + spread * normal(random),
           turn + handling_.step_s * turn_drift_ + normal(random) * errors_.turn};
 }
 

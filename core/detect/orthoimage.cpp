@@ -21,7 +21,8 @@ bool sees(const Orthoimage& imagery, GridPoint point) {
 std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pose) {
   const double w = footprint.width_m / 2.0;
   const double h = footprint.height_m / 2.0;
-  return {beside(pose, -w, h), beside(pose, w, h), beside(pose, w, -h), beside(pose, -w, -h)};
+  const auto corner = [&](double forward, double right) { return moved(pose, {forward, right, {}}).position; };
+  return {corner(h, -w), corner(h, w), corner(-h, w), corner(-h, -w)};
 }
 
 GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footprint& footprint, double gsd_m) {

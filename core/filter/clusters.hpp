@@ -16,8 +16,7 @@ struct ClusterOptions {
 struct Cluster {
   GridPose mean;        ///< the heading is the circular mean
   double weight = 0.0;  ///< share of all weight
-  /// Of east (m), north (m), heading (rad, clockwise), about the mean.
-  Matrix3 covariance{};
+  PoseCovariance covariance{};
   double radius95_m = 0.0;  ///< holds 95 % of the cluster's weight
   std::size_t particles = 0;
 

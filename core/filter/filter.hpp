@@ -44,7 +44,7 @@ struct FilterOptions {
 /// A place that a search found, to draw particles around.
 struct Proposal {
   GridPose mean;
-  Matrix3 covariance{};  ///< of east (m), north (m), heading (rad, clockwise)
+  PoseCovariance covariance{};
   double weight = 1.0;
 };
 

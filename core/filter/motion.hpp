@@ -32,12 +32,8 @@ struct PlanarMotion {
   void operator()(ParticleState& state, RandomStream& random) const;
 };
 
-/// Displacement in the body frame at the beginning of the step (x forward, y right), then a turn.
-struct Odometry {
-  double forward_m = 0.0;
-  double right_m = 0.0;
-  Angle turn;  ///< clockwise
-};
+/// The pose after a step, seen from that before it.
+using Odometry = BodyOffset;
 
 /// Covariance of (forward m, right m, turn rad).
 using OdometryCovariance = Matrix3;

@@ -1,21 +1,17 @@
 #include "core/filter/region.hpp"
 
-#include <algorithm>
-
 namespace roadfix {
 namespace {
 
 /// The part of the box that a circle can reach.
-GridBox clipped(const GridBox& box, const AcceptanceRegion::Circle& circle) {
-  const auto [centre, radius] = circle;
-  return {{std::max(box.min.east_m, centre.east_m - radius), std::max(box.min.north_m, centre.north_m - radius)},
-          {std::min(box.max.east_m, centre.east_m + radius), std::min(box.max.north_m, centre.north_m + radius)}};
+GridBox clipped(const GridBox& box, const GridCircle& circle) {
+  return intersection(box, grown({circle.centre, circle.centre}, circle.radius_m));
 }
 
 }  // namespace
 
 bool AcceptanceRegion::contains(GridPoint point) const {
-  return box.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m);
+  return box.contains(point) && (!circle || roadfix::contains(*circle, point));
 }
 
 bool AcceptanceRegion::keeps(GridPoint point) const {

@@ -9,14 +9,9 @@
 namespace roadfix {
 
 struct AcceptanceRegion {
-  struct Circle {
-    GridPoint centre;
-    double radius_m = 0.0;
-  };
-
-  GridBox box;                   ///< not empty
-  std::optional<Circle> circle;  ///< intersects the box in more than a point
-  Angle heading;                 ///< centre of the range
+  GridBox box;                       ///< not empty
+  std::optional<GridCircle> circle;  ///< intersects the box in more than a point
+  Angle heading;                     ///< centre of the range
   Angle heading_half_width = Angle::degrees(180.0);
   double beyond_m = 0.0;  ///< so far outside particles live on, though none is drawn there
 

@@ -4,23 +4,13 @@
 #include <span>
 
 #include "core/grid/feature_map.hpp"
-#include "core/units/angle.hpp"
+#include "core/units/planar.hpp"
 
 namespace roadfix {
 
-/// Where another frame was taken, seen from the UAV at the reference frame: metres ahead and to the right of it, and
-/// how far its nose pointed to the right of the reference's.
-struct BodyOffset {
-  double forward_m = 0.0;
-  double right_m = 0.0;
-  Angle turn;
-
-  friend bool operator==(const BodyOffset&, const BodyOffset&) = default;
-};
-
 struct PlacedFeatures {
   FeatureMap features;
-  BodyOffset offset;  ///< zero for the reference frame
+  BodyOffset offset;  ///< of the UAV when it took this frame, from where it took the reference frame
 
   friend bool operator==(const PlacedFeatures&, const PlacedFeatures&) = default;
 };

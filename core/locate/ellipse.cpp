@@ -5,7 +5,7 @@
 
 namespace roadfix {
 
-Ellipse ellipse_of(const MapView& map, GridPoint at, const std::array<std::array<double, 3>, 3>& covariance) {
+Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const double east2 = covariance[0][0] + registration2;
   const double north2 = covariance[1][1] + registration2;

@@ -38,12 +38,7 @@ void require_usable(const FeatureMap& features) {
   }
 }
 
-GridBox intersection(const GridBox& a, const GridBox& b) {
-  return {{std::max(a.min.east_m, b.min.east_m), std::max(a.min.north_m, b.min.north_m)},
-          {std::min(a.max.east_m, b.max.east_m), std::min(a.max.north_m, b.max.north_m)}};
-}
-
-SearchRegion::Circle circle_in(const UtmZone& zone, const GeoCircle& circle) {
+GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
   if (!std::isfinite(circle.radius_m) || circle.radius_m <= 0.0) {
     throw InvalidInput("prior-radius-out-of-range",
                        fmt::format("the radius of the prior is {} m: give metres above 0", circle.radius_m));
@@ -100,15 +95,12 @@ SearchRegion region_of(const MapView& map, const Prior& prior) {
   region.box = map.extent;
   if (prior.circle) {
     region.circle = circle_in(map.zone, *prior.circle);
-    const GridPoint c = region.circle->centre;
-    const double r = region.circle->radius_m;
-    region.box = intersection(region.box, {{c.east_m - r, c.north_m - r}, {c.east_m + r, c.north_m + r}});
+    const auto& [centre, radius_m] = *region.circle;
+    region.box = intersection(region.box, grown({centre, centre}, radius_m));
   }
   if (prior.box) region.box = intersection(region.box, box_in(map.zone, *prior.box));
-  const GridPoint middle{0.5 * (region.box.min.east_m + region.box.max.east_m),
-                         0.5 * (region.box.min.north_m + region.box.max.north_m)};
-  if (region.box.empty() || (region.circle && distance_m(nearest(region.box, region.circle->centre),
-                                                         region.circle->centre) > region.circle->radius_m)) {
+  const GridPoint middle = region.box.centre();
+  if (region.box.empty() || (region.circle && !contains(*region.circle, nearest(region.box, region.circle->centre)))) {
     throw InvalidInput(
         "prior-outside-map",
         fmt::format("the prior does not meet the map {}: check its position, or search without it", map.name));

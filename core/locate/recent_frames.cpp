@@ -43,13 +43,9 @@ bool is_small_enough(const FeatureMap& features) {
   return std::max(cells.cols(), cells.rows()) <= RecentFrames::kMostAcross && off <= RecentFrames::kMostAcross;
 }
 
-/// The same place from where the vehicle is after `moved`.
-BodyOffset seen_after(const Odometry& moved, const BodyOffset& before) {
-  const double forward = before.forward_m - moved.forward_m;
-  const double right = before.right_m - moved.right_m;
-  const double c = cos(moved.turn);
-  const double s = sin(moved.turn);
-  return {c * forward + s * right, c * right - s * forward, (before.turn - moved.turn).wrapped()};
+/// The same place from where the vehicle is after `step`.
+BodyOffset seen_after(const Odometry& step, const BodyOffset& before) {
+  return offset_from(moved({}, step), moved({}, before));
 }
 
 [[noreturn]] void refuse(const char* what) {

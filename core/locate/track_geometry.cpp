@@ -8,9 +8,7 @@
 namespace roadfix {
 
 AcceptanceRegion acceptance_of(const SearchRegion& region) {
-  AcceptanceRegion result{region.box, std::nullopt, region.heading, region.heading_half_width};
-  if (region.circle) result.circle = AcceptanceRegion::Circle{region.circle->centre, region.circle->radius_m};
-  return result;
+  return {region.box, region.circle, region.heading, region.heading_half_width, 0.0};
 }
 
 bool is_same_place(const GridPose& a, const GridPose& b) {
@@ -25,9 +23,9 @@ std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
     box.min = {std::min(box.min.east_m, p.east_m[i]), std::min(box.min.north_m, p.north_m[i])};
     box.max = {std::max(box.max.east_m, p.east_m[i]), std::max(box.max.north_m, p.north_m[i])};
   }
-  const GridPoint centre{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
+  const GridPoint centre = box.centre();
   const double radius_m = distance_m(box.min, box.max) / 2.0;
-  if (distance_m(nearest(map.extent, centre), centre) > radius_m) return std::nullopt;
+  if (!contains({centre, radius_m}, nearest(map.extent, centre))) return std::nullopt;
   Prior prior;
   prior.circle = GeoCircle{map.zone.unproject(centre), radius_m + 1.0};
   return prior;

@@ -62,8 +62,7 @@ struct SearchMode {
   double rho = 0.0;      ///< equation (5) at the nearest cell
   double pearson = 0.0;  ///< the same about the separate means
   std::int64_t observed_cells = 0;
-  /// Of east (m), north (m), heading (rad, clockwise): from the shape of the peak, and the cell size.
-  std::array<std::array<double, 3>, 3> covariance{};
+  PoseCovariance covariance{};  ///< from the shape of the peak, and the cell size
 };
 
 /// What scores look like by chance over the searched region.

@@ -6,7 +6,7 @@
 namespace roadfix {
 
 bool SearchRegion::contains(GridPoint point) const {
-  return box.contains(point) && (!circle || distance_m(point, circle->centre) <= circle->radius_m);
+  return box.contains(point) && (!circle || roadfix::contains(*circle, point));
 }
 
 bool SearchRegion::contains(Angle grid_heading) const {

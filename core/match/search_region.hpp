@@ -9,14 +9,9 @@ namespace roadfix {
 
 /// Grid positions of the nadir and grid headings to consider.
 struct SearchRegion {
-  struct Circle {
-    GridPoint centre;
-    double radius_m = 0.0;
-  };
-
   GridBox box;
-  std::optional<Circle> circle;  ///< intersects the box
-  Angle heading;                 ///< centre of the range
+  std::optional<GridCircle> circle;  ///< intersects the box
+  Angle heading;                     ///< centre of the range
   Angle heading_half_width = Angle::degrees(180.0);
 
   bool contains(GridPoint point) const;

@@ -30,8 +30,7 @@ SearchRegion SearchScan::enlarged() const {
   const double need = 0.5 * std::sqrt(wanted_m2);
   SearchRegion result = region;
   result.circle.reset();
-  const GridPoint centre{0.5 * (region.box.min.east_m + region.box.max.east_m),
-                         0.5 * (region.box.min.north_m + region.box.max.north_m)};
+  const GridPoint centre = region.box.centre();
   result.box.min.east_m = std::min(region.box.min.east_m, centre.east_m - need);
   result.box.min.north_m = std::min(region.box.min.north_m, centre.north_m - need);
   result.box.max.east_m = std::max(region.box.max.east_m, centre.east_m + need);

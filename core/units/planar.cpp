@@ -10,6 +10,11 @@ GridBox united(const GridBox& a, const GridBox& b) {
           {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
 }
 
+GridBox intersection(const GridBox& a, const GridBox& b) {
+  return {{std::max(a.min.east_m, b.min.east_m), std::max(a.min.north_m, b.min.north_m)},
+          {std::min(a.max.east_m, b.max.east_m), std::min(a.max.north_m, b.max.north_m)}};
+}
+
 GridBox grown(const GridBox& box, double by_m) {
   return {{box.min.east_m - by_m, box.min.north_m - by_m}, {box.max.east_m + by_m, box.max.north_m + by_m}};
 }
@@ -21,10 +26,22 @@ GridPoint nearest(const GridBox& box, GridPoint point) {
 
 double distance_m(GridPoint a, GridPoint b) { return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m); }
 
-GridPoint beside(const GridPose& pose, double right_m, double forward_m) {
-  const double c = cos(pose.heading);
-  const double s = sin(pose.heading);
-  return {pose.position.east_m + c * right_m + s * forward_m, pose.position.north_m - s * right_m + c * forward_m};
+bool contains(const GridCircle& circle, GridPoint point) { return distance_m(point, circle.centre) <= circle.radius_m; }
+
+GridPose moved(const GridPose& reference, const BodyOffset& by) {
+  const auto& [position, heading] = reference;
+  const double c = cos(heading);
+  const double s = sin(heading);
+  return {{position.east_m + c * by.right_m + s * by.forward_m, position.north_m - s * by.right_m + c * by.forward_m},
+          (heading + by.turn).wrapped()};
+}
+
+BodyOffset offset_from(const GridPose& reference, const GridPose& pose) {
+  const double east = pose.position.east_m - reference.position.east_m;
+  const double north = pose.position.north_m - reference.position.north_m;
+  const double c = cos(reference.heading);
+  const double s = sin(reference.heading);
+  return {s * east + c * north, c * east - s * north, (pose.heading - reference.heading).wrapped()};
 }
 
 }  // namespace roadfix

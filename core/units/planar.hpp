@@ -2,6 +2,8 @@
 // core/geodesy ties the plane to a UTM zone.
 #pragma once
 
+#include <array>
+
 #include "core/units/angle.hpp"
 
 namespace roadfix {
@@ -12,10 +14,26 @@ struct GridPoint {
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-/// Heading is clockwise from *grid* north; the API speaks of true north (see core/geodesy/heading).
+/// Heading is clockwise from *grid* north; the API speaks of true north (see UtmZone::convergence).
 struct GridPose {
   GridPoint position;
   Angle heading;
+};
+
+/// Of east (m), north (m) and heading (rad, clockwise), about a pose.
+using PoseCovariance = std::array<std::array<double, 3>, 3>;
+
+/// Where one pose of a body is, seen from another: so far ahead of it and to its right, turned so far clockwise.
+struct BodyOffset {
+  double forward_m = 0.0;
+  double right_m = 0.0;
+  Angle turn;
+  friend bool operator==(const BodyOffset&, const BodyOffset&) = default;
+};
+
+struct GridCircle {
+  GridPoint centre;
+  double radius_m = 0.0;
 };
 
 /// Axis-aligned rectangle, closed; empty when min > max on an axis.
@@ -24,6 +42,7 @@ struct GridBox {
   GridPoint max;
   double width_m() const { return max.east_m - min.east_m; }
   double height_m() const { return max.north_m - min.north_m; }
+  GridPoint centre() const { return {0.5 * (min.east_m + max.east_m), 0.5 * (min.north_m + max.north_m)}; }
   bool empty() const { return min.east_m > max.east_m || min.north_m > max.north_m; }
   bool contains(GridPoint p) const {
     return p.east_m >= min.east_m && p.east_m <= max.east_m && p.north_m >= min.north_m && p.north_m <= max.north_m;
@@ -38,6 +57,9 @@ struct GridBox {
 /// The smallest box that holds both; neither is empty.
 GridBox united(const GridBox& a, const GridBox& b);
 
+/// What both hold; empty where they do not meet.
+GridBox intersection(const GridBox& a, const GridBox& b);
+
 /// The box and `by_m` on each side of it.
 GridBox grown(const GridBox& box, double by_m);
 
@@ -46,7 +68,13 @@ GridPoint nearest(const GridBox& box, GridPoint point);
 
 double distance_m(GridPoint a, GridPoint b);
 
-/// The point that lies so far to the right of a body at the pose and ahead of it.
-GridPoint beside(const GridPose& pose, double right_m, double forward_m);
+/// Whether the closed disc holds the point.
+bool contains(const GridCircle& circle, GridPoint point);
+
+/// The pose at that offset from `reference`, its heading in (-180, 180] degrees.
+GridPose moved(const GridPose& reference, const BodyOffset& by);
+
+/// Where `pose` is, seen from `reference`: moved() undone.
+BodyOffset offset_from(const GridPose& reference, const GridPose& pose);
 
 }  // namespace roadfix

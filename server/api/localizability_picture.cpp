@@ -16,8 +16,7 @@ constexpr double kFinest = 0.5;    // of the footprint: places nearer to each ot
 constexpr double kCoarsest = 4.0;  // of the footprint
 
 double tile_m(const MapView& map, int zoom) {
-  const GridPoint middle{0.5 * (map.extent.min.east_m + map.extent.max.east_m),
-                         0.5 * (map.extent.min.north_m + map.extent.max.north_m)};
+  const GridPoint middle = map.extent.centre();
   return kTilePixels * metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
 }
 

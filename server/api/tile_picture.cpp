@@ -18,11 +18,6 @@ double source_cell(const MapView& map, double pixel_m) {
   return cell_m;
 }
 
-GridBox intersection(const GridBox& a, const GridBox& b, double margin_m) {
-  return {{std::max(a.min.east_m, b.min.east_m) - margin_m, std::max(a.min.north_m, b.min.north_m) - margin_m},
-          {std::min(a.max.east_m, b.max.east_m) + margin_m, std::min(a.max.north_m, b.max.north_m) + margin_m}};
-}
-
 /// Bilinear over the observed neighbours; nullopt where the cell that holds the point is unobserved.
 std::optional<double> sample(const RoadGrid& grid, GridPoint point) {
   const auto position = grid.geometry.position_of(point);
@@ -65,7 +60,7 @@ std::optional<std::vector<std::uint8_t>> tile_png(const MapView& map, TileAddres
   const double middle_y = double{kTilePixels} * tile.y + 0.5 * (box.top + box.bottom);
   const double pixel_m = metres_per_pixel(lat_lon({0.0, middle_y}, tile.z).lat_deg, tile.z);
   const double cell_m = source_cell(map, pixel_m);
-  const GridBox needed = intersection(ground.box(), map.extent, 2.0 * cell_m);
+  const GridBox needed = grown(intersection(ground.box(), map.extent), 2.0 * cell_m);
   if (needed.empty()) return std::nullopt;
   const RoadGrid grid = map.read(GridGeometry::covering(needed, cell_m));
   if (grid.cells.observed_count() == 0) return std::nullopt;
@@ -88,8 +83,7 @@ std::optional<std::vector<std::uint8_t>> tile_png(const MapView& map, TileAddres
 }
 
 int native_zoom(const MapView& map) {
-  const LatLon middle = map.zone.unproject(
-      {0.5 * (map.extent.min.east_m + map.extent.max.east_m), 0.5 * (map.extent.min.north_m + map.extent.max.north_m)});
+  const LatLon middle = map.zone.unproject(map.extent.centre());
   int zoom = 0;
   while (zoom < kMaxZoom && metres_per_pixel(middle.lat_deg, zoom) > map.cell_m) ++zoom;
   return zoom;

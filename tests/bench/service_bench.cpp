@@ -55,8 +55,7 @@ const RunningService& service(bool keeps) {
 
 LatLon middle() {
   const GridBox box = kGround.box();
-  return UtmZone::from_epsg(32634)->unproject(
-      {0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)});
+  return UtmZone::from_epsg(32634)->unproject(box.centre());
 }
 
 std::vector<std::string> tile_paths() {

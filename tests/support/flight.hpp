@@ -32,16 +32,14 @@ class Flight {
  private:
   Odometry move() {
     const GridBox box = map_.geometry.box();
-    const GridPoint middle{0.5 * (box.min.east_m + box.max.east_m), 0.5 * (box.min.north_m + box.max.north_m)};
+    const GridPoint middle = box.centre();
     const double to_middle = std::atan2(middle.east_m - pose_.position.east_m, middle.north_m - pose_.position.north_m);
     const bool near_edge = distance_m(pose_.position, middle) > 0.3 * std::min(box.width_m(), box.height_m());
     const Angle home = (Angle::radians(to_middle) - pose_.heading).wrapped();
     const Angle turn =
         near_edge ? Angle::radians(std::clamp(home.radians(), -0.2, 0.2)) : Angle::radians(uniform(random_, -0.1, 0.1));
     const double forward = 20.0;
-    pose_.position.east_m += forward * sin(pose_.heading);
-    pose_.position.north_m += forward * cos(pose_.heading);
-    pose_.heading = (pose_.heading + turn).wrapped();
+    pose_ = moved(pose_, {forward, 0.0, turn});
     return {forward * uniform(random_, 0.97, 1.03), uniform(random_, -0.3, 0.3),
             turn + Angle::degrees(uniform(random_, -0.5, 0.5))};
   }

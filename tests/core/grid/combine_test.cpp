@@ -55,17 +55,10 @@ TEST(Combined, TakesTheMeanOfTheLogOddsWhereFramesOverlap) {
 
 TEST(Combined, FramesCutFromAMapAlongAFlightGiveTheMapBack) {
   const RoadGrid town = testing::street_map(3, {2.0, {1000, 2000}, 200, 200});
-  const GridPoint middle{town.geometry.box().min.east_m + 0.5 * town.geometry.box().width_m(),
-                         town.geometry.box().min.north_m + 0.5 * town.geometry.box().height_m()};
-  const GridPose reference{middle, Angle::degrees(33)};
+  const GridPose reference{town.geometry.box().centre(), Angle::degrees(33)};
   std::vector<PlacedFeatures> parts;
   for (const BodyOffset offset : {BodyOffset{}, BodyOffset{-30.0, 12.0, Angle::degrees(-20)}}) {
-    const double c = cos(reference.heading);
-    const double s = sin(reference.heading);
-    const GridPose pose{{middle.east_m + s * offset.forward_m + c * offset.right_m,
-                         middle.north_m + c * offset.forward_m - s * offset.right_m},
-                        reference.heading + offset.turn};
-    parts.push_back({cut_out(town, pose, 60, 60, town.geometry.cell_m), offset});
+    parts.push_back({cut_out(town, moved(reference, offset), 60, 60, town.geometry.cell_m), offset});
   }
   const FeatureMap result = combined(parts, kPlenty);
   EXPECT_GT(result.cells.observed_count(), 3600U);

@@ -60,8 +60,7 @@ TEST(QuarterTurned, IsTheMapTurnedByNinetyDegreesMore) {
 TEST(CutOut, ReturnsTheGridItselfAtItsCentre) {
   const RoadGrid grid{{2.0, {10, 20}, 4, 4}, from_ascii("#..# .#.. ..#. ?..#")};
   const GridBox box = grid.geometry.box();
-  const GridPoint centre{(box.min.east_m + box.max.east_m) / 2, (box.min.north_m + box.max.north_m) / 2};
-  EXPECT_EQ(cut_out(grid, {centre, Angle::degrees(0)}, 4, 4, 2.0).cells, grid.cells);
+  EXPECT_EQ(cut_out(grid, {box.centre(), Angle::degrees(0)}, 4, 4, 2.0).cells, grid.cells);
 }
 
 TEST(CutOut, UndoesARotation) {

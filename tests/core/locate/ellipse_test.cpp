@@ -17,7 +17,7 @@ MapView map_registered_to(double sigma_m) {
 }
 
 /// Of a position that is `along_m` unsure in the direction `grid` and `across_m` across it.
-std::array<std::array<double, 3>, 3> covariance_of(Angle grid, double along_m, double across_m) {
+PoseCovariance covariance_of(Angle grid, double along_m, double across_m) {
   const double s = sin(grid);
   const double c = cos(grid);
   const double a2 = along_m * along_m;

@@ -15,8 +15,7 @@ GridGeometry square(int cells) { return {2.0, {300'000, -3'200'000}, cells, cell
 
 LocalizabilityQuery centre_of(const MapView& view, double footprint_m) {
   LocalizabilityQuery query;
-  query.position = view.zone.unproject({0.5 * (view.extent.min.east_m + view.extent.max.east_m),
-                                        0.5 * (view.extent.min.north_m + view.extent.max.north_m)});
+  query.position = view.zone.unproject(view.extent.centre());
   query.footprint_m = footprint_m;
   query.radius_m = 500.0;
   return query;

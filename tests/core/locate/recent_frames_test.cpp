@@ -24,15 +24,6 @@ constexpr OdometryCovariance kUsual{{{1.0, 0, 0}, {0, 1.0, 0}, {0, 0, 1e-4}}};
 
 FeatureMap blank(int side, double cell_m = 2.0) { return FeatureMap::centred(CellArray(side, side, kNoRoad), cell_m); }
 
-/// After a step of (forward, right, turn) in the body frame at its beginning.
-GridPose moved(const GridPose& from, const Odometry& step) {
-  const double c = cos(from.heading);
-  const double s = sin(from.heading);
-  return {{from.position.east_m + step.forward_m * s + step.right_m * c,
-           from.position.north_m + step.forward_m * c - step.right_m * s},
-          from.heading + step.turn};
-}
-
 std::size_t cells_of(const RecentFrames& recent) {
   std::size_t sum = 0;
   for (const auto& frame : recent.frames()) sum += frame.placed.features.cells.cells().size();

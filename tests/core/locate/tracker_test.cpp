@@ -95,8 +95,7 @@ TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
     input.time_us = 1'000'000 * (input.sequence + 1);
     if (i > 0) {
       const Angle turn = Angle::degrees(i >= 13 && i < 33 ? 9.0 : 0.0);
-      pose.position = beside(pose, 0.0, 20.0);
-      pose.heading = (pose.heading + turn).wrapped();
+      pose = moved(pose, {20.0, 0.0, turn});
       input.odometry = Odometry{20.0 * testing::uniform(random, 0.98, 1.02), 0.0, turn};
     }
     input.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random);

@@ -175,7 +175,7 @@ TEST(Search, StaysWithinItsRegionAndHeadingRange) {
   SearchRegion region;
   const GridPoint centre{truth.position.east_m + 30.0, truth.position.north_m};
   region.box = {{centre.east_m - 50.0, centre.north_m - 50.0}, {centre.east_m + 50.0, centre.north_m + 50.0}};
-  region.circle = SearchRegion::Circle{centre, 50.0};
+  region.circle = GridCircle{centre, 50.0};
   region.heading = truth.heading + Angle::degrees(5.0);
   region.heading_half_width = Angle::degrees(10.0);
   const SearchResult near = search(reader_of(map), 2.0, window, region, {});

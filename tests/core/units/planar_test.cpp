@@ -23,6 +23,13 @@ TEST(GridBox, UnitedHoldsBoth) {
   EXPECT_EQ(both.max, (GridPoint{30.0, 99.0}));
 }
 
+TEST(GridBox, IntersectionIsWhatBothHold) {
+  const GridBox shared = intersection(kBox, {{0.0, 30.0}, {15.0, 99.0}});
+  EXPECT_EQ(shared.min, (GridPoint{10.0, 30.0}));
+  EXPECT_EQ(shared.max, (GridPoint{15.0, 50.0}));
+  EXPECT_TRUE(intersection(kBox, {{31.0, 20.0}, {40.0, 50.0}}).empty());
+}
+
 TEST(GridBox, GrowsOnEachSide) {
   EXPECT_EQ(grown(kBox, 5.0).min, (GridPoint{5.0, 15.0}));
   EXPECT_EQ(grown(kBox, 5.0).max, (GridPoint{35.0, 55.0}));
@@ -32,6 +39,31 @@ TEST(GridBox, ItsNearestPointIsThePointItselfInsideAndOnTheRimOutside) {
   EXPECT_EQ(nearest(kBox, {12.0, 49.0}), (GridPoint{12.0, 49.0}));
   EXPECT_EQ(nearest(kBox, {0.0, 30.0}), (GridPoint{10.0, 30.0}));
   EXPECT_EQ(nearest(kBox, {99.0, 99.0}), (GridPoint{30.0, 50.0}));
+}
+
+TEST(GridCircle, HoldsItsRim) {
+  const GridCircle circle{{100.0, 200.0}, 5.0};
+  EXPECT_TRUE(contains(circle, {103.0, 204.0}));
+  EXPECT_FALSE(contains(circle, {103.1, 204.0}));
+}
+
+TEST(BodyOffset, GoesAheadAndToTheRightOfWhereTheBodyPoints) {
+  const GridPose eastward{{100.0, 200.0}, Angle::degrees(90.0)};
+  const GridPose there = moved(eastward, {30.0, 4.0, Angle::degrees(-100.0)});
+  EXPECT_NEAR(there.position.east_m, 130.0, 1e-9);
+  EXPECT_NEAR(there.position.north_m, 196.0, 1e-9);
+  EXPECT_NEAR(there.heading.degrees(), -10.0, 1e-9);
+}
+
+TEST(BodyOffset, IsFoundAgainBetweenTheTwoPoses) {
+  const GridPose from{{600'000.0, 6'400'000.0}, Angle::degrees(-160.0)};
+  const BodyOffset offset{-120.0, 4.0, Angle::degrees(-35.0)};
+  const GridPose to = moved(from, offset);
+  EXPECT_NEAR(to.heading.degrees(), 165.0, 1e-9);
+  const BodyOffset found = offset_from(from, to);
+  EXPECT_NEAR(found.forward_m, offset.forward_m, 1e-8);
+  EXPECT_NEAR(found.right_m, offset.right_m, 1e-8);
+  EXPECT_NEAR(found.turn.degrees(), offset.turn.degrees(), 1e-9);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detect/network_description.hpp"
+#include "core/units/fnv.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
@@ -75,8 +75,7 @@ std::filesystem::path file_of(const ManifestMap& map, const MapSettings& setting
   std::string name = map.name;
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-  const auto* bytes = reinterpret_cast<const unsigned char*>(identity.data());
-  return building.cache / fmt::format("{}-{}.gpkg", name, fnv1a64({bytes, identity.size()}));
+  return building.cache / fmt::format("{}-{}.gpkg", name, fnv1a64(identity));
 }
 
 }  // namespace

@@ -109,10 +109,4 @@ NetworkDescription read_network_description(const std::filesystem::path& model) 
   return parse_network_description(text);
 }
 
-std::string fnv1a64(std::span<const unsigned char> bytes) {
-  std::uint64_t value = 0xCBF29CE484222325ULL;
-  for (const unsigned char byte : bytes) value = (value ^ byte) * 0x100000001B3ULL;
-  return fmt::format("{:016x}", value);
-}
-
 }  // namespace roadfix

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,7 +32,7 @@ struct NetworkDescription {
   /// Calibration: probability = 1 / (1 + exp(-(scale * logit + bias))).
   double calibration_scale = 1.0;
   double calibration_bias = 0.0;
-  std::string fnv1a64;  ///< of the ONNX file, 16 hexadecimal digits; empty = not stated
+  std::string fnv1a64;  ///< of the ONNX file, as core/units/fnv.hpp gives it; empty = not stated
 };
 
 /// Throws InvalidInput "model-description" with the field and its range.
@@ -42,8 +40,5 @@ NetworkDescription parse_network_description(std::string_view json);
 
 /// Description of `model`.onnx from `model`.json. Throws InvalidInput "model-description" where there is none.
 NetworkDescription read_network_description(const std::filesystem::path& model);
-
-/// FNV-1a of 64 bits as 16 hexadecimal digits: tells files apart, proves nothing.
-std::string fnv1a64(std::span<const unsigned char> bytes);
 
 }  // namespace roadfix

@@ -13,6 +13,7 @@
 #include "core/detect/network_picture.hpp"
 #include "core/detect/tiling.hpp"
 #include "core/units/error.hpp"
+#include "core/units/fnv.hpp"
 
 namespace roadfix {
 namespace {
@@ -102,7 +103,7 @@ NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const
   }
   const auto onnx = read_model(model);
   network_ = read_network_description(model);
-  checksum_ = roadfix::fnv1a64(onnx);
+  checksum_ = roadfix::fnv1a64({reinterpret_cast<const char*>(onnx.data()), onnx.size()});
   if (!network_.fnv1a64.empty() && network_.fnv1a64 != checksum_) {
     throw InvalidInput("model-checksum", fmt::format("{} has the checksum {}, its description says {}: they are not of "
                                                      "one export.",

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "core/units/error.hpp"
+#include "core/units/fnv.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
@@ -29,12 +30,12 @@ std::vector<std::string> step_query() {
   return joined(joined(api::step_fields(), api::feature_fields()), api::position_fields());
 }
 
-/// Of all that the step says, to tell a repeated step from another one (FNV-1a).
+/// Of all that the step says, to tell a repeated step from another one.
 std::int64_t digest_of(const http::Request& request) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  Fnv1a64 hash;
   const auto add = [&](std::string_view text) {
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-    hash *= 0x100000001b3ULL;
+    hash.add(text);
+    hash.add({"", 1});  // a byte of 0 between two texts
   };
   const std::vector<std::string>& presentation = api::position_fields();
   for (const auto& [name, value] : request.query) {
@@ -43,7 +44,7 @@ std::int64_t digest_of(const http::Request& request) {
     add(value);
   }
   add(request.body);
-  return static_cast<std::int64_t>(hash);
+  return static_cast<std::int64_t>(hash.value());
 }
 
 json track_json(const Service& service, const StoredTrack& track) {

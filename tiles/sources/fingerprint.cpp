@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/fnv.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -19,24 +18,11 @@ namespace {
 constexpr vsi_l_offset kWholeBytes = vsi_l_offset{8} << 20;
 constexpr std::size_t kEndBytes = std::size_t{1} << 20;
 
-/// 64-bit FNV-1a: names content, guards against no one.
-class Hash {
- public:
-  void add(std::string_view bytes) {
-    for (const char byte : bytes) value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  }
-  void add(std::uint64_t number) { add(fmt::format("{};", number)); }
-  std::string text() const { return fmt::format("{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 struct CloseFile {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-void add_content(Hash& hash, const std::string& path, vsi_l_offset size) {
+void add_content(Fnv1a64& hash, const std::string& path, vsi_l_offset size) {
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
   if (!file) throw IoFailure("source-unreadable", fmt::format("{}: cannot be read", path));
   const bool whole = size <= kWholeBytes;
@@ -68,15 +54,14 @@ std::vector<std::string> with_side_files(const std::string& path) {
 
 std::string fingerprint(const std::vector<std::string>& paths, const std::string& settings) {
   require_gdal();
-  Hash hash;
+  Fnv1a64 hash;
   hash.add(settings);
   for (const std::string& path : paths) {
     for (const std::string& file : with_side_files(path)) {
       VSIStatBufL stat;
       if (VSIStatL(file.c_str(), &stat) != 0) continue;
       hash.add(std::filesystem::path(file).filename().string());
-      hash.add(static_cast<std::uint64_t>(stat.st_size));
-      hash.add(static_cast<std::uint64_t>(stat.st_mtime));
+      hash.add(fmt::format("{};{};", stat.st_size, stat.st_mtime));
       if (VSI_ISREG(stat.st_mode)) add_content(hash, file, static_cast<vsi_l_offset>(stat.st_size));
     }
   }

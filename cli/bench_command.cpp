@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
+#include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
@@ -89,13 +89,6 @@ nlohmann::json document(const BenchArguments& arguments, const std::string& dete
           {"results", sets}};
 }
 
-void write_text(const std::string& text, const std::string& file) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
-}
-
 /// What the calibration was learned from, for those who read the file.
 nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest& manifest) {
   nlohmann::json maps = nlohmann::json::array();
@@ -107,12 +100,12 @@ nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest&
           {"cell_m", arguments.cell_m}};
 }
 
-void write_json(const nlohmann::json& document, const std::string& file) { write_text(document.dump(1) + '\n', file); }
+void write_json(const nlohmann::json& document, const std::string& file) { write_file(file, document.dump(1) + '\n'); }
 
 void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& honesty, const std::string& folder) {
   std::filesystem::create_directories(folder);
-  write_text(bench::reliability_svg(honesty), folder + "/reliability.svg");
-  write_text(bench::answered_svg(results), folder + "/answered.svg");
+  write_file(folder + "/reliability.svg", bench::reliability_svg(honesty));
+  write_file(folder + "/answered.svg", bench::answered_svg(results));
   struct Curve {
     const char* file;
     double FeatureQuality::*property;
@@ -125,7 +118,7 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
                              {"scaled", &FeatureQuality::scale, "relative error of the scale (1 sigma)"},
                              {"tilted", &FeatureQuality::tilt_deg, "tilt, degrees (1 sigma per axis)"}}) {
     if (const auto svg = bench::degraded_svg(results, curve.property, curve.name))
-      write_text(*svg, fmt::format("{}/{}.svg", folder, curve.file));
+      write_file(fmt::format("{}/{}.svg", folder, curve.file), *svg);
   }
 }
 

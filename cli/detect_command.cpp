@@ -5,16 +5,15 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/detector_options.hpp"
 #include "cli/frame_options.hpp"
+#include "cli/output_file.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
@@ -52,19 +51,13 @@ Picture read_picture(const DetectOptions& options, const RoadDetector& detector)
   return {rectified(std::move(ortho.image)), Place{zone, ortho.north_west}};
 }
 
-void write(const std::filesystem::path& path, std::string_view bytes) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!out.flush()) throw IoFailure("image-unwritable", fmt::format("{} cannot be written", path.string()));
-}
-
 /// World file and reference system beside the PNG, as GDAL and QGIS look for them.
 void write_place(std::filesystem::path png, const Place& place, double cell_m) {
-  write(png.string() + ".aux.xml",
-        fmt::format("<PAMDataset>\n  <SRS>EPSG:{}</SRS>\n</PAMDataset>\n", place.zone.epsg()));
-  write(png.replace_extension(".pgw"),
-        fmt::format("{}\n0\n0\n{}\n{:.3f}\n{:.3f}\n", cell_m, -cell_m, place.north_west.east_m + 0.5 * cell_m,
-                    place.north_west.north_m - 0.5 * cell_m));
+  write_file(png.string() + ".aux.xml",
+             fmt::format("<PAMDataset>\n  <SRS>EPSG:{}</SRS>\n</PAMDataset>\n", place.zone.epsg()));
+  write_file(png.replace_extension(".pgw"),
+             fmt::format("{}\n0\n0\n{}\n{:.3f}\n{:.3f}\n", cell_m, -cell_m, place.north_west.east_m + 0.5 * cell_m,
+                         place.north_west.north_m - 0.5 * cell_m));
 }
 
 double mean_probability(const CellArray& cells) {
@@ -86,7 +79,7 @@ void run_detect(const DetectOptions& options) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
   }
   const std::vector<std::uint8_t> png = encode_feature_map(cells);
-  write(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
+  write_file(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
   if (picture.place) write_place(options.target, *picture.place, options.cell_m);
   nlohmann::json answer{{"feature_map", options.target},
                         {"cell_m", options.cell_m},

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,20 +13,13 @@
 #include "cli/fly/screening.hpp"
 #include "cli/fly/service_localizer.hpp"
 #include "cli/fly_ground.hpp"
+#include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
-#include "core/units/error.hpp"
 
 namespace roadfix::cli {
 namespace {
 
 using nlohmann::json;
-
-void write_text(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
-}
 
 json run_json(const fly::Run& run) {
   const auto found = fly::found_at(run.records);
@@ -61,7 +53,7 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
     for (const auto& result : results) {
       for (const fly::Run& run : result.runs) text += fly::csv_lines(result.filter, run, zone);
     }
-    write_text(options.csv_file, text);
+    write_file(options.csv_file, text);
   }
   if (options.geojson_file.empty()) return;
   json features = json::array();
@@ -70,7 +62,7 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
       for (auto& feature : fly::geojson_features(result.filter, run, zone)) features.push_back(std::move(feature));
     }
   }
-  write_text(options.geojson_file, json{{"type", "FeatureCollection"}, {"features", features}}.dump());
+  write_file(options.geojson_file, json{{"type", "FeatureCollection"}, {"features", features}}.dump());
 }
 
 fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
@@ -124,7 +116,7 @@ void run_fly(const FlyOptions& options) {
              map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
   if (!options.json_file.empty()) {
-    write_text(options.json_file, document(options, ground, results, events).dump(1) + '\n');
+    write_file(options.json_file, document(options, ground, results, events).dump(1) + '\n');
   }
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,8 +8,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
-#include "core/units/error.hpp"
 #include "tiles/world/world.hpp"
 
 namespace roadfix::cli {
@@ -29,10 +28,7 @@ void write_bench(const std::filesystem::path& folder) {
       {"maps", {{{"name", "before"}, {"sources", {{{"path", "pre.tif"}, {"as", "imagery"}}}}}}},
       {"queries", {{{"map", "before"}, {"frames", "frames/frames.csv"}}}},
       {"methods", {"roads", "sift", "orb"}}};
-  const std::filesystem::path path = folder / "bench.json";
-  std::ofstream out(path);
-  out << manifest.dump(2) << '\n';
-  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path.string()));
+  write_file(folder / "bench.json", manifest.dump(2) + '\n');
 }
 
 void render(const Options& options) {

@@ -1,0 +1,36 @@
+#include "cli/output_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+using roadfix::testing::code_of;
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(OutputFile, HoldsTheBytesAndNothingOfTheFileBefore) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "result.json";
+  write_file(file, "longer than what follows");
+  write_file(file, std::string("a\r\n\0b", 5));
+  EXPECT_EQ(content_of(file), std::string("a\r\n\0b", 5));
+}
+
+TEST(OutputFile, IsRefusedWhereNotAllOfItCanBeWritten) {
+  EXPECT_EQ(code_of([] { write_file("/nowhere/at/all.json", "{}"); }), "result-unwritable");
+  EXPECT_EQ(code_of([] { write_file("/dev/full", "{}"); }), "result-unwritable");
+}
+
+}  // namespace
+}  // namespace roadfix::cli

@@ -42,10 +42,6 @@ std::vector<double> weights_of(const std::vector<double>& shares, double probabi
   return weights;
 }
 
-}  // namespace
-
-namespace {
-
 std::string time_was_over(const SearchResult& found) {
   const char* advice = "give more time, a smaller region or a narrower heading range";
   if (found.scanned_share < 1.0) {

@@ -28,7 +28,7 @@ void require_usable(const FeatureMap& features) {
   const double side_m = features.cell_m * std::max(features.cells.cols(), features.cells.rows());
   if (side_m > kLargestSideM) {
     throw InvalidInput("feature-map-too-large",
-                       fmt::format("the feature map spans {:.0f} m, more than {:.0f} m: check its cell size ({} m)",
+                       fmt::format("the feature map spans {:.6g} m, more than {:.0f} m: check its cell size ({} m)",
                                    side_m, kLargestSideM, features.cell_m));
   }
   const double off_m = features.cell_m * std::hypot(features.nadir.col - features.cells.cols() / 2.0,
@@ -46,8 +46,38 @@ GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
   return {zone.project(circle.centre), circle.radius_m};
 }
 
-/// Smallest box of the grid around the geographic one; its sides are curves there, so points between corners count too.
-GridBox box_in(const UtmZone& zone, const GeoBox& box) {
+/// Central meridian of the zone.
+double meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 183.0; }
+
+/// Degrees; longitudes are counted from the central meridian of the map's zone.
+struct NearBox {
+  double south, north, west, east;
+};
+
+/// What of the box lies within some kilometres of the map: UTM is not defined everywhere.
+NearBox near_map(const MapView& map, const GeoBox& box) {
+  constexpr double kMarginDeg = 0.1;  // more than the sides of a map curve between its corners
+  const double meridian = meridian_deg(map.zone);
+  NearBox bounds{90.0, -90.0, 360.0, -360.0};
+  for (const double east_m : {map.extent.min.east_m, map.extent.max.east_m}) {
+    for (const double north_m : {map.extent.min.north_m, map.extent.max.north_m}) {
+      const LatLon at = map.zone.unproject({east_m, north_m});
+      const double lon = std::remainder(at.lon_deg - meridian, 360.0);
+      bounds = {std::min(bounds.south, at.lat_deg), std::max(bounds.north, at.lat_deg), std::min(bounds.west, lon),
+                std::max(bounds.east, lon)};
+    }
+  }
+  double west = std::remainder(box.south_west.lon_deg - meridian, 360.0);
+  if (west > bounds.east + kMarginDeg) west -= 360.0;  // it may reach the map around the Earth
+  const double east = west + box.north_east.lon_deg - box.south_west.lon_deg;
+  return {std::max(box.south_west.lat_deg, bounds.south - kMarginDeg),
+          std::min(box.north_east.lat_deg, bounds.north + kMarginDeg), std::max(west, bounds.west - kMarginDeg),
+          std::min(east, bounds.east + kMarginDeg)};
+}
+
+/// Smallest box of the grid around what of the geographic one lies near the map; empty where nothing does. Its sides
+/// are curves there: a parallel turns at the central meridian, a meridian at the equator.
+GridBox box_in(const MapView& map, const GeoBox& box) {
   if (!(box.south_west.lat_deg < box.north_east.lat_deg) || !(box.south_west.lon_deg < box.north_east.lon_deg)) {
     throw InvalidInput(
         "prior-box-empty",
@@ -57,14 +87,12 @@ GridBox box_in(const UtmZone& zone, const GeoBox& box) {
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
-  constexpr int kSteps = 4;
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int j = 0; j <= kSteps; ++j) {
-      const auto between = [](double a, double b, int step) { return a + (b - a) * step / kSteps; };
-      const GridPoint p = zone.project({between(box.south_west.lat_deg, box.north_east.lat_deg, i),
-                                        between(box.south_west.lon_deg, box.north_east.lon_deg, j)});
-      result.min = {std::min(result.min.east_m, p.east_m), std::min(result.min.north_m, p.north_m)};
-      result.max = {std::max(result.max.east_m, p.east_m), std::max(result.max.north_m, p.north_m)};
+  const NearBox part = near_map(map, box);
+  if (!(part.south < part.north) || !(part.west < part.east)) return result;
+  for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
+    for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
+      const GridPoint p = map.zone.project({lat, meridian_deg(map.zone) + lon});
+      result = united(result, {p, p});
     }
   }
   return result;
@@ -98,7 +126,7 @@ SearchRegion region_of(const MapView& map, const Prior& prior) {
     const auto& [centre, radius_m] = *region.circle;
     region.box = intersection(region.box, grown({centre, centre}, radius_m));
   }
-  if (prior.box) region.box = intersection(region.box, box_in(map.zone, *prior.box));
+  if (prior.box) region.box = intersection(region.box, box_in(map, *prior.box));
   const GridPoint middle = region.box.centre();
   if (region.box.empty() || (region.circle && !contains(*region.circle, nearest(region.box, region.circle->centre)))) {
     throw InvalidInput(
@@ -107,9 +135,10 @@ SearchRegion region_of(const MapView& map, const Prior& prior) {
   }
   if (prior.heading) {
     const double half_deg = prior.heading->half_width.degrees();
-    if (!(half_deg >= 0.0) || !std::isfinite(half_deg) || !std::isfinite(prior.heading->centre.degrees())) {
-      throw InvalidInput("prior-heading-out-of-range",
-                         "the heading range must be given as a heading and half a width of 0 to 180 degrees");
+    if (!(half_deg >= 0.0) || !std::isfinite(half_deg) || !(std::abs(prior.heading->centre.degrees()) <= 360.0)) {
+      throw InvalidInput(
+          "prior-heading-out-of-range",
+          "the heading range must be given as a heading of -360 to 360 and half a width of 0 to 180 degrees");
     }
     region.heading = map.zone.grid_from_true(prior.heading->centre, middle);
     region.heading_half_width = Angle::degrees(std::min(half_deg, 180.0));

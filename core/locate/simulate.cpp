@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid/resample.hpp"
+#include "core/grid/sampling.hpp"
 
 namespace roadfix {
 namespace {
@@ -125,26 +126,6 @@ void block(CellArray& cells, double share, std::mt19937_64& random) {
   }
 }
 
-/// Bilinear over the observed of the four neighbours; unobserved where they weigh less than half.
-Cell sample(const CellArray& cells, CellPosition at) {
-  const double col = at.col - 0.5;
-  const double row = at.row - 0.5;
-  const int left = static_cast<int>(std::floor(col));
-  const int top = static_cast<int>(std::floor(row));
-  double sum = 0.0;
-  double weight = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    const int at_col = left + k % 2;
-    const int at_row = top + k / 2;
-    const Cell cell = cells.get(at_col, at_row);
-    if (!is_observed(cell)) continue;
-    const double w = (1.0 - std::abs(col - at_col)) * (1.0 - std::abs(row - at_row));
-    sum += w * probability(cell);
-    weight += w;
-  }
-  return weight >= 0.5 ? cell_from_probability(sum / weight) : kUnobserved;
-}
-
 /// What a rectification with a wrong scale and tilt takes for a metric window of cols x rows cells. Seen from the
 /// height H, a tilt t stretches the ground at the distance d ahead of the nadir by about 1 + t d / H.
 FeatureMap distorted(const FeatureMap& wide, int cols, int rows, double scale, std::pair<double, double> tilt_rad) {
@@ -155,7 +136,7 @@ FeatureMap distorted(const FeatureMap& wide, int cols, int rows, double scale, s
       const double right = col + 0.5 - 0.5 * cols;
       const double back = row + 0.5 - 0.5 * rows;
       const double stretch = scale * (1.0 + (tilt_rad.first * right + tilt_rad.second * back) / height);
-      cells.at(col, row) = sample(wide.cells, {wide.nadir.col + stretch * right, wide.nadir.row + stretch * back});
+      cells.at(col, row) = bilinear(wide.cells, {wide.nadir.col + stretch * right, wide.nadir.row + stretch * back});
     }
   }
   return FeatureMap::centred(std::move(cells), wide.cell_m);

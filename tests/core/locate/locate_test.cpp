@@ -193,6 +193,8 @@ TEST_F(Locate, RefusesWhatItCannotUse) {
   prior = {};
   prior.heading = HeadingRange{Angle::degrees(10.0), Angle::degrees(-5.0)};
   EXPECT_EQ(code(good, prior), "prior-heading-out-of-range");
+  prior.heading = HeadingRange{Angle::degrees(1e300), Angle::degrees(5.0)};
+  EXPECT_EQ(code(good, prior), "prior-heading-out-of-range");
 
   FixOptions options;
   options.max_search_km2 = 1.0;

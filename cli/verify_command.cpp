@@ -80,7 +80,8 @@ void verify(const Options& options) {
   }
   options.as_json ? print_json(options.map, verdict) : print_text(options.map, verdict);
   if (!verdict.problems.empty()) {
-    throw CorruptData("map-damaged", fmt::format("{}: {} problems found", options.map, verdict.problems.size()));
+    throw CorruptData("map-damaged", fmt::format("{}: {} problem{} found", options.map, verdict.problems.size(),
+                                                 verdict.problems.size() == 1 ? "" : "s"));
   }
 }
 

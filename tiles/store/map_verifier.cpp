@@ -59,10 +59,18 @@ class Verifier {
     return statement.integer(0);
   }
 
+  std::vector<std::int64_t> ids(const std::string& sql) {
+    std::vector<std::int64_t> found;
+    for (Statement rows(map_, sql); rows.step();) found.push_back(rows.integer(0));
+    return found;
+  }
+
   void report(std::string code, std::string what) { verdict_.problems.push_back({std::move(code), std::move(what)}); }
 
+  static Interrupted stopped() { return {"interrupted", "verify was stopped before it had seen every tile"}; }
+
   void step() {
-    if (stop_.stop_requested()) throw Interrupted("interrupted", "verify was stopped before it had seen every tile");
+    if (stop_.stop_requested()) throw stopped();
     ++done_;
     if (progress_) progress_(done_, std::max(done_, total_));
   }
@@ -133,13 +141,11 @@ class Verifier {
   }
 
   void check_evidence() {
-    // One query per tile: a single one would lock writers out until the last tile is read.
-    std::vector<std::int64_t> ids;
-    for (Statement all(map_, "SELECT id FROM roadfix_evidence"); all.step();) ids.push_back(all.integer(0));
     Statement evidence(map_,
                        "SELECT e.tile_data, s.name, e.tile_column, e.tile_row FROM roadfix_evidence e LEFT JOIN "
                        "roadfix_sources s ON s.id = e.source_id WHERE e.id = ?1");
-    for (const std::int64_t id : ids) {
+    // One query per tile: a single one would lock writers out until the last tile is read.
+    for (const std::int64_t id : ids("SELECT id FROM roadfix_evidence")) {
       step();
       const sqlite::ResetAtEnd reset(evidence);
       if (!evidence.with(id).step()) continue;  // a writer has removed it
@@ -223,13 +229,16 @@ class Verifier {
     const GridBox extent = table_.observed_extent();
     const bool same =
         (extent.empty() && info.extent.empty()) || (extent.min == info.extent.min && extent.max == info.extent.max);
-    if (!same)
+    if (!same && verdict_.tiles_to_fuse == 0)  // it is written with the last tile
       report("extent-wrong",
              "gpkg_contents does not give the box of the observed cells. Repair it with roadfix verify --repair");
     std::uint64_t sum = 0;
-    Statement tiles(map_, "SELECT tile_column, tile_row, tile_data FROM road_probability WHERE zoom_level = ?1");
-    tiles.with(table_.finest_zoom());
-    while (tiles.step()) {
+    Statement tiles(map_, "SELECT tile_column, tile_row, tile_data FROM road_probability WHERE id = ?1");
+    for (const std::int64_t id :
+         ids(fmt::format("SELECT id FROM road_probability WHERE zoom_level = {}", table_.finest_zoom()))) {
+      if (stop_.stop_requested()) throw stopped();
+      const sqlite::ResetAtEnd reset(tiles);
+      if (!tiles.with(id).step()) continue;  // a writer has removed it
       sum += content_hash(
           {static_cast<int>(tiles.integer(0)), index_row(static_cast<int>(tiles.integer(1)), table_.finest_zoom())},
           tiles.blob(2));

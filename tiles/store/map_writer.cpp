@@ -76,10 +76,18 @@ struct MapWriter::State {
   Statement mark_done;
 };
 
+/// What cannot be read, or stands for no block that the ledger calls done.
 /// Returns the sources that lost evidence, each once. Their fingerprint is emptied: they are not what was ingested.
 std::vector<std::string> MapWriter::State::drop_damaged_evidence() {
   std::vector<std::int64_t> damaged;
-  for (Statement all(map, "SELECT id, tile_data FROM roadfix_evidence"); all.step();) {
+  for (Statement all(map,
+                     "SELECT e.id, e.tile_data, b.done FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON "
+                     "b.source_id = e.source_id AND b.tile_row = e.tile_row AND b.tile_column = e.tile_column");
+       all.step();) {
+    if (all.integer(2) != 1) {
+      damaged.push_back(all.integer(0));
+      continue;
+    }
     try {
       decode_tile(all.blob(1), TileDepth::kEvidence);
     } catch (const CorruptData&) {

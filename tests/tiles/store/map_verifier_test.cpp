@@ -121,7 +121,10 @@ TEST_F(MapVerifier, FindsTilesOutsideTheLattice) {
 }
 
 TEST_F(MapVerifier, CountsWhatAnInterruptedFusionLeftAndCallsItNoDamage) {
-  EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (11, 12315, 848)"), IsEmpty());
+  EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (11, 12315, 848); UPDATE gpkg_contents SET min_x = NULL, "
+                          "min_y = NULL, max_x = NULL, max_y = NULL"),
+              IsEmpty())
+      << "the extent is written last";
   EXPECT_EQ(verify_map(path).tiles_to_fuse, 1);
 }
 
@@ -163,6 +166,29 @@ TEST_F(MapVerifier, RepairNamesTheSourceThatLostEvidenceAndIngestingItAgainHeals
   ingest(writer, lost, true);
   EXPECT_THAT(verify_map(path).problems, IsEmpty());
   EXPECT_EQ(testing::tile_bytes(path), before);
+}
+
+TEST_F(MapVerifier, RepairDropsEvidenceThatTheLedgerDoesNotKnowAndNamesItsSource) {
+  EXPECT_THAT(
+      codes_after("DELETE FROM roadfix_blocks WHERE source_id = (SELECT id FROM roadfix_sources WHERE name = 'a') "
+                  "AND tile_column = 848"),
+      ElementsAre("ledger-broken"));
+  MapWriter writer(path, settings_37n());
+  EXPECT_THAT(writer.repair(), ElementsAre("a"));
+  EXPECT_THAT(verify_map(path).problems, IsEmpty());
+  EXPECT_EQ(verify_map(path).evidence, 3);
+}
+
+TEST_F(MapVerifier, LetsWritersInWhileItReads) {
+  MapWriter writer(path, settings_37n());
+  int writes = 0;
+  const auto write = [&](std::int64_t, std::int64_t) {
+    sqlite::Connection other(path, sqlite::Access::kReadWrite);
+    other.execute("PRAGMA busy_timeout = 0; UPDATE roadfix_sources SET licence = licence || 'x'");
+    ++writes;
+  };
+  EXPECT_THROW(verify_map(path, write), Interrupted) << "the map has changed under it";
+  EXPECT_GT(writes, 5);
 }
 
 TEST_F(MapVerifier, CanBeStopped) {

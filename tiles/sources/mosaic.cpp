@@ -1,11 +1,14 @@
 #include "tiles/sources/mosaic.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "core/units/error.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/placement.hpp"
 #include "tiles/sources/warp.hpp"
@@ -34,6 +37,21 @@ ValueRange share_range(const std::vector<float>& values, bool integers) {
   return {0.0, largest <= 255.0F ? 255.0 : 65535.0};
 }
 
+std::string_view kind_of_values(const RasterFile& file) {
+  if (!file.holds_integers()) return "real numbers";
+  return file.declared_range() ? "bytes" : "integers of more than 8 bits";
+}
+
+/// One range of values serves them all.
+void require_same_kind(const RasterFile& first, const RasterFile& other) {
+  if (kind_of_values(first) == kind_of_values(other)) return;
+  throw InvalidInput(
+      "road-values-mixed",
+      fmt::format("{} holds {}, but {} holds {}: what stands for a certain road differs. Ingest them one "
+                  "by one, as sources of their own",
+                  first.path(), kind_of_values(first), other.path(), kind_of_values(other)));
+}
+
 }  // namespace
 
 struct Mosaic::Image {
@@ -58,6 +76,9 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
   std::vector<float> values;
   for (std::string& path : paths) {
     RasterFile file(path, options);
+    if (rule == ValueRule::kShare && !images_.empty()) {
+      require_same_kind(RasterFile(images_.front().path, options), file);
+    }
     const Placement placement(file, zone);
     Image image{std::move(path), placement.footprint(), placement.gsd_m(),
                 rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};

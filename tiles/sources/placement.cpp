@@ -69,6 +69,21 @@ void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_sour
                   file.path(), crs_name(file.crs()), target));
 }
 
+/// Throws where a point of the ground leads back to elsewhere in the raster: what was seen beyond the 180th meridian
+/// stands at the other end of the world in its reference system.
+void require_way_back(const RasterFile& file, const std::vector<cv::Point2d>& pixels,
+                      const std::vector<cv::Point2d>& back) {
+  const double far = 0.5 * std::max(file.size().width, file.size().height);  // fits to control points are off by less
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!(cv::norm(back[i] - pixels[i]) > far)) continue;
+    throw InvalidInput(
+        "raster-beyond-its-reference",
+        fmt::format("{}: it goes on beyond the end of {}, and what lies there would be lost. Cut it there "
+                    "(gdal_translate -projwin), and move the other half to the other end (gdal_translate -a_ullr)",
+                    file.path(), crs_name(file.crs())));
+  }
+}
+
 }  // namespace
 
 void Placement::Destroy::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
@@ -89,7 +104,11 @@ GridBox Placement::footprint() const {
                           size.height * row / static_cast<double>(kSteps));
     }
   }
+  const std::vector<cv::Point2d> pixels = points;
   to_plane(points);
+  std::vector<cv::Point2d> back = points;
+  to_pixels(back);
+  require_way_back(*file_, pixels, back);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   GridBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
   for (const cv::Point2d& p : points) {

@@ -21,7 +21,8 @@ class Placement {
   void to_pixels(std::vector<cv::Point2d>& points) const;
   void to_plane(std::vector<cv::Point2d>& points) const;
 
-  /// Bounding box of the image. Throws InvalidInput "crs-not-transformable" when it has no place in the zone.
+  /// Bounding box of the image. Throws InvalidInput "crs-not-transformable" when it has no place in the zone,
+  /// "raster-beyond-its-reference" when a part of it could be placed there, but not found again.
   GridBox footprint() const;
   /// Size of the ground that a pixel covers at the centre: the root of its area.
   double gsd_m() const;

@@ -304,5 +304,44 @@ TEST_F(MosaicTest, CoordinatesWithoutAPlaceInTheZoneAreRefused) {
   }
 }
 
+TEST_F(MosaicTest, ARasterThatGoesOnBeyondTheEndOfItsReferenceSystemIsRefused) {
+  constexpr double kAntimeridianM = 20037508.34;
+  RasterSpec spec{.width = 200, .height = 100, .epsg = 3857};
+  const UtmZone fiji = *UtmZone::from_epsg(32760);
+  const auto write = [&](const char* name, double west_m) {
+    spec.transform = {west_m, 1.0, 0.0, -1'900'000.0, 0.0, -1.0};
+    return write_raster(folder / name, spec, [](int, int, int) { return 1.0; });
+  };
+  EXPECT_EQ(
+      testing::code_of([&] { Mosaic({write("across.tif", kAntimeridianM - 50)}, {}, ValueRule::kPicture, fiji); }),
+      "raster-beyond-its-reference");
+  const Mosaic halves({write("west.tif", kAntimeridianM - 200), write("east.tif", -kAntimeridianM)}, {},
+                      ValueRule::kPicture, fiji);
+  EXPECT_GT(halves.extent().width_m(), 370.0) << "400 m of the projection, which are fewer on the ground";
+  const GroundImage seen = halves.view(halves.extent(), 1.0);
+  EXPECT_GT(cv::countNonZero(seen.observed), 0.8 * static_cast<double>(seen.observed.total()));
+}
+
+TEST_F(MosaicTest, RasterOfDegreesMayCrossTheAntimeridian) {
+  RasterSpec spec{.width = 200, .height = 100, .epsg = 4326};
+  for (const double west : {179.999, -180.001}) {
+    spec.transform = {west, 1e-5, 0.0, -16.9, 0.0, -1e-5};
+    const std::string path = write_raster(folder / "a.tif", spec, [](int, int, int) { return 1.0; });
+    const Mosaic mosaic({path}, {}, ValueRule::kPicture, *UtmZone::from_epsg(32701));
+    EXPECT_NEAR(mosaic.extent().width_m(), 215.0, 5.0);
+  }
+}
+
+TEST_F(MosaicTest, SharesOfRoadOfSeveralTypesAreRefused) {
+  const std::string bytes = write_raster(folder / "bytes.tif", {}, [](int, int, int) { return 255.0; });
+  const std::string shares =
+      write_raster(folder / "shares.tif", {.type = GDT_Float32}, [](int, int, int) { return 1.0; });
+  const std::string wide =
+      write_raster(folder / "wide.tif", {.type = GDT_UInt16}, [](int, int, int) { return 65535.0; });
+  for (const auto& paths : {std::vector{bytes, shares}, std::vector{shares, bytes}, std::vector{bytes, wide}}) {
+    EXPECT_EQ(testing::code_of([&] { Mosaic(paths, {}, ValueRule::kShare, kZone); }), "road-values-mixed");
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

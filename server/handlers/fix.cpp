@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -20,11 +22,9 @@ std::vector<std::string> query_fields() {
 }
 
 /// The frame was captured at time_us, or when the request came.
-api::PositionTime time_of(const http::Request& request, const api::Fields& fields) {
+api::PositionTime time_of(const http::Request& request, std::optional<double> time_us) {
   const auto spent = time_spent(request);
-  if (const auto time_us = fields.optional_number("time_us", {0.0, kMostExact})) {
-    return {static_cast<std::int64_t>(*time_us), spent};
-  }
+  if (time_us) return {static_cast<std::int64_t>(*time_us), spent};
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return {std::chrono::duration_cast<std::chrono::microseconds>(now - spent).count(), spent};
 }
@@ -34,6 +34,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::Content content =
       api::read_content(request, joined(query_fields(), api::picture_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
+  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, kMostExact});
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::TimeLimit limit(request.deadline);
@@ -45,7 +46,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));
   if (format.is_json()) return json_response(answer);
-  return api::position_response(answer, format, time_of(request, content.fields));
+  return api::position_response(answer, format, time_of(request, time_us));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 namespace roadfix::server {
 namespace {
 
-constexpr int kBusyTimeoutMs = 500;
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
 constexpr int kVersion = 2;
@@ -60,10 +59,11 @@ class TrackStore::Impl {
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
     with([&] {
       connection_.emplace(path_, sqlite::Access::kCreate);
-      connection_->execute(fmt::format("PRAGMA busy_timeout = {}; PRAGMA locking_mode = EXCLUSIVE; PRAGMA page_size = "
+      // Who holds the file holds it as long as it runs, and others ask in the meantime.
+      connection_->execute(fmt::format("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE; PRAGMA page_size = "
                                        "{}; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA "
                                        "max_page_count = {}",
-                                       kBusyTimeoutMs, kPageBytes, std::max<std::int64_t>(1, max_bytes / kPageBytes))
+                                       kPageBytes, std::max<std::int64_t>(1, max_bytes / kPageBytes))
                                .c_str());
     });
     const std::int64_t version = with([&] {

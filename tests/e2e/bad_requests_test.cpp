@@ -88,6 +88,16 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
 }
 
+TEST_F(BadRequests, WithNumbersBeyondAllSenseNameThem) {
+  const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
+  for (const std::string field : {"time_us", "time_limit_s", "proof_s", "radius_m", "nadir_col", "max_modes"}) {
+    EXPECT_EQ(refusal(client_.Post(
+                  fix_ + "?cell_m=2&lat=57&lon=22&" + (field == "radius_m" ? "" : "radius_m=9&") + field + "=1e300",
+                  png, "image/png")),
+              "400 parameter-out-of-range " + field);
+  }
+}
+
 TEST_F(BadRequests, WithAConstantOrUnobservedFeatureMapGetNoFix) {
   const testing::Town town;
   const std::string near =

@@ -17,6 +17,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
@@ -134,6 +135,7 @@ void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
 
 void run_bench(BenchArguments& arguments) {
   const bench::Manifest manifest = manifest_of(arguments);
+  require_writable({arguments.json_file, arguments.calibrate_file});
   const auto detector = make_detector(arguments.detector);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
@@ -172,7 +174,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--json", a->json_file, "Write figures and every query with truth, answer and error");
   command->add_option("--seed", a->options.seed, "Of the query poses and the detector")->capture_default_str();
   command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
   command->add_option("--curves", a->curves,
                       "Draw reliability and answered share, over footprint and quality, as SVG into this folder");

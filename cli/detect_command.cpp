@@ -13,6 +13,7 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/frame_options.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
@@ -115,9 +116,7 @@ void add_detect_command(CLI::App& app) {
       ->required();
   command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
   add_frame_options(*command, options->frame);
-  command->add_option("--cell", options->cell_m, "Cell size in metres")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+  command->add_option("--cell", options->cell_m, "Cell size in metres")->capture_default_str()->check(positive());
   command->add_option("--seed", options->seed, "Of detectors that draw random numbers")->capture_default_str();
   command->add_flag("--json", options->json, "Answer as JSON");
   add_detector_options(*command, options->detector);

@@ -42,8 +42,9 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
 }  // namespace
 
 void add_detector_options(CLI::App& command, DetectorChoice& choice) {
-  command.add_option("--detector", choice.name, std::string("Road detector, one of: ") + kDetectorNames)
-      ->capture_default_str();
+  command.add_option("--detector", choice.name, "Road detector")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "neural", "tree"}));
   command.add_option("--model", choice.model, "ONNX file of the neural detector, with its JSON beside it")
       ->type_name("FILE");
   command

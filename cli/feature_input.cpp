@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
+#include "cli/number_checks.hpp"
 #include "core/grid/combine.hpp"
 #include "core/units/error.hpp"
 
@@ -83,7 +84,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* cell = command.add_option("--cell,--cell-m", o.cell_m, "The input is a feature map: its cell size in metres")
-                   ->check(CLI::PositiveNumber);
+                   ->check(positive());
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell);
   command.add_option("--seed", o.seed, "Of detectors that draw random numbers")->capture_default_str();
   add_detector_options(command, o.detector);

@@ -11,6 +11,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "core/locate/fix.hpp"
 #include "server/api/fix_json.hpp"
@@ -111,7 +112,7 @@ void add_fix_command(CLI::App& app) {
   auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");
   auto* lon = command->add_option("--lon", o->lon, "Prior: longitude of the centre, degrees");
   auto* radius = command->add_option("--radius,--radius-m", o->radius_m, "Prior: radius in metres");
-  radius->check(CLI::PositiveNumber)->needs(lat)->needs(lon);
+  radius->check(positive())->needs(lat)->needs(lon);
   lat->needs(lon)->needs(radius);
   lon->needs(lat);
   command->add_option("--bbox", o->bbox, "Prior: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
@@ -134,9 +135,9 @@ void add_fix_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
   command->add_option("--proof", o->proof_s, "Look so many seconds for a better place than the best candidate")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_option("--time-limit", o->time_limit_s, "End the search after so many seconds and say what it has")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
   command->callback([o, heading] {
     o->heading_known = heading->count() > 0;

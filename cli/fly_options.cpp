@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "cli/fly/localizer.hpp"
+#include "cli/number_checks.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -20,7 +21,7 @@ void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_option("--particles", o.particles, "At most")->capture_default_str()->check(CLI::Range(10, 1'000'000));
   command.add_option("--measure-every", o.measure_every, "Weight by every k-th frame only")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--runs", o.runs, "Flights, with seeds that count up")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
@@ -37,35 +38,34 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
     return command.add_option(name, value, what)->capture_default_str()->group(kGroup);
   };
   add("--course", o.course, "random, survey, or a GeoJSON file of waypoints")->type_name("COURSE");
-  add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(CLI::PositiveNumber);
-  add("--area-m", o.area_m, "Only the square of this side in the middle of the map; 0 = all")
-      ->check(CLI::NonNegativeNumber);
+  add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(positive());
+  add("--area-m", o.area_m, "Only the square of this side in the middle of the map; 0 = all")->check(not_negative());
   add("--steps", o.plan.steps, "Steps of a flight, at most")->check(CLI::Range(1, 100'000));
-  add("--step-s", o.plan.handling.step_s, "Seconds between steps")->check(CLI::PositiveNumber);
-  add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(CLI::NonNegativeNumber);
-  add("--turn-rate", o.turn_rate_deg, "Fastest turn in degrees per second")->check(CLI::NonNegativeNumber);
+  add("--step-s", o.plan.handling.step_s, "Seconds between steps")->check(positive());
+  add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(not_negative());
+  add("--turn-rate", o.turn_rate_deg, "Fastest turn in degrees per second")->check(not_negative());
   add("--footprint-m", o.footprint_m, "Ground that a frame shows: side, or width,height")
       ->delimiter(',')
       ->expected(1, 2)
-      ->check(CLI::PositiveNumber);
-  add("--frame-every", o.plan.frame_every, "A frame in every k-th step")->check(CLI::PositiveNumber);
+      ->check(positive());
+  add("--frame-every", o.plan.frame_every, "A frame in every k-th step")->check(positive());
   add("--missing", o.plan.missing_share, "Share of frames that are lost, at random")->check(CLI::Range(0.0, 1.0));
   add("--outage", o.outage, "No frames from step FIRST to before step END")
       ->delimiter(',')
       ->expected(2)
       ->type_name("FIRST,END")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   add("--kidnap", o.kidnap, "At this step the vehicle is METRES away, unnoticed by its odometry")
       ->delimiter(',')
       ->expected(2)
       ->type_name("STEP,METRES")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
 }
 
 void add_error_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "Errors (1 sigma)";
   const auto add = [&](const char* name, double& value, const char* what) {
-    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(CLI::NonNegativeNumber);
+    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(not_negative());
   };
   add("--odometry-noise", o.plan.odometry.share, "Odometry: share of the distance, each step and axis");
   add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");
@@ -83,7 +83,7 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
   command
       .add_option("--registration", o.registration_m,
                   "Feature maps: metres per axis between ground and map, once for a flight; default: what the map says")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->group(kGroup);
   command.add_flag("--no-odometry", o.no_odometry, "Tell no odometry: equation (4) with known speed, unknown turns")
       ->group(kGroup);

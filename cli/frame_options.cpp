@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/number_checks.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
@@ -37,12 +38,12 @@ auto decoded(const std::string& path, const auto& decode) {
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
   auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
-                  ->check(CLI::PositiveNumber);
+                  ->check(positive());
   auto* fov = command.add_option("--fov", o.fov_deg, "The input is a camera frame: field of view across, degrees")
-                  ->check(CLI::PositiveNumber)
+                  ->check(positive())
                   ->excludes(gsd);
   auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov")
-                  ->check(CLI::PositiveNumber)
+                  ->check(positive())
                   ->needs(fov);
   fov->needs(agl);
   command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down")->needs(fov);

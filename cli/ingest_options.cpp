@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/number_checks.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
@@ -66,7 +67,7 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
   command
       .add_option("--registration-sigma", a.registration_sigma_m,
                   "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
 }
 
 }  // namespace

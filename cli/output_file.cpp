@@ -2,21 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
+namespace {
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) {
+namespace fs = std::filesystem;
+
+[[noreturn]] void unwritable(const fs::path& file, int reason) {
+  throw IoFailure("result-unwritable",
+                  fmt::format("{} cannot be written ({}): check that its folder exists, may be written to, and is not "
+                              "full",
+                              file.string(), std::generic_category().message(reason)));
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, std::string_view bytes) {
+  errno = 0;
   std::ofstream out(file, std::ios::binary);
+  if (!out) unwritable(file, errno);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) {
-    throw IoFailure("result-unwritable",
-                    fmt::format("{} cannot be written: check that its folder exists, may be written to, and is not "
-                                "full",
-                                file.string()));
+  if (out) return;
+  const int reason = errno;
+  std::error_code ignored;  // the first failure is the one to tell of
+  if (fs::is_regular_file(file, ignored)) fs::remove(file, ignored);
+  unwritable(file, reason);
+}
+
+void require_writable(std::initializer_list<fs::path> files) {
+  for (const fs::path& file : files) {
+    if (file.empty()) continue;
+    const bool is_new = !fs::exists(file);
+    errno = 0;
+    if (!std::ofstream(file, std::ios::binary | std::ios::app)) unwritable(file, errno);
+    if (is_new) fs::remove(file);
   }
 }
 

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 
 namespace roadfix::cli {
 
-/// Replaces the file. Throws IoFailure "result-unwritable" unless all of it was written.
+/// Replaces the file. Throws IoFailure "result-unwritable" with the reason unless all of it was written, and leaves no
+/// part of it then.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// What takes long looks first whether its answers can be written: throws as write_file. Changes nothing; empty paths
+/// are files that nobody wants.
+void require_writable(std::initializer_list<std::filesystem::path> files);
 
 }  // namespace roadfix::cli

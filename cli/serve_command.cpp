@@ -16,6 +16,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "server/application.hpp"
 
@@ -26,7 +27,6 @@ constexpr std::size_t kMiB = std::size_t{1} << 20;
 constexpr double kMostSeconds = 1e6;
 constexpr double kMostMiB = 1 << 20;  // a TiB
 constexpr double kMostThreads = 10'000;
-constexpr double kMostOfAll = 2e9;
 
 struct ServeOptions {
   server::Configuration service;
@@ -45,16 +45,6 @@ struct ServeOptions {
   std::string calibration;
   std::vector<std::string> proxies;
 };
-
-/// Above 0 and not beyond what can be counted in milliseconds, bytes or threads.
-CLI::Validator positive(double most) {
-  return {[most](std::string& text) -> std::string {
-            double value = 0.0;
-            if (CLI::detail::lexical_cast(text, value) && value > 0.0 && value <= most) return {};
-            return fmt::format("must be a number above 0 and at most {:.0f}, not {}", most, text);
-          },
-          "POSITIVE"};
-}
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 

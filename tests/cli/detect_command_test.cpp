@@ -37,6 +37,15 @@ class DetectCommand : public ::testing::Test {
   testing::TemporaryFolder folder;
 };
 
+TEST_F(DetectCommand, SaysWhyItCannotWrite) {
+  const std::string frame = "detect --detector tree " + (folder / "frame.png").string() + " --gsd 1 ";
+  const ProgramResult full = run_program(folder.path(), frame + "/dev/full");
+  EXPECT_EQ(full.code, 1);
+  EXPECT_THAT(full.err, HasSubstr("/dev/full cannot be written (No space left on device): check"));
+  EXPECT_THAT(run_program(folder.path(), frame + "/no/such/folder/roads.png").err,
+              HasSubstr("(No such file or directory): check"));
+}
+
 TEST_F(DetectCommand, TurnsAFrameOfKnownScaleIntoCells) {
   const ProgramResult result = detect("--gsd 0.5 --json");
   ASSERT_EQ(result.code, 0) << result.err;

@@ -81,6 +81,9 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(large.err, HasSubstr("no-place-to-fly"));
   EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
   EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
+  const ProgramResult lost = roadfix("fly " + map() + " --footprint-m 200 --json /no/such/folder/out.json");
+  EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
+  EXPECT_EQ(lost.out, "") << "said before the flights, not after them";
   const std::string over_service = "fly " + map() + " --footprint-m 200 --steps 1 --vehicles 2 --map town --server ";
   EXPECT_THAT(roadfix(over_service + "127.0.0.1").err, HasSubstr("bad-url"));
   EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));

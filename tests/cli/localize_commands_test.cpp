@@ -106,6 +106,17 @@ TEST_F(LocalizeCommands, FixRefusesWhatItCannotRead) {
   EXPECT_EQ(roadfix("fix " + input + "--gsd 1").code, 2);
 }
 
+TEST_F(LocalizeCommands, FixNamesTheOptionWithANumberThatMakesNoSense) {
+  for (const char* option : {"--time-limit 1e300", "--proof 0", "--lat 50 --lon 20 --radius -3", "--cell 0,5"}) {
+    const ProgramResult refused = roadfix("fix " + map.string() + " " + window.string() + " " + option);
+    EXPECT_EQ(refused.code, 2) << option;
+    EXPECT_THAT(refused.err, HasSubstr("must be a number above 0 and at most 2000000000, not ")) << option;
+  }
+  const ProgramResult detector = roadfix("fix " + input + "--detector forest");
+  EXPECT_EQ(detector.code, 2) << "though a feature map needs none";
+  EXPECT_THAT(detector.err, HasSubstr("neural"));
+}
+
 TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
   std::ofstream(folder / "poses.csv") << "lat,lon,heading\n"
                                       << place.lat_deg + 0.001 << ", " << place.lon_deg << ", 10\n\n";

@@ -32,5 +32,15 @@ TEST(OutputFile, IsRefusedWhereNotAllOfItCanBeWritten) {
   EXPECT_EQ(code_of([] { write_file("/dev/full", "{}"); }), "result-unwritable");
 }
 
+TEST(OutputFile, IsLookedAtBeforehandAndLeftAsItIs) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto old = folder.path() / "old.json";
+  write_file(old, "of last week");
+  require_writable({old, folder.path() / "new.json", ""});
+  EXPECT_EQ(content_of(old), "of last week");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "new.json"));
+  EXPECT_EQ(code_of([&] { require_writable({old, "/nowhere/at/all.json"}); }), "result-unwritable");
+}
+
 }  // namespace
 }  // namespace roadfix::cli

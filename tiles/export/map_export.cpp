@@ -87,7 +87,10 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
   source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("interrupted", "the export was stopped; nothing was written");
   if (written == nullptr || CPLGetLastErrorType() >= CE_Failure) {
-    throw IoFailure("export-failed", fmt::format("{}: {}", path.string(), CPLGetLastErrorMsg()));
+    throw IoFailure("export-failed",
+                    fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
+                                "has room",
+                                path.string(), CPLGetLastErrorMsg()));
   }
 }
 

@@ -1,0 +1,27 @@
+#include "cli/number_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace roadfix::cli {
+namespace {
+
+CLI::Validator number_within(double least, bool is_open, double most, const char* name) {
+  return {[=](std::string& text) -> std::string {
+            double value = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, value);
+            if (is_number && value <= most && (is_open ? value > least : value >= least)) return {};
+            return fmt::format("must be a number {} {:.0f} and at most {:.0f}, not {}",
+                               is_open ? "above" : "of at least", least, most, text);
+          },
+          name};
+}
+
+}  // namespace
+
+CLI::Validator positive(double most) { return number_within(0.0, true, most, "POSITIVE"); }
+
+CLI::Validator not_negative(double most) { return number_within(0.0, false, most, "NONNEGATIVE"); }
+
+}  // namespace roadfix::cli

@@ -1,0 +1,17 @@
+// What numbers of options may be. CLI11's own checks print the largest double where one is not.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace roadfix::cli {
+
+/// Of metres, seconds, pixels or bytes: more than anybody means, and still countable in milliseconds.
+inline constexpr double kMostOfAll = 2e9;
+
+/// Above 0 and at most `most`.
+CLI::Validator positive(double most = kMostOfAll);
+
+/// 0 or positive(most).
+CLI::Validator not_negative(double most = kMostOfAll);
+
+}  // namespace roadfix::cli

@@ -12,6 +12,7 @@
 #include "core/units/error.hpp"
 #include "server/http/access_log.hpp"
 #include "server/http/connection.hpp"
+#include "server/http/cors.hpp"
 #include "server/http/errors.hpp"
 #include "server/http/exchange.hpp"
 #include "server/http/worker_pool.hpp"
@@ -43,14 +44,6 @@ class Counted {
   std::atomic<int>& counter_;
 };
 
-/// What browsers send as Origin and compare byte by byte (RFC 6454 7): a slash at its end, and no page is let in.
-bool is_origin(const std::string& text) {
-  if (text == "*") return true;
-  const std::size_t host = text.find("://");
-  return host != std::string::npos && host > 0 && host + 3 < text.size() &&
-         text.find_first_of("/?#, \t\r\n*", host + 3) == std::string::npos;
-}
-
 }  // namespace
 
 class Server::Impl : public httplib::Server {
@@ -78,6 +71,7 @@ class Server::Impl : public httplib::Server {
   const Router router_;
   const ErrorResponse on_error_;
   Metrics& metrics_;
+  const Cors cors_;
   Admission admission_;
   AccessLog access_log_;
   std::atomic<bool> stopping_ = false;
@@ -90,15 +84,9 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
       router_(std::move(router)),
       on_error_(std::move(on_error)),
       metrics_(metrics),
+      cors_(settings_.cors_origin),
       admission_(settings_.heavy_running, settings_.heavy_waiting),
       access_log_(settings_.access_log) {
-  if (!settings_.cors_origin.empty() && !is_origin(settings_.cors_origin)) {
-    throw InvalidInput(
-        "bad-cors-origin",
-        fmt::format("'{}' is no origin that browsers send: give * or one like https://ops.example.org or "
-                    "http://10.0.0.5:3000, without a path",
-                    settings_.cors_origin));
-  }
   metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
   metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",
                  [this] { return admission_.waiting(); });
@@ -216,15 +204,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     if (request.method == "OPTIONS") {
       const std::string allowed = router_.allowed_methods(exchange.target.segments);
       if (allowed.empty()) router_.find(request.method, exchange.target.segments);
-      reply(exchange, out,
-            {204,
-             {},
-             {},
-             {{"Allow", allowed},
-              {"Access-Control-Allow-Methods", allowed},
-              {"Access-Control-Allow-Headers",
-               "Accept, Authorization, Content-Encoding, Content-Type, If-None-Match, Last-Event-ID, X-Request-Id"},
-              {"Access-Control-Max-Age", "600"}}});
+      reply(exchange, out, preflight(allowed));
       return HandlerResponse::Handled;
     }
     exchange.match = router_.find(request.method, exchange.target.segments);
@@ -273,12 +253,7 @@ Response Server::Impl::answered(Exchange& exchange) {
 
 void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
   response.headers.emplace_back("X-Request-Id", exchange.request.id);
-  if (!settings_.cors_origin.empty()) {
-    response.headers.emplace_back("Access-Control-Allow-Origin", settings_.cors_origin);
-    // Without this a page reads nothing but the body: neither Roadfix-Status nor Roadfix-Pose, ETag or Retry-After.
-    response.headers.emplace_back("Access-Control-Expose-Headers", "*");
-    if (settings_.cors_origin != "*") response.headers.emplace_back("Vary", "Origin");
-  }
+  cors_.open(response);
   if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
   if (exchange.must_close) response.headers.emplace_back("Connection", "close");
   fill(out, std::move(response));

@@ -35,7 +35,7 @@ struct ServerSettings {
   std::size_t body_bytes = std::size_t{64} << 20;  ///< after unpacking
   int heavy_running = 2;
   int heavy_waiting = 32;
-  std::string cors_origin = {};  ///< value of Access-Control-Allow-Origin; empty = no CORS
+  std::string cors_origin = {};  ///< see Cors
   Proxies proxies = {};          ///< whose X-Forwarded-For says who asks
   std::string access_log = {};   ///< see AccessLog
 };

@@ -300,18 +300,6 @@ TEST_F(HttpServer, SaysWhenItsAddressIsTaken) {
   EXPECT_THROW(second.start(), IoFailure);
 }
 
-TEST_F(HttpServer, RefusesAnOriginThatNoBrowserSends) {
-  for (const char* origin : {"https://ops.example.org", "http://[fd00::1]:3000", "*"}) {
-    settings_.cors_origin = origin;
-    EXPECT_NO_THROW(Server(settings_, router_, plain_error, metrics_)) << origin;
-  }
-  for (const char* origin :
-       {"https://ops.example.org/", "ops.example.org", "https://", "https://a, https://b", "nonsense"}) {
-    settings_.cors_origin = origin;
-    EXPECT_THROW(Server(settings_, router_, plain_error, metrics_), InvalidInput) << origin;
-  }
-}
-
 TEST_F(HttpServer, CanBeStoppedBeforeItStarted) {
   Server server(settings_, router_, plain_error, metrics_);
   EXPECT_NO_THROW(server.stop());

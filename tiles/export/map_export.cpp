@@ -53,7 +53,7 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
 }
 
 struct Monitor {
-  const std::function<void(std::int64_t, std::int64_t)>& progress;
+  const OnProgress& progress;
   const std::stop_token& stop;
 };
 
@@ -96,8 +96,8 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
 
 }  // namespace
 
-void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options,
-                const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options, const OnProgress& progress,
+                std::stop_token stop) {
   constexpr std::int64_t kLargestPicture = std::int64_t{1} << 29;
   GDALAllRegister();
   const Driver driver = driver_of(options.format);

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <stop_token>
 
 #include "tiles/store/map_reader.hpp"
+#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 
@@ -27,8 +27,8 @@ struct ExportOptions {
 /// Written block by block beside the target and renamed at the end: whatever happens, `target` is whole or as it was
 /// before. Throws InvalidInput ("region-outside-map", "cell-size-not-in-map", "map-has-no-cells"), LimitExceeded
 /// ("picture-too-large": PNG above 2^29 pixels), Interrupted ("interrupted") or IoFailure ("export-failed").
-/// `progress` gets (done, total) in thousandths.
+/// `progress` counts thousandths.
 void export_map(const MapReader& map, const std::filesystem::path& target, const ExportOptions& options,
-                const std::function<void(std::int64_t, std::int64_t)>& progress = {}, std::stop_token stop = {});
+                const OnProgress& progress = {}, std::stop_token stop = {});
 
 }  // namespace roadfix

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -14,6 +13,7 @@
 #include "tiles/sources/cell_source.hpp"
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/map_writer.hpp"
+#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 
@@ -24,8 +24,8 @@ struct IngestOptions {
 };
 
 struct IngestProgress {
-  std::function<void(std::int64_t done, std::int64_t total)> blocks;
-  std::function<void(std::int64_t done, std::int64_t total)> fusing;
+  OnProgress blocks;
+  OnProgress fusing;
 };
 
 struct IngestReport {

@@ -88,7 +88,7 @@ void FusionQueue::update_extent() {
   }
 }
 
-void FusionQueue::drain(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop) {
+void FusionQueue::drain(const OnProgress& progress, const std::stop_token& stop) {
   const std::int64_t total = size();
   std::int64_t done = 0;
   if (progress) progress(done, total);

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <stop_token>
 #include <utility>
 
+#include "tiles/store/progress.hpp"
 #include "tiles/store/sqlite.hpp"
 #include "tiles/store/tile_table.hpp"
 
@@ -19,9 +19,9 @@ class FusionQueue {
   /// Every tile that the evidence of the source touches, with its overviews, waits to be fused anew. Part of the
   /// caller's transaction.
   void add_source(std::int64_t id);
-  /// Fuses what waits, finest level first, a few tiles per transaction, and then updates the extent. `progress` gets
-  /// (done, total) tiles. Throws Interrupted; what was done stays done.
-  void drain(const std::function<void(std::int64_t, std::int64_t)>& progress, const std::stop_token& stop);
+  /// Fuses what waits, finest level first, a few tiles per transaction, and then updates the extent.
+  /// Throws Interrupted; what was done stays done.
+  void drain(const OnProgress& progress, const std::stop_token& stop);
   /// The box of the observed cells, as other programs read it.
   void update_extent();
 

@@ -24,8 +24,7 @@ constexpr const char* kRepair = "Repair it with roadfix verify --repair, or rest
 
 class Verifier {
  public:
-  Verifier(const std::filesystem::path& path, const std::function<void(std::int64_t, std::int64_t)>& progress,
-           std::stop_token stop)
+  Verifier(const std::filesystem::path& path, const OnProgress& progress, std::stop_token stop)
       : map_(open_map(path, Access::kRead)),
         settings_(read_settings(map_)),
         table_(map_, settings_),
@@ -252,7 +251,7 @@ class Verifier {
   Connection map_;
   MapSettings settings_;
   TileTable table_;
-  std::function<void(std::int64_t, std::int64_t)> progress_;
+  OnProgress progress_;
   std::stop_token stop_;
   std::int64_t done_ = 0;
   std::int64_t total_ = 0;
@@ -261,8 +260,7 @@ class Verifier {
 
 }  // namespace
 
-MapVerdict verify_map(const std::filesystem::path& path,
-                      const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+MapVerdict verify_map(const std::filesystem::path& path, const OnProgress& progress, std::stop_token stop) {
   return Verifier(path, progress, std::move(stop)).verdict();
 }
 

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "tiles/store/map_records.hpp"
+#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 
@@ -29,8 +29,7 @@ struct MapVerdict {
 /// Reads everything: the database structure, the tile lattice, every tile of evidence, every fused tile against the
 /// evidence, every overview against the level below, ancillary rows, ledger, extent and version. Throws what MapReader
 /// throws for files that cannot be opened as a map; everything else becomes a problem. Throws Interrupted
-/// ("interrupted", "map-changed" when a writer changed the map meanwhile). `progress` gets (done, total) tiles.
-MapVerdict verify_map(const std::filesystem::path& path,
-                      const std::function<void(std::int64_t, std::int64_t)>& progress = {}, std::stop_token stop = {});
+/// ("interrupted", "map-changed" when a writer changed the map meanwhile).
+MapVerdict verify_map(const std::filesystem::path& path, const OnProgress& progress = {}, std::stop_token stop = {});
 
 }  // namespace roadfix

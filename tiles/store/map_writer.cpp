@@ -185,8 +185,7 @@ void MapWriter::put_block(const std::string& source, TileIndex block, const Cell
   transaction.commit();
 }
 
-void MapWriter::finish_source(const std::string& source,
-                              const std::function<void(std::int64_t, std::int64_t)>& progress, std::stop_token stop) {
+void MapWriter::finish_source(const std::string& source, const OnProgress& progress, std::stop_token stop) {
   State& s = *state_;
   {
     Transaction transaction(s.map, Transaction::Kind::kWrite);
@@ -238,8 +237,7 @@ void MapWriter::remove_source(const std::string& source) {
   s.fusion.drain({}, {});
 }
 
-std::vector<std::string> MapWriter::repair(const std::function<void(std::int64_t, std::int64_t)>& progress,
-                                           std::stop_token stop) {
+std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop_token stop) {
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   std::vector<std::string> lost = s.drop_damaged_evidence();

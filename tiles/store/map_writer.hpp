@@ -3,13 +3,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <span>
 #include <stop_token>
 
 #include "core/grid/cell_array.hpp"
 #include "tiles/store/map_records.hpp"
+#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 
@@ -36,9 +36,8 @@ class MapWriter {
   void put_block(const std::string& source, TileIndex block, const CellArray& cells);
 
   /// All blocks are there: puts the source in force, fuses the tiles it (or what it replaced) touches and their
-  /// overviews. Can be interrupted and repeated. `progress` gets (done, total) tiles.
-  void finish_source(const std::string& source, const std::function<void(std::int64_t, std::int64_t)>& progress = {},
-                     std::stop_token stop = {});
+  /// overviews. Can be interrupted and repeated.
+  void finish_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
   /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
   /// leaves no map. Nothing but the destructor may be called afterwards.
@@ -50,8 +49,7 @@ class MapWriter {
   /// Fuses every tile anew from the evidence. Evidence that cannot be decoded is dropped first; returns the names of
   /// the sources that lost some, which count as changed from now on: ingest them again with `replace`. Readers see the
   /// map grow back meanwhile. Can be interrupted and repeated.
-  std::vector<std::string> repair(const std::function<void(std::int64_t, std::int64_t)>& progress = {},
-                                  std::stop_token stop = {});
+  std::vector<std::string> repair(const OnProgress& progress = {}, std::stop_token stop = {});
 
  private:
   struct State;

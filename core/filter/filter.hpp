@@ -1,4 +1,4 @@
-// Monte Carlo localization (method.md section 4): particles that are moved, weighted and drawn anew. Knows no map:
+// Monte Carlo localization (docs/method.md): particles that are moved, weighted and drawn anew. Knows no map:
 // whoever weights the particles says how likely the measurement is from each of them.
 //
 // The same seed and inputs give the same particles, with any number of threads.

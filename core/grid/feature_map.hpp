@@ -8,7 +8,7 @@
 
 namespace roadfix {
 
-/// Row 0 is the forward edge, columns run to the right of travel (method.md section 7).
+/// Row 0 is the forward edge, columns run to the right of travel.
 struct FeatureMap {
   CellArray cells;
   double cell_m = 1.0;

@@ -11,7 +11,7 @@ enum class EvidenceKind {
   /// How much likelier the correlation (Pearson's, over the means of m and l apart) is at the true pose than by chance,
   /// both taken as normal with the spread that independent samples of the ground leave.
   kCorrelation,
-  /// Each cell by its own: P(l = 1) = m a + (1 - m) b with detection rates a and b (method.md section 6), against a
+  /// Each cell by its own: P(l = 1) = m a + (1 - m) b with detection rates a and b, against a
   /// chance of l as often as it is on average. Between no road and road, log P is taken as linear in m, so that three
   /// sums are enough.
   kDetectionRates,

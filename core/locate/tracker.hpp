@@ -1,4 +1,4 @@
-// A flight as a sequence of steps: odometry and feature maps in, pose with covariance out (method.md section 4).
+// A flight as a sequence of steps: odometry and feature maps in, pose with covariance out (docs/method.md).
 //
 // A tracker holds what does not change. The state is a value: a step makes a new one from the old, so that a step that
 // fails leaves the track as it was.

@@ -29,8 +29,10 @@ http::Response get_file(const http::Request& request, std::string_view name) {
 }  // namespace
 
 void add_console_routes(http::Router& router) {
-  router.add({"GET", "/", {}, false, [](const http::Request& request) { return get_file(request, "index.html"); }});
-  router.add({"GET", "/console/{file}", {}, false, [](const http::Request& request) {
+  router.add({"GET", "/", {}, http::Load::kLight, [](const http::Request& request) {
+                return get_file(request, "index.html");
+              }});
+  router.add({"GET", "/console/{file}", {}, http::Load::kLight, [](const http::Request& request) {
                 return get_file(request, request.path_parameters.at("file"));
               }});
 }

@@ -46,7 +46,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
 }  // namespace
 
 void add_detect_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/detect", query_fields(), true,
+  router.add({"POST", "/v1/detect", query_fields(), http::Load::kHeavy,
               [&service](const http::Request& request) { return post_detect(service, request); }});
 }
 

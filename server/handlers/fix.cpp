@@ -52,7 +52,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
 }  // namespace
 
 void add_fix_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/fix", query_fields(), true,
+  router.add({"POST", "/v1/maps/{map}/fix", query_fields(), http::Load::kHeavy,
               [&service](const http::Request& request) { return post_fix(service, request); }});
 }
 

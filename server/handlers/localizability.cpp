@@ -150,19 +150,19 @@ void add_localizability_routes(http::Router& router, const Service& service) {
   router.add({"GET",
               "/v1/maps/{map}/localizability",
               {"lat", "lon", "footprint_m", "radius_m"},
-              true,
+              http::Load::kHeavy,
               [&service](const http::Request& request) { return get_localizability(service, request); }});
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto turns = std::make_shared<http::Admission>(kTilesDrawn, service.http.threads / kThreadsPerWaitingTile);
   router.add({"GET",
               "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
               {"footprint_m", "style"},
-              false,
+              http::Load::kLight,
               [&service, turns](const http::Request& request) { return get_tile(service, request, *turns); }});
   router.add({"GET",
               "/v1/maps/{map}/localizability/tilejson.json",
               {"footprint_m", "style"},
-              false,
+              http::Load::kLight,
               [&service](const http::Request& request) { return get_tilejson(service, request); }});
 }
 

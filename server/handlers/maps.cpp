@@ -79,8 +79,8 @@ http::Response list(const Service& service) {
 }  // namespace
 
 void add_map_routes(http::Router& router, const Service& service) {
-  router.add({"GET", "/v1/maps", {}, false, [&service](const http::Request&) { return list(service); }});
-  router.add({"GET", "/v1/maps/{map}", {}, false, [&service](const http::Request& request) {
+  router.add({"GET", "/v1/maps", {}, http::Load::kLight, [&service](const http::Request&) { return list(service); }});
+  router.add({"GET", "/v1/maps/{map}", {}, http::Load::kLight, [&service](const http::Request& request) {
                 return json_response(details(*service.maps.find(request.path_parameters.at("map"))));
               }});
 }

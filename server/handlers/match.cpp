@@ -33,7 +33,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_match_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/match", query_fields(), true,
+  router.add({"POST", "/v1/maps/{map}/match", query_fields(), http::Load::kHeavy,
               [&service](const http::Request& request) { return post_match(service, request); }});
 }
 

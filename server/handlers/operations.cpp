@@ -39,17 +39,18 @@ http::Response limits(const Service& service) {
 }  // namespace
 
 void add_operations_routes(http::Router& router, const Service& service) {
-  router.add({"GET", "/healthz", {}, false, [](const http::Request&) {
+  router.add({"GET", "/healthz", {}, http::Load::kLight, [](const http::Request&) {
                 return json_response({{"status", "ok"}, {"version", ROADFIX_VERSION}});
               }});
-  router.add({"GET", "/readyz", {}, false, [&service](const http::Request&) { return ready(service); }});
-  router.add({"GET", "/metrics", {}, false, [&service](const http::Request&) {
+  router.add({"GET", "/readyz", {}, http::Load::kLight, [&service](const http::Request&) { return ready(service); }});
+  router.add({"GET", "/metrics", {}, http::Load::kLight, [&service](const http::Request&) {
                 return http::Response{200, "text/plain; version=0.0.4", service.metrics.text()};
               }});
-  router.add({"GET", "/openapi.json", {}, false, [](const http::Request&) {
+  router.add({"GET", "/openapi.json", {}, http::Load::kLight, [](const http::Request&) {
                 return http::Response{200, "application/json", std::string(schema::openapi_json())};
               }});
-  router.add({"GET", "/v1/limits", {}, false, [&service](const http::Request&) { return limits(service); }});
+  router.add(
+      {"GET", "/v1/limits", {}, http::Load::kLight, [&service](const http::Request&) { return limits(service); }});
 }
 
 }  // namespace roadfix::server

@@ -75,13 +75,15 @@ http::Response get_tilejson(const Service& service, const http::Request& request
 }  // namespace
 
 void add_tile_routes(http::Router& router, const Service& service) {
+  router.add({"GET",
+              "/v1/maps/{map}/tiles/{z}/{x}/{y}.png",
+              {"style"},
+              http::Load::kLight,
+              [&service](const http::Request& request) { return get_tile(service, request); }});
   router.add(
-      {"GET", "/v1/maps/{map}/tiles/{z}/{x}/{y}.png", {"style"}, false, [&service](const http::Request& request) {
-         return get_tile(service, request);
+      {"GET", "/v1/maps/{map}/tilejson.json", {"style"}, http::Load::kLight, [&service](const http::Request& request) {
+         return get_tilejson(service, request);
        }});
-  router.add({"GET", "/v1/maps/{map}/tilejson.json", {"style"}, false, [&service](const http::Request& request) {
-                return get_tilejson(service, request);
-              }});
 }
 
 }  // namespace roadfix::server

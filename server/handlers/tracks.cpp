@@ -175,17 +175,18 @@ http::Response delete_track(const Service& service, const http::Request& request
 }  // namespace
 
 void add_track_routes(http::Router& router, const Service& service) {
-  const auto add = [&](const char* method, const char* path, std::vector<std::string> query, bool heavy, auto handler) {
-    router.add({method, path, std::move(query), heavy,
+  const auto add = [&](const char* method, const char* path, std::vector<std::string> query, http::Load load,
+                       auto handler) {
+    router.add({method, path, std::move(query), load,
                 [&service, handler](const http::Request& request) { return handler(service, request); }});
   };
-  add("POST", "/v1/tracks", {}, false, post_track);
-  add("GET", "/v1/tracks", {}, false, list_tracks);
-  add("GET", "/v1/tracks/{id}", {"particles"}, false, get_track);
-  add("DELETE", "/v1/tracks/{id}", {}, false, delete_track);
-  add("POST", "/v1/tracks/{id}/steps", step_query(), true, post_step);
-  add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, false, get_history);
-  add("GET", "/v1/tracks/{id}/events", {}, false, get_events);
+  add("POST", "/v1/tracks", {}, http::Load::kLight, post_track);
+  add("GET", "/v1/tracks", {}, http::Load::kLight, list_tracks);
+  add("GET", "/v1/tracks/{id}", {"particles"}, http::Load::kLight, get_track);
+  add("DELETE", "/v1/tracks/{id}", {}, http::Load::kLight, delete_track);
+  add("POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy, post_step);
+  add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, http::Load::kLight, get_history);
+  add("GET", "/v1/tracks/{id}/events", {}, http::Load::kLight, get_events);
 }
 
 }  // namespace roadfix::server

@@ -48,7 +48,7 @@ http::Response get_window(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_window_route(http::Router& router, const Service& service) {
-  router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), false,
+  router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), http::Load::kLight,
               [&service](const http::Request& request) { return get_window(service, request); }});
 }
 

@@ -10,11 +10,16 @@
 
 namespace roadfix::http {
 
+enum class Load {
+  kLight,
+  kHeavy,  ///< a search or a detection: waits its turn, since only so many of these run at a time
+};
+
 struct Route {
   std::string method;                   ///< GET (which answers HEAD too), POST or DELETE
   std::string path;                     ///< "/v1/maps/{map}/tiles/{z}/{x}/{y}.png"
   std::vector<std::string> parameters;  ///< every query parameter that the route knows; others are refused
-  bool heavy = false;                   ///< waits its turn: only so many of these run at a time
+  Load load = Load::kLight;
   std::function<Response(const Request&)> handler;
 };
 

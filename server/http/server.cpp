@@ -242,7 +242,7 @@ Response Server::Impl::answered(Exchange& exchange) {
     Request& request = exchange.request;
     request.received = Clock::now();
     request.deadline = request.received + settings_.request_time;
-    if (!route.heavy) return route.handler(request);
+    if (route.load == Load::kLight) return route.handler(request);
     const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time);
     request.deadline = Clock::now() + settings_.request_time;
     return route.handler(request);

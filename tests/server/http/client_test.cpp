@@ -27,14 +27,14 @@ class HttpClient : public ::testing::Test {
  protected:
   std::unique_ptr<Server> started(int port = 0) {
     Router router;
-    router.add({"GET", "/echo", {"text"}, false, [](const Request& request) {
+    router.add({"GET", "/echo", {"text"}, Load::kLight, [](const Request& request) {
                   return Response{200, "text/plain", request.query.at(0).second};
                 }});
-    router.add({"POST", "/length", {}, false, [](const Request& request) {
+    router.add({"POST", "/length", {}, Load::kLight, [](const Request& request) {
                   return Response{201, request.media_type(), std::to_string(request.body.size())};
                 }});
-    router.add({"DELETE", "/thing", {}, false, [](const Request&) { return Response{204, {}, {}}; }});
-    router.add({"GET", "/busy", {}, false, [](const Request&) -> Response { throw Busy("later", 7s); }});
+    router.add({"DELETE", "/thing", {}, Load::kLight, [](const Request&) { return Response{204, {}, {}}; }});
+    router.add({"GET", "/busy", {}, Load::kLight, [](const Request&) -> Response { throw Busy("later", 7s); }});
     ServerSettings settings;
     settings.port = port;
     auto server = std::make_unique<Server>(settings, std::move(router), refusal, metrics_);

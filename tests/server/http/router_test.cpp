@@ -9,9 +9,9 @@ namespace {
 
 Router some_router() {
   Router router;
-  router.add({"GET", "/v1/maps", {}, false, {}});
-  router.add({"GET", "/v1/maps/{map}/tiles/{z}/{x}/{y}.png", {"style"}, false, {}});
-  router.add({"POST", "/v1/maps/{map}/fix", {"lat"}, true, {}});
+  router.add({"GET", "/v1/maps", {}, Load::kLight, {}});
+  router.add({"GET", "/v1/maps/{map}/tiles/{z}/{x}/{y}.png", {"style"}, Load::kLight, {}});
+  router.add({"POST", "/v1/maps/{map}/fix", {"lat"}, Load::kHeavy, {}});
   return router;
 }
 

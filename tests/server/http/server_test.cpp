@@ -30,30 +30,31 @@ Response plain_error(std::exception_ptr thrown, const Request& request) {
 class HttpServer : public ::testing::Test {
  protected:
   HttpServer() {
-    router_.add({"GET", "/echo", {"text"}, false, [](const Request& request) {
+    router_.add({"GET", "/echo", {"text"}, Load::kLight, [](const Request& request) {
                    return Response{200, "text/plain", request.query.empty() ? "" : request.query[0].second};
                  }});
-    router_.add({"POST", "/length", {}, true, [](const Request& request) {
+    router_.add({"POST", "/length", {}, Load::kHeavy, [](const Request& request) {
                    return Response{200, "text/plain", std::to_string(request.body.size())};
                  }});
-    router_.add({"POST", "/wait", {}, true, [this](const Request&) {
+    router_.add({"POST", "/wait", {}, Load::kHeavy, [this](const Request&) {
                    ++waiting_;
                    while (!go_) std::this_thread::sleep_for(1ms);
                    return Response{200, "text/plain", "waited"};
                  }});
-    router_.add({"POST", "/times", {}, true, [this](const Request& request) {
+    router_.add({"POST", "/times", {}, Load::kHeavy, [this](const Request& request) {
                    times_ = {request.received, request.deadline};
                    return Response{200, "text/plain", "done"};
                  }});
-    router_.add({"GET", "/throw", {}, false, [](const Request&) -> Response { throw std::logic_error("a mistake"); }});
-    router_.add({"GET", "/stream", {}, false, [](const Request&) {
+    router_.add(
+        {"GET", "/throw", {}, Load::kLight, [](const Request&) -> Response { throw std::logic_error("a mistake"); }});
+    router_.add({"GET", "/stream", {}, Load::kLight, [](const Request&) {
                    Response response{200, "text/plain", {}};
                    response.stream = [pieces = 0]() mutable -> std::optional<std::string> {
                      return pieces++ < 3 ? std::optional<std::string>("piece ") : std::nullopt;
                    };
                    return response;
                  }});
-    router_.add({"GET", "/broken-stream", {}, false, [](const Request&) {
+    router_.add({"GET", "/broken-stream", {}, Load::kLight, [](const Request&) {
                    Response response{200, "text/plain", {}};
                    response.stream = [first = true]() mutable -> std::optional<std::string> {
                      if (!std::exchange(first, false)) throw std::runtime_error("the source has gone");
@@ -138,7 +139,7 @@ TEST_F(HttpServer, TurnsWhatAHandlerThrowsIntoAnAnswerThatKnowsTheRequest) {
 }
 
 TEST_F(HttpServer, KnowsClientsBehindAProxyByTheirOwnAddress) {
-  router_.add({"GET", "/me", {}, false, [](const Request& request) {
+  router_.add({"GET", "/me", {}, Load::kLight, [](const Request& request) {
                  return Response{200, "text/plain", request.client};
                }});
   const httplib::Headers forwarded{{"X-Forwarded-For", "203.0.113.9"}};
@@ -218,7 +219,7 @@ TEST_F(HttpServer, SaysWhenItAnswered) {
 
 TEST_F(HttpServer, PacksOnlyForClientsThatWantIt) {
   const std::string text(2000, 'x');
-  router_.add({"GET", "/long", {}, false, [&](const Request&) { return Response{200, "text/plain", text}; }});
+  router_.add({"GET", "/long", {}, Load::kLight, [&](const Request&) { return Response{200, "text/plain", text}; }});
   const auto server = started();
   const auto is_packed = [&](const std::string& accepted) {
     return raw("GET /long HTTP/1.1\r\nHost: x\r\nConnection: close\r\nAccept-Encoding: " + accepted + "\r\n\r\n")

@@ -1,9 +1,12 @@
 #include "core/grid/resample.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <span>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "core/grid/sampling.hpp"
@@ -35,6 +38,33 @@ CellArray sampled(const CellArray& source, const Placement& placement, int cols,
     }
   }
   return result;
+}
+
+constexpr int kSquare = 8;
+
+/// The square of cells from (col, row) on, put where a quarter turn of the whole takes it. Eight cells of a row are one
+/// number: blocks of 4, 2 and 1 cells change sides.
+void turn_square(const CellArray& cells, CellArray& turned, int col, int row) {
+  std::array<std::uint64_t, kSquare> rows{};
+  for (std::size_t k = 0; k < kSquare; ++k) {
+    std::memcpy(&rows[k], &cells.row(row + kSquare - 1 - static_cast<int>(k))[static_cast<std::size_t>(col)], kSquare);
+  }
+  const auto swap_blocks = [&](std::size_t side, std::uint64_t left) {
+    for (std::size_t k = 0; k < kSquare; ++k) {
+      if ((k & side) != 0) continue;
+      const std::uint64_t both = ((rows[k] >> (8 * side)) ^ rows[k + side]) & left;
+      rows[k + side] ^= both;
+      rows[k] ^= both << (8 * side);
+    }
+  };
+  static_assert(std::endian::native == std::endian::little);
+  swap_blocks(4, 0x00000000FFFFFFFFU);
+  swap_blocks(2, 0x0000FFFF0000FFFFU);
+  swap_blocks(1, 0x00FF00FF00FF00FFU);
+  const auto first = static_cast<std::size_t>(cells.rows() - kSquare - row);
+  for (std::size_t k = 0; k < kSquare; ++k) {
+    std::memcpy(&turned.row(col + static_cast<int>(k))[first], &rows[k], kSquare);
+  }
 }
 
 }  // namespace
@@ -80,15 +110,26 @@ FeatureMap resampled(const FeatureMap& map, double cell_m) {
 
 FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }
 
-FeatureMap quarter_turned(const FeatureMap& map) {
-  const std::span<const Cell> cells = map.cells.cells();
-  const auto stride = static_cast<std::size_t>(map.cells.cols());
-  CellArray turned(map.cells.rows(), map.cells.cols());
-  for (int row = 0; row < turned.rows(); ++row) {
-    std::size_t behind = cells.size() + static_cast<std::size_t>(row);
-    for (Cell& cell : turned.row(row)) cell = cells[behind -= stride];
+CellArray quarter_turned(const CellArray& cells) {
+  CellArray turned(cells.rows(), cells.cols());
+  for (int row = 0; row < cells.rows(); row += kSquare) {
+    for (int col = 0; col < cells.cols(); col += kSquare) {
+      const int rows = std::min(kSquare, cells.rows() - row);
+      const int cols = std::min(kSquare, cells.cols() - col);
+      if (rows == kSquare && cols == kSquare) {
+        turn_square(cells, turned, col, row);
+        continue;
+      }
+      for (int r = row; r < row + rows; ++r) {
+        for (int c = col; c < col + cols; ++c) turned.at(cells.rows() - 1 - r, c) = cells.at(c, r);
+      }
+    }
   }
-  return {std::move(turned), map.cell_m, {map.cells.rows() - map.nadir.row, map.nadir.col}};
+  return turned;
+}
+
+FeatureMap quarter_turned(const FeatureMap& map) {
+  return {quarter_turned(map.cells), map.cell_m, {map.cells.rows() - map.nadir.row, map.nadir.col}};
 }
 
 FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int rows, double cell_m) {

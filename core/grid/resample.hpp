@@ -23,6 +23,7 @@ FeatureMap rotated(const FeatureMap& map, Angle heading);
 /// Turned clockwise by a quarter, without rounding: rotated() by 90 degrees more, where the nadir lies on a cell
 /// centre.
 FeatureMap quarter_turned(const FeatureMap& map);
+CellArray quarter_turned(const CellArray& cells);
 
 /// The part of `grid` under a footprint of cols x rows cells centred on the pose, in the body frame
 /// (inverse of placing a feature map at that pose). Cells beyond the grid are unobserved.

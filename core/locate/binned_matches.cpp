@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -16,44 +17,67 @@ namespace roadfix {
 namespace {
 
 constexpr int kBlockBits = 10;  // poses in a block of 1024 x 1024 cells share one read of the map
+constexpr int kStripBits = 6;   // and follow each other along strips of 64 rows, by steps of 16 columns:
+constexpr int kStepBits = 4;    // what lies below one of them lies largely below the next
 
 std::pair<int, int> block_of(const BinnedPose& pose) {
   return {pose.cell.col >> kBlockBits, pose.cell.row >> kBlockBits};
 }
 
-/// In the order of their keys, 0 to keys - 1; those of a key in the order that they had.
+constexpr std::size_t kSteps = std::size_t{1} << (2 * kBlockBits - kStripBits - kStepBits);
+
+/// Within the block, 0 to kSteps - 1.
+std::size_t step_of(const BinnedPose& pose) {
+  constexpr unsigned kWithin = (1U << kBlockBits) - 1;
+  const unsigned strip = (static_cast<unsigned>(pose.cell.row) & kWithin) >> kStripBits;
+  const unsigned step = (static_cast<unsigned>(pose.cell.col) & kWithin) >> kStepBits;
+  return (strip << (kBlockBits - kStepBits)) + step;
+}
+
+/// Places of the headings in an order in which those a quarter turn apart are neighbours.
+std::vector<std::size_t> by_quarters(const HeadingBins& bins) {
+  std::vector<std::size_t> places(static_cast<std::size_t>(bins.count()));
+  const std::size_t quarter = places.size() / 4;
+  for (std::size_t bin = 0; bin < places.size(); ++bin) places[bin] = bin % quarter * 4 + bin / quarter;
+  return places;
+}
+
+/// Puts the poses in the order of their keys, 0 to keys - 1; those of a key keep the order that they had.
 template <typename KeyOf>
-std::vector<BinnedPose> by_key(std::span<const BinnedPose> poses, std::size_t keys, KeyOf key_of) {
+void sort_by(std::vector<BinnedPose>& poses, std::vector<BinnedPose>& spare, std::size_t keys, KeyOf key_of) {
   std::vector<std::size_t> next(keys + 1, 0);
   for (const BinnedPose& pose : poses) ++next[key_of(pose) + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<BinnedPose> result(poses.size());
-  for (const BinnedPose& pose : poses) result[next[key_of(pose)]++] = pose;
-  return result;
+  spare.resize(poses.size());
+  for (const BinnedPose& pose : poses) spare[next[key_of(pose)]++] = pose;
+  poses.swap(spare);
 }
 
 /// Block by block, within a block heading by heading, and those a quarter turn apart behind each other.
-std::vector<BinnedPose> in_order(std::span<const BinnedPose> poses, const HeadingBins& bins) {
-  const int quarter = bins.count() / 4;
+void put_in_order(std::vector<BinnedPose>& poses, const HeadingBins& bins) {
   std::vector<std::pair<int, int>> blocks;
   for (const BinnedPose& pose : poses) {
     if (blocks.empty() || block_of(pose) != blocks.back()) blocks.push_back(block_of(pose));
   }
   std::ranges::sort(blocks);
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  auto sorted = by_key(poses, static_cast<std::size_t>(bins.count()), [&](const BinnedPose& pose) {
-    return static_cast<std::size_t>(pose.bin % quarter * 4 + pose.bin / quarter);
-  });
-  if (blocks.size() < 2) return sorted;
-  return by_key(sorted, blocks.size(), [&](const BinnedPose& pose) {
+  std::vector<BinnedPose> spare;
+  const std::vector<std::size_t> headings = by_quarters(bins);
+  sort_by(poses, spare, kSteps, step_of);
+  sort_by(poses, spare, headings.size(),
+          [&](const BinnedPose& pose) { return headings[static_cast<std::size_t>(pose.bin)]; });
+  if (blocks.size() < 2) return;
+  sort_by(poses, spare, blocks.size(), [&](const BinnedPose& pose) {
     return static_cast<std::size_t>(std::ranges::lower_bound(blocks, block_of(pose)) - blocks.begin());
   });
 }
 
+using Poses = std::span<const BinnedPose>;
+
 /// Runs of equal neighbours.
 template <typename Same>
-std::vector<std::span<const BinnedPose>> runs(std::span<const BinnedPose> poses, Same same) {
-  std::vector<std::span<const BinnedPose>> result;
+std::vector<Poses> runs(Poses poses, Same same) {
+  std::vector<Poses> result;
   for (std::size_t first = 0; first < poses.size();) {
     std::size_t last = first + 1;
     while (last < poses.size() && same(poses[first], poses[last])) ++last;
@@ -63,7 +87,7 @@ std::vector<std::span<const BinnedPose>> runs(std::span<const BinnedPose> poses,
   return result;
 }
 
-GridGeometry around(std::span<const BinnedPose> poses, double cell_m, int reach) {
+GridGeometry around(Poses poses, double cell_m, int reach) {
   LatticeIndex low = poses.front().cell;
   LatticeIndex high = low;
   for (const BinnedPose& pose : poses) {
@@ -76,39 +100,91 @@ GridGeometry around(std::span<const BinnedPose> poses, double cell_m, int reach)
           high.row - low.row + 1 + 2 * reach};
 }
 
-/// All at one heading. `origin` is the plane's first cell.
-void match_at_heading(const MapPlane& plane, LatticeIndex origin, const Footprint& footprint,
-                      std::span<const BinnedPose> poses, std::span<MatchSums> sums) {
-  std::vector<PlaneCell> places;
-  for (const BinnedPose& pose : poses) places.push_back({pose.cell.col - origin.col, pose.cell.row - origin.row});
-  std::vector<MatchSums> found(places.size());
-  match_sums(plane, footprint, places, found);
-  for (std::size_t k = 0; k < poses.size(); ++k) sums[poses[k].index] = found[k];
+/// A window of the map. Where so many poses share it that this costs less than it spares, it is also turned to the
+/// left by one, two and three quarters: a feature map turned to the right as often covers of the window what it covers
+/// unturned of these.
+class Window {
+ public:
+  Window(const RoadGrid& map, bool turned) : geometry_(map.geometry) {
+    planes_.emplace_back(map.cells, 0);
+    if (!turned) return;
+    // To the left by three quarters, two and one: to the right by one more each time.
+    CellArray cells = map.cells;
+    for (int k = 0; k < 3; ++k) {
+      cells = quarter_turned(cells);
+      planes_.emplace(planes_.begin() + 1, cells, 0);
+    }
+  }
+
+  bool turned() const { return planes_.size() > 1; }
+
+  /// Poses of one heading, by as many quarters to the right of the footprint's.
+  void match(const Footprint& footprint, int quarters, Poses poses, std::span<MatchSums> sums) const {
+    std::vector<PlaneCell> places;
+    places.reserve(poses.size());
+    for (const BinnedPose& pose : poses) places.push_back(place_of(pose.cell, quarters));
+    std::vector<MatchSums> found(places.size());
+    match_sums(planes_[static_cast<std::size_t>(quarters)], footprint, places, found);
+    for (std::size_t k = 0; k < poses.size(); ++k) sums[poses[k].index] = found[k];
+  }
+
+ private:
+  PlaneCell place_of(LatticeIndex cell, int quarters) const {
+    const int col = cell.col - geometry_.origin.col;
+    const int row = cell.row - geometry_.origin.row;
+    const int to_the_right = geometry_.cols - 1 - col;
+    const int below = geometry_.rows - 1 - row;
+    switch (quarters) {
+      case 0:
+        return {col, row};
+      case 1:
+        return {row, to_the_right};
+      case 2:
+        return {to_the_right, below};
+      default:
+        return {below, col};
+    }
+  }
+
+  GridGeometry geometry_;
+  std::vector<MapPlane> planes_;
+};
+
+/// Turning a window's cells costs about a quarter of turning and packing as many of the feature map.
+bool worth_turning(const GridGeometry& window, int reach, std::size_t footprints_spared) {
+  const double footprint_cells = std::pow(2.0 * reach + 1.0, 2.0);
+  return 4.0 * footprint_cells * static_cast<double>(footprints_spared) > 3.0 * window.cols * window.rows;
 }
 
 }  // namespace
 
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
-                  std::span<const BinnedPose> poses, int threads, const std::stop_token& stop,
-                  std::span<MatchSums> sums) {
+                  std::vector<BinnedPose> poses, int threads, const std::stop_token& stop, std::span<MatchSums> sums) {
   assert(bins.count() % 4 == 0);
   const int quarter = bins.count() / 4;
   const int reach = footprint_reach(features);
   const TurnableMap turnable(features);
   const Deadline deadline(stop, {});
-  const std::vector<BinnedPose> sorted = in_order(poses, bins);
-  for (const auto block : runs(sorted, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
-    const GridGeometry window = around(block, features.cell_m, reach);
-    const MapPlane plane(map.read(window).cells, 0);
+  const auto same_heading = [](const BinnedPose& a, const BinnedPose& b) { return a.bin == b.bin; };
+  put_in_order(poses, bins);
+  for (const Poses block : runs(poses, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
     const auto families = runs(block, [&](const auto& a, const auto& b) { return a.bin % quarter == b.bin % quarter; });
+    const GridGeometry geometry = around(block, features.cell_m, reach);
+    const std::size_t spared = runs(block, same_heading).size() - families.size();
+    const Window window(map.read(geometry), worth_turning(geometry, reach, spared));
     parallel_for(static_cast<int>(families.size()), threads, [&](int task) {
-      const auto family = families[static_cast<std::size_t>(task)];
-      int bin = family.front().bin % quarter;
-      FeatureMap turned = turnable.at(bins.heading(bin));
-      for (const auto members : runs(family, [](const auto&a, const auto&b) { return a.bin == b.bin; })) {
+      const Poses family = families[static_cast<std::size_t>(task)];
+      FeatureMap turned = turnable.at(bins.heading(family.front().bin % quarter));
+      Footprint footprint(turned);
+      int turns = 0;
+      for (const Poses members : runs(family, same_heading)) {
         deadline.check();
-        for (; bin < members.front().bin; bin += quarter) turned = quarter_turned(turned);
-        match_at_heading(plane, window.origin, Footprint(turned), members, sums);
+        const int quarters = members.front().bin / quarter;
+        if (!window.turned() && turns < quarters) {
+          for (; turns < quarters; ++turns) turned = quarter_turned(turned);
+          footprint = Footprint(turned);
+        }
+        window.match(footprint, quarters - turns, members, sums);
       }
     });
   }

@@ -24,7 +24,6 @@ struct BinnedPose {
 /// are left as they are. `features` are in cells of the map or of an overview (see in_cells_of()). Throws Interrupted
 /// when asked to stop.
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
-                  std::span<const BinnedPose> poses, int threads, const std::stop_token& stop,
-                  std::span<MatchSums> sums);
+                  std::vector<BinnedPose> poses, int threads, const std::stop_token& stop, std::span<MatchSums> sums);
 
 }  // namespace roadfix

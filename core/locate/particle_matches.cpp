@@ -1,6 +1,7 @@
 #include "core/locate/particle_matches.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "core/locate/binned_matches.hpp"
 #include "core/match/coarse_scan.hpp"
@@ -22,7 +23,7 @@ std::vector<MatchSums> match_particles(const MapView& map, const FeatureMap& fea
     poses.push_back({cell, bins.wrapped(static_cast<int>(std::lround(turned))), i});
   }
   std::vector<MatchSums> sums(p.size());
-  match_binned(map, features, bins, poses, threads, stop, sums);
+  match_binned(map, features, bins, std::move(poses), threads, stop, sums);
   return sums;
 }
 

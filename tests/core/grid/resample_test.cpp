@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/support/ascii_map.hpp"
+#include "tests/support/random_cells.hpp"
 
 namespace roadfix {
 namespace {
@@ -55,6 +58,19 @@ TEST(QuarterTurned, IsTheMapTurnedByNinetyDegreesMore) {
   const FeatureMap east = quarter_turned(map);
   EXPECT_EQ(to_ascii(east.cells), "?.#\n..#\n##.\n#.#\n");
   EXPECT_EQ(east.nadir, (GridGeometry::CellPosition{2.5, 1.5}));
+}
+
+TEST(QuarterTurned, PutsTheCellsOfEverySizeWhereAClockwiseTurnTakesThem) {
+  std::mt19937_64 random(4);
+  for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{{1, 1}, {8, 8}, {7, 20}, {40, 9}, {33, 47}}) {
+    const CellArray cells = testing::random_cells(random, cols, rows, 0.1);
+    const CellArray turned = quarter_turned(cells);
+    ASSERT_EQ(turned.cols(), rows);
+    ASSERT_EQ(turned.rows(), cols);
+    for (int row = 0; row < rows; ++row) {
+      for (int col = 0; col < cols; ++col) ASSERT_EQ(turned.at(rows - 1 - row, col), cells.at(col, row));
+    }
+  }
 }
 
 TEST(CutOut, ReturnsTheGridItselfAtItsCentre) {

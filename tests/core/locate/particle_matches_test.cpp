@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "core/grid/resample.hpp"
@@ -61,6 +62,36 @@ TEST(ParticleMatches, FitBestAtTheirHeadingInEveryQuarterOfTheCompass) {
     const auto sums = match_particles(testing::view_of(map), features, p);
     EXPECT_GT(*rho(sums[0]), 0.8) << heading;
     for (std::size_t i = 1; i < 4; ++i) EXPECT_LT(*rho(sums[i]), 0.4) << heading << ' ' << i;
+  }
+}
+
+TEST(ParticleMatches, AreTheSameToTheLastBitForManyAtOnceAndForEachAlone) {
+  // Many share a map that is turned with them; one alone has its own feature map turned.
+  const RoadGrid map = testing::street_map(52, {2.0, {300'000, -3'200'000}, 150, 130});
+  std::mt19937_64 random(13);
+  const GridBox box = map.geometry.box();
+  const GridPose middle{map.geometry.cell_center(75, 65), Angle::degrees(80.0)};
+  const FeatureMap features = testing::observed_at(map, middle, 40, 50, 2.0, {0.1, 0.1}, random);
+  Particles all;
+  all.resize(400);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all.set(i, {testing::uniform(random, box.min.east_m - 20.0, box.max.east_m + 20.0),
+                testing::uniform(random, box.min.north_m - 20.0, box.max.north_m + 20.0),
+                testing::uniform(random, -std::numbers::pi, std::numbers::pi)});
+    all.weight[i] = 1.0;
+  }
+  const MapView view = testing::view_of(map);
+  const auto together = match_particles(view, features, all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Particles one;
+    one.resize(1);
+    one.set(0, all.at(i));
+    one.weight[0] = 1.0;
+    const MatchSums alone = match_particles(view, features, one)[0];
+    EXPECT_EQ(together[i].n, alone.n);
+    EXPECT_EQ(together[i].m, alone.m);
+    EXPECT_EQ(together[i].ll, alone.ll);
+    EXPECT_EQ(together[i].ml, alone.ml);
   }
 }
 

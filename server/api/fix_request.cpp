@@ -68,7 +68,8 @@ Prior parse_prior(const Fields& fields) {
   }
   if (const auto box = fields.optional_numbers("bbox", 4)) {
     const GeoBox geo{{(*box)[1], (*box)[0]}, {(*box)[3], (*box)[2]}};
-    const auto on_earth = [](LatLon p) { return std::abs(p.lat_deg) <= 90.0 && std::abs(p.lon_deg) <= 180.0; };
+    // Beyond 180 degrees: across the antimeridian, as GET /v1/maps gives the boxes of such maps.
+    const auto on_earth = [](LatLon p) { return std::abs(p.lat_deg) <= 90.0 && std::abs(p.lon_deg) <= 360.0; };
     if (!on_earth(geo.south_west) || !on_earth(geo.north_east) || geo.south_west.lat_deg >= geo.north_east.lat_deg ||
         geo.south_west.lon_deg >= geo.north_east.lon_deg) {
       throw InvalidField("bad-parameter", "bbox",

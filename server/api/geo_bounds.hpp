@@ -11,6 +11,7 @@ struct GeoBounds {
 };
 
 /// Smallest box of latitude and longitude around the grid's box, whose sides are curves there. `box` is not empty.
+/// West is less than east: across the antimeridian one of them lies beyond 180 degrees.
 GeoBounds bounds_of(const UtmZone& zone, const GridBox& box);
 
 }  // namespace roadfix::api

@@ -10,17 +10,27 @@ namespace {
 
 constexpr int kLongestStep = 16;
 
-}  // namespace
-
-PixelBox touched_pixels(const MapView& map, TileAddress tile) {
-  const GeoBounds bounds = bounds_of(map.zone, map.extent);
-  const MercatorPixel north_west = mercator_pixel({bounds.north_east.lat_deg, bounds.south_west.lon_deg}, tile.z);
-  const MercatorPixel south_east = mercator_pixel({bounds.south_west.lat_deg, bounds.north_east.lon_deg}, tile.z);
+PixelBox pixels_of(const GeoBounds& bounds, TileAddress tile, double turn_deg) {
+  const MercatorPixel north_west =
+      mercator_pixel({bounds.north_east.lat_deg, bounds.south_west.lon_deg + turn_deg}, tile.z);
+  const MercatorPixel south_east =
+      mercator_pixel({bounds.south_west.lat_deg, bounds.north_east.lon_deg + turn_deg}, tile.z);
   const auto within = [](double value) { return static_cast<int>(std::clamp(value, 0.0, double{kTilePixels})); };
   const double x0 = double{kTilePixels} * tile.x;
   const double y0 = double{kTilePixels} * tile.y;
   return {within(std::floor(north_west.x - x0)), within(std::floor(north_west.y - y0)),
           within(std::ceil(south_east.x - x0)), within(std::ceil(south_east.y - y0))};
+}
+
+}  // namespace
+
+PixelBox touched_pixels(const MapView& map, TileAddress tile) {
+  const GeoBounds bounds = bounds_of(map.zone, map.extent);
+  for (const double turn_deg : {0.0, 360.0, -360.0}) {
+    const PixelBox box = pixels_of(bounds, tile, turn_deg);
+    if (!box.empty()) return box;
+  }
+  return {};
 }
 
 PixelToGrid::PixelToGrid(const UtmZone& zone, TileAddress tile, const PixelBox& box)

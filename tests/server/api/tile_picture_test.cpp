@@ -7,6 +7,8 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "server/api/geo_bounds.hpp"
+#include "server/api/tile_ground.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -50,6 +52,27 @@ TEST(WebMercator, GivesPublishedTileNumbers) {
   const LatLon back = lat_lon(mercator_pixel({-33.9, 151.2}, 20), 20);
   EXPECT_NEAR(back.lat_deg, -33.9, 1e-9);
   EXPECT_NEAR(back.lon_deg, 151.2, 1e-9);
+}
+
+TEST(GeoBounds, OfAMapAcrossTheAntimeridianAreNarrowAndItsTilesLieOnBothSides) {
+  const UtmZone fiji = *UtmZone::from_epsg(32701);
+  const GridPoint middle = fiji.project({-16.9, 180.0});
+  MapView map = striped_map();
+  map.zone = fiji;
+  map.extent = {{middle.east_m - 1000.0, middle.north_m - 1000.0}, {middle.east_m + 1000.0, middle.north_m + 1000.0}};
+  const GeoBounds bounds = bounds_of(fiji, map.extent);
+  EXPECT_NEAR(bounds.north_east.lon_deg - bounds.south_west.lon_deg, 2000.0 / 106'550.0, 5e-4);
+  EXPECT_GT(std::remainder(bounds.south_west.lon_deg, 360.0), 0.0) << "west of it lies the eastern hemisphere";
+  for (const int zoom : {2, 10, 14}) {
+    for (const double lon : {179.995, -179.995}) {
+      const PixelBox box = touched_pixels(map, tile_of({-16.9, lon}, zoom));
+      ASSERT_FALSE(box.empty()) << zoom << ' ' << lon;
+      EXPECT_NO_THROW(PixelToGrid(fiji, tile_of({-16.9, lon}, zoom), box)) << zoom << ' ' << lon;
+    }
+    EXPECT_TRUE(touched_pixels(map, tile_of({-16.9, 0.0}, zoom)).empty());
+  }
+  const TileAddress world{0, 0, 0};
+  EXPECT_NO_THROW(PixelToGrid(fiji, world, touched_pixels(map, world)));
 }
 
 TEST(WebMercator, RefusesWhatIsNoTile) {

@@ -35,7 +35,7 @@ std::int64_t digest_of(const http::Request& request) {
   Fnv1a64 hash;
   const auto add = [&](std::string_view text) {
     hash.add(text);
-    hash.add({"", 1});  // a byte of 0 between two texts
+    hash.add({"\0", 1});  // ends the text
   };
   const std::vector<std::string>& presentation = api::position_fields();
   for (const auto& [name, value] : request.query) {

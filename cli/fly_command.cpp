@@ -43,7 +43,7 @@ json document(const FlyOptions& options, const Ground& ground, const std::vector
           {"ground", ground.what},
           {"seed", options.seed},
           {"particles", options.particles},
-          {"footprint_m", options.footprint_m},
+          {"footprint_m", {ground.footprint.width_m, ground.footprint.height_m}},
           {"filters", filters}};
 }
 
@@ -82,16 +82,16 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
   return fly::service_localizers(plan);
 }
 
-fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
+fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const Ground& ground,
+                          const fly::FlightPlan& plan) {
   fly::Campaign campaign;
-  campaign.plan = plan_of(options, map, ground);
-  campaign.box = flying_box(options, map, ground.box);
-  campaign.pilot = pilots_of(options, campaign.box, map.zone);
-  campaign.sensor = ground.sensor.get();
+  const Flights flights = flights_of(options, map, ground, plan);
+  campaign.flight = flights.source;
+  campaign.runs = flights.number;
+  campaign.steps = flights.steps;
   campaign.stop = stop_on_signals();
   campaign.localizer = localizers_of(options, map, campaign.stop);
   campaign.filters = options.filters;
-  campaign.runs = options.vehicles > 0 ? options.vehicles : options.runs;
   campaign.seed = options.seed;
   campaign.jobs = options.vehicles > 0 ? options.vehicles : options.jobs;
   return campaign;
@@ -101,8 +101,9 @@ void run_fly(const FlyOptions& options) {
   require_writable({options.json_file, options.csv_file, options.geojson_file});
   const MapView map = map_of(options);
   const Ground ground = ground_of(options, map);
-  fly::Campaign campaign = campaign_of(options, map, ground);
-  fly::Screening screening(map, ground.imagery ? &*ground.imagery : nullptr, footprint_of(options), options.screening);
+  const fly::FlightPlan plan = plan_of(options, map, ground);
+  fly::Campaign campaign = campaign_of(options, map, ground, plan);
+  fly::Screening screening(map, ground.imagery ? &*ground.imagery : nullptr, ground.footprint, options.screening);
   campaign.watch = [&](const std::string& filter, const fly::Record& record, const fly::Localizer& localizer) {
     screening.show(filter, record, localizer);
   };
@@ -110,7 +111,7 @@ void run_fly(const FlyOptions& options) {
   campaign.progress = [&](std::int64_t done, std::int64_t total) { progress.update(done, total); };
   const auto results = fly::run(campaign, map.zone);
   screening.finish();
-  const fly::Events events{campaign.plan.kidnapping, campaign.plan.outage};
+  const fly::Events events{plan.kidnapping, plan.outage};
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));
   fmt::print("{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.seed, map.extent.width_m() / 1e3,
@@ -127,6 +128,7 @@ void add_fly_command(CLI::App& app) {
   auto* command = app.add_subcommand("fly", "Flies simulated UAVs over imagery or a map and follows them on the map");
   command->footer(
       "Examples: roadfix fly town.gpkg --over post.tif --filter paper,default --pictures figures\n"
+      "          roadfix fly city.gpkg --over flight/frames.csv --filter paper,default --film flight.gif\n"
       "          roadfix fly city.gpkg --runs 100 --erase 0.3 --kidnap 100,2000 --json out.json\n"
       "          roadfix fly city.gpkg --server http://127.0.0.1:8080 --vehicles 16");
   const auto options = std::make_shared<FlyOptions>();

@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "cli/fly/area.hpp"
+#include "cli/fly/pilot.hpp"
+#include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
@@ -42,68 +44,48 @@ fly::CameraErrors camera_errors_of(const FlyOptions& options) {
   return errors;
 }
 
-}  // namespace
-
-MapView map_of(const FlyOptions& options) {
-  const auto reader = std::make_shared<const MapReader>(options.map);
-  constexpr std::size_t kSearchCacheBytes = std::size_t{1} << 30;  // all flights search the same map
-  MapView map = view_of(reader, std::filesystem::path(options.map).stem().string(), kSearchCacheBytes);
-  return options.area_m > 0.0 ? fly::middle_of(map, options.area_m) : map;
+void look_at_map(const FlyOptions& options, const MapView& map, Ground& ground) {
+  const bool itself = options.over.empty();
+  const MapView from = itself ? map : view_of(std::make_shared<const MapReader>(options.over), options.over);
+  if (!(from.zone == map.zone)) {
+    throw InvalidInput("map-of-another-zone", fmt::format("{} lies in another UTM zone than {}: take maps of one place",
+                                                          options.over, options.map));
+  }
+  ground.sensor = fly::make_simulated_sensor(from, ground.footprint, options.quality);
+  ground.box = from.extent;
+  ground.what = fmt::format("feature maps cut out of {}", itself ? options.map : options.over);
 }
 
-Footprint footprint_of(const FlyOptions& options) { return {options.footprint_m.front(), options.footprint_m.back()}; }
-
-Ground ground_of(const FlyOptions& options, const MapView& map) {
-  Ground ground;
-  const Footprint footprint = footprint_of(options);
-  const bool over_imagery = !options.over.empty() && std::filesystem::path(options.over).extension() != ".gpkg";
-  const bool sends_frames = options.send == "frames";
-  if (sends_frames) require_sendable_frames(options, over_imagery);
-  if (!over_imagery) {
-    const bool itself = options.over.empty();
-    const MapView from = itself ? map : view_of(std::make_shared<const MapReader>(options.over), options.over);
-    if (!(from.zone == map.zone)) {
-      throw InvalidInput(
-          "map-of-another-zone",
-          fmt::format("{} lies in another UTM zone than {}: take maps of one place", options.over, options.map));
-    }
-    ground.sensor = fly::make_simulated_sensor(from, footprint, options.quality);
-    ground.box = from.extent;
-    ground.what = fmt::format("feature maps cut out of {}", itself ? options.map : options.over);
-    return ground;
-  }
-  if (!sends_frames) ground.detector = make_detector(options.detector);
+void look_at_imagery(const FlyOptions& options, const MapView& map, Ground& ground) {
   ground.imagery = read_orthoimage(options.over, map.zone);
   ground.box = ground.imagery->box();
   const fly::CameraErrors errors = camera_errors_of(options);
-  if (sends_frames) {
-    ground.sensor = fly::make_camera(*ground.imagery, footprint, errors, map.cell_m);
-    ground.what = fmt::format("frames of {}, roads detected by the service", options.over);
-  } else {
-    ground.sensor = fly::make_imaging_sensor(*ground.imagery, *ground.detector, footprint, errors, map.cell_m);
-    ground.what = fmt::format("frames of {}, {}", options.over, ground.detector->describe());
-  }
-  return ground;
+  ground.sensor = ground.detector ? fly::make_imaging_sensor(*ground.imagery, *ground.detector, ground.footprint,
+                                                             errors, map.cell_m)
+                                  : fly::make_camera(*ground.imagery, ground.footprint, errors, map.cell_m);
 }
 
-fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
-  fly::FlightPlan plan = options.plan;
-  plan.handling = handling_of(options);
-  plan.odometry.turn = Angle::degrees(options.turn_noise_deg);
-  plan.odometry.turn_drift = Angle::degrees(options.turn_drift_deg);
-  plan.tells_odometry = !options.no_odometry;
-  plan.registration_m = options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m);
-  if (!options.outage.empty()) plan.outage = fly::StepRange{options.outage[0], options.outage[1]};
-  if (!options.kidnap.empty()) {
-    plan.kidnapping = fly::Kidnapping{static_cast<int>(options.kidnap[0]), options.kidnap[1]};
+void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& ground) {
+  if (options.course != "random" || !options.kidnap.empty()) {
+    throw InvalidInput("recorded-course", "a recorded flight has its course: leave out --course and --kidnap");
   }
-  return plan;
+  fly::RecordingOptions recorded;
+  recorded.border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
+  recorded.detector = ground.detector.get();
+  recorded.cell_m = map.cell_m;
+  recorded.step_s = options.plan.handling.step_s;
+  recorded.most_frames = static_cast<std::size_t>(options.steps.value_or(0));
+  recorded.seed = options.seed;
+  Progress progress("reading", "frames");
+  ground.recordings = fly::read_recordings(
+      options.over, map.zone, recorded, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+  ground.footprint = ground.recordings.front().frames.front().footprint;
 }
 
-GridBox flying_box(const FlyOptions& options, const MapView& map, const GridBox& ground) {
-  const Footprint footprint = footprint_of(options);
+/// Where the whole footprint lies on the map and on what is flown over, whatever the heading.
+GridBox flying_box(const Footprint& footprint, const GridBox& map, const GridBox& ground) {
   const double margin = 0.5 * std::hypot(footprint.width_m, footprint.height_m);
-  const GridBox box = grown(intersection(map.extent, ground), -margin);
+  const GridBox box = grown(intersection(map, ground), -margin);
   if (!box.empty()) return box;
   throw InvalidInput("no-place-to-fly",
                      "the footprint does not fit where map and imagery overlap: make it smaller with --footprint-m");
@@ -116,6 +98,81 @@ std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options
   const auto points =
       options.course == "survey" ? fly::survey_lanes(box, options.lane_m) : fly::read_waypoints(options.course, zone);
   return [=] { return fly::make_waypoint_pilot(points, handling); };
+}
+
+Flights simulated_flights(const FlyOptions& options, const MapView& map, const Ground& ground,
+                          const fly::FlightPlan& plan, int number) {
+  const GridBox box = flying_box(ground.footprint, map.extent, ground.box);
+  const auto pilot = pilots_of(options, box, map.zone);
+  return {[=, &ground](int, std::uint64_t seed, const std::function<void()>& seen) {
+            return fly::fly(plan, box, *pilot(), *ground.sensor, seed, seen);
+          },
+          number, static_cast<std::int64_t>(number) * plan.steps};
+}
+
+Flights recorded_flights(const Ground& ground, const fly::FlightPlan& plan, int number) {
+  const auto recording_of = [&ground](int flight) -> const fly::Recording& {
+    return ground.recordings[static_cast<std::size_t>(flight) % ground.recordings.size()];
+  };
+  std::int64_t steps = 0;
+  for (int flight = 0; flight < number; ++flight) steps += std::ssize(recording_of(flight).frames);
+  return {[=](int flight, std::uint64_t seed, const std::function<void()>& seen) {
+            return fly::replay(recording_of(flight), plan, seed, seen);
+          },
+          number, steps};
+}
+
+}  // namespace
+
+MapView map_of(const FlyOptions& options) {
+  const auto reader = std::make_shared<const MapReader>(options.map);
+  constexpr std::size_t kSearchCacheBytes = std::size_t{1} << 30;  // all flights search the same map
+  MapView map = view_of(reader, std::filesystem::path(options.map).stem().string(), kSearchCacheBytes);
+  return options.area_m > 0.0 ? fly::middle_of(map, options.area_m) : map;
+}
+
+Ground ground_of(const FlyOptions& options, const MapView& map) {
+  const std::filesystem::path kind = std::filesystem::path(options.over).extension();
+  const bool over_a_map = options.over.empty() || kind == ".gpkg";
+  const bool sends_frames = options.send == "frames";
+  if (sends_frames) require_sendable_frames(options, !over_a_map);
+  Ground ground;
+  ground.footprint = {options.footprint_m.front(), options.footprint_m.back()};
+  if (over_a_map) {
+    look_at_map(options, map, ground);
+    return ground;
+  }
+  if (!sends_frames) ground.detector = make_detector(options.detector);
+  if (kind == ".csv") {
+    look_at_recordings(options, map, ground);
+  } else {
+    look_at_imagery(options, map, ground);
+  }
+  ground.what = fmt::format("frames of {}, {}", options.over,
+                            sends_frames ? "roads detected by the service" : ground.detector->describe());
+  return ground;
+}
+
+fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
+  fly::FlightPlan plan = options.plan;
+  plan.steps = options.steps.value_or(plan.steps);
+  plan.handling = handling_of(options);
+  plan.odometry.turn = Angle::degrees(options.turn_noise_deg);
+  plan.odometry.turn_drift = Angle::degrees(options.turn_drift_deg);
+  plan.tells_odometry = !options.no_odometry;
+  plan.registration_m = options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m);
+  if (!options.outage.empty()) plan.outage = fly::StepRange{options.outage[0], options.outage[1]};
+  if (!options.kidnap.empty()) {
+    plan.kidnapping = fly::Kidnapping{static_cast<int>(options.kidnap[0]), options.kidnap[1]};
+  }
+  return plan;
+}
+
+Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground, const fly::FlightPlan& plan) {
+  const int recordings = static_cast<int>(ground.recordings.size());
+  const int number = options.vehicles > 0 ? options.vehicles : options.runs * std::max(1, recordings);
+  return recordings > 0 ? recorded_flights(ground, plan, number)
+                        : simulated_flights(options, map, ground, plan, number);
 }
 
 VehicleNoise vehicle_of(const FlyOptions& options) {

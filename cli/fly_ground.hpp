@@ -1,12 +1,14 @@
-// What a vehicle of `roadfix fly` flies over, where, and how.
+// What a vehicle of `roadfix fly` flies over, where, and how: simulated, or as it was recorded.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "cli/fly/pilot.hpp"
+#include "cli/fly/campaign.hpp"
+#include "cli/fly/recording.hpp"
 #include "cli/fly_options.hpp"
 #include "core/locate/tracker.hpp"
 
@@ -19,19 +21,28 @@ MapView map_of(const FlyOptions& options);
 struct Ground {
   std::optional<Orthoimage> imagery;
   std::unique_ptr<RoadDetector> detector;
-  std::unique_ptr<fly::Sensor> sensor;
+  std::unique_ptr<fly::Sensor> sensor;     ///< null where flights were recorded
+  std::vector<fly::Recording> recordings;  ///< empty where flights are simulated
   GridBox box;
+  Footprint footprint;  ///< of a recorded flight that of its first frame
   std::string what;
 };
 
-Footprint footprint_of(const FlyOptions& options);
+/// Throws InvalidInput for options that do not go together, and what reading the ground throws.
 Ground ground_of(const FlyOptions& options, const MapView& map);
 fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground);
-/// Where the whole footprint lies on the map and on what is flown over, whatever the heading. Throws InvalidInput
-/// "no-place-to-fly".
-GridBox flying_box(const FlyOptions& options, const MapView& map, const GridBox& ground);
-std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options, const GridBox& box,
-                                                       const UtmZone& zone);
+
+/// What a campaign flies, and how much of it.
+struct Flights {
+  fly::FlightSource source;
+  int number = 0;
+  std::int64_t steps = 0;  ///< of all, at most
+};
+
+/// `ground` must outlive them. Throws InvalidInput "no-place-to-fly" where the footprint does not fit on the map and on
+/// what is flown over, and what reading waypoints throws.
+Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground, const fly::FlightPlan& plan);
+
 VehicleNoise vehicle_of(const FlyOptions& options);
 
 }  // namespace roadfix::cli

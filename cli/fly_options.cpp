@@ -11,9 +11,13 @@ namespace {
 
 void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_option("map", o.map, "Map file (GeoPackage) to localize on")->required();
-  command.add_option("--over", o.over,
-                     "What lies below: georeferenced imagery, or another map; default: the map itself, as feature maps "
-                     "with errors");
+  command.add_option(
+      "--over", o.over,
+      "What lies below: georeferenced imagery; another map; or FRAMES.csv, a recorded flight with its "
+      "true poses, one for each sequence (columns as of the frames of roadfix bench, and time_s); default: "
+      "the map itself, as feature maps with errors");
+  command.add_flag("--black-unseen", o.black_unseen,
+                   "Recorded flights: black areas at the rim of a frame were not seen");
   command
       .add_option("--filter", o.filters, std::string("One or more of ") + fly::kFilterNames + ", over the same flights")
       ->delimiter(',')
@@ -22,7 +26,8 @@ void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_option("--measure-every", o.measure_every, "Weight by every k-th frame only")
       ->capture_default_str()
       ->check(positive());
-  command.add_option("--runs", o.runs, "Flights, with seeds that count up")
+  command
+      .add_option("--runs", o.runs, "Flights, with seeds that count up; of a recorded flight so many of each sequence")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
   command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str();
@@ -40,8 +45,11 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
   add("--course", o.course, "random, survey, or a GeoJSON file of waypoints")->type_name("COURSE");
   add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(positive());
   add("--area-m", o.area_m, "Only the square of this side in the middle of the map; 0 = all")->check(not_negative());
-  add("--steps", o.plan.steps, "Steps of a flight, at most")->check(CLI::Range(1, 100'000));
-  add("--step-s", o.plan.handling.step_s, "Seconds between steps")->check(positive());
+  command.add_option("--steps", o.steps, "Steps of a flight, at most; default: 100, of a recorded flight all")
+      ->group(kGroup)
+      ->check(CLI::Range(1, 100'000));
+  add("--step-s", o.plan.handling.step_s, "Seconds between steps; of a recorded flight where it has no times")
+      ->check(positive());
   add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(not_negative());
   add("--turn-rate", o.turn_rate_deg, "Fastest turn in degrees per second")->check(not_negative());
   add("--footprint-m", o.footprint_m, "Ground that a frame shows: side, or width,height")

@@ -17,11 +17,13 @@ namespace roadfix::cli {
 struct FlyOptions {
   std::string map;
   std::string over;
+  bool black_unseen = false;
   std::string course = "random";
   double lane_m = 300.0;
   double area_m = 0.0;
   std::vector<double> footprint_m{400.0};
   fly::FlightPlan plan;
+  std::optional<int> steps;  ///< default: those of the plan; of a recorded flight all
   double turn_rate_deg = 10.0;
   double turn_noise_deg = 0.3;
   double turn_drift_deg = 0.05;

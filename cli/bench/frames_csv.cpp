@@ -28,21 +28,28 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+std::optional<std::size_t> place_of(const std::vector<std::string_view>& names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
 struct Columns {
   std::array<std::size_t, 5> place{};
   std::optional<std::size_t> sequence;
+  std::optional<std::size_t> time;
   static constexpr std::array<std::string_view, 5> kNames{"file", "lat", "lon", "heading_deg", "gsd_m"};
 
   static Columns of(std::string_view header) {
     const auto names = split(header, ',');
     Columns columns;
     for (std::size_t i = 0; i < kNames.size(); ++i) {
-      const auto found = std::ranges::find(names, kNames[i]);
-      if (found == names.end()) refuse(1, fmt::format("the column '{}' is missing", kNames[i]));
-      columns.place[i] = static_cast<std::size_t>(found - names.begin());
+      const auto found = place_of(names, kNames[i]);
+      if (!found) refuse(1, fmt::format("the column '{}' is missing", kNames[i]));
+      columns.place[i] = *found;
     }
-    const auto found = std::ranges::find(names, "sequence");
-    if (found != names.end()) columns.sequence = static_cast<std::size_t>(found - names.begin());
+    columns.sequence = place_of(names, "sequence");
+    columns.time = place_of(names, "time_s");
     return columns;
   }
 };
@@ -62,10 +69,16 @@ FrameTruth parse_line(std::string_view text, int line, const Columns& columns) {
   const auto value = [&](std::size_t i, double low, double high) {
     return number(fields[columns.place[i]], line, Columns::kNames[i], low, high);
   };
+  const auto optional_field = [&](const std::optional<std::size_t>& column) {
+    return column && *column < fields.size() ? fields[*column] : std::string_view();
+  };
+  const std::string_view time = optional_field(columns.time);
+  constexpr double kLongestS = 1e10;  // Unix times too
   return {std::string(fields[columns.place[0]]),
           {{value(1, -90.0, 90.0), value(2, -180.0, 180.0)}, Angle::degrees(value(3, -360.0, 360.0))},
           value(4, 1e-3, 1e3),
-          columns.sequence && *columns.sequence < fields.size() ? std::string(fields[*columns.sequence]) : ""};
+          std::string(optional_field(columns.sequence)),
+          time.empty() ? std::nullopt : std::optional(number(time, line, "time_s", -kLongestS, kLongestS))};
 }
 
 }  // namespace

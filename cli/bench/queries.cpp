@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 
-#include "cli/bench/frames_csv.hpp"
+#include "cli/bench/frame_files.hpp"
 #include "cli/bench/query_poses.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
@@ -129,15 +126,7 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
 }
 
 GroundImage picture_of(const FrameTruth& frame, const QuerySet& set) {
-  const cv::Mat decoded = cv::imread((set.path.parent_path() / frame.file).string(), cv::IMREAD_UNCHANGED);
-  if (decoded.empty())
-    throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
-  return frame_image(decoded, frame.gsd_m, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
-}
-
-/// As odometry without error would tell it.
-BodyOffset offset_of(const GeoPose& earlier, const GeoPose& reference, const UtmZone& zone) {
-  return offset_from(on_grid(reference, zone), on_grid(earlier, zone));
+  return read_frame(set.path.parent_path(), frame, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
 }
 
 std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
@@ -147,15 +136,14 @@ std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<Fra
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
     if (frame.sequence != reference.sequence) break;
-    earlier.push_back({picture_of(frame, set), offset_of(frame.pose, reference.pose, zone)});
+    const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
+    earlier.push_back({picture_of(frame, set), offset});
   }
   return earlier;
 }
 
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
-  std::ifstream in(set.path, std::ios::binary);
-  if (!in) throw NotFound("frames-missing", fmt::format("{} cannot be opened", set.path.string()));
-  const auto frames = parse_frames_csv(std::string{std::istreambuf_iterator<char>(in), {}});
+  const auto frames = read_frames_csv(set.path);
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];

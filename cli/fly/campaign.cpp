@@ -12,9 +12,7 @@ namespace {
 class Counter {
  public:
   explicit Counter(const Campaign& campaign)
-      : campaign_(campaign),
-        total_(static_cast<std::int64_t>(campaign.runs) * campaign.plan.steps *
-               static_cast<std::int64_t>(1 + campaign.filters.size())) {}
+      : campaign_(campaign), total_(campaign.steps * static_cast<std::int64_t>(1 + campaign.filters.size())) {}
 
   void step() {
     if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
@@ -38,8 +36,7 @@ std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
   parallel_for(campaign.runs, campaign.jobs, [&](int flight_number) {
     const auto i = static_cast<std::size_t>(flight_number);
     const std::uint64_t seed = campaign.seed + i;
-    const auto pilot = campaign.pilot();
-    const Flight flight = fly(campaign.plan, campaign.box, *pilot, *campaign.sensor, seed, [&] { counter.step(); });
+    const Flight flight = campaign.flight(flight_number, seed, [&] { counter.step(); });
     for (FilterRuns& result : results) {
       const auto localizer = campaign.localizer(result.filter, seed);
       result.runs[i] = {seed, localize(flight, *localizer, zone, [&](const Record& record, const Localizer& at) {

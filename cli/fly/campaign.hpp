@@ -21,11 +21,12 @@ struct FilterRuns {
 /// Makes the localizer of a flight: by the name of the filter, with that seed.
 using LocalizerFactory = std::function<std::unique_ptr<Localizer>(const std::string& filter, std::uint64_t seed)>;
 
+/// A flight, by its number and seed; `seen` is to be called after each step.
+using FlightSource = std::function<Flight(int number, std::uint64_t seed, const std::function<void()>& seen)>;
+
 struct Campaign {
-  FlightPlan plan;
-  GridBox box;  ///< where the vehicle flies
-  std::function<std::unique_ptr<Pilot>()> pilot;
-  const Sensor* sensor = nullptr;
+  FlightSource flight;
+  std::int64_t steps = 0;  ///< of all flights together, for the progress
   LocalizerFactory localizer;
   std::vector<std::string> filters;
   int runs = 1;

@@ -50,9 +50,7 @@ class Sight {
 
   Sighting at(int step, const GridPose& pose) const {
     Random random = stream(seed_, kCamera, static_cast<std::uint64_t>(step));
-    const bool lost = uniform(random, 0.0, 1.0) < plan_.missing_share;
-    if (lost || step % plan_.frame_every != 0) return {};
-    if (plan_.outage && plan_.outage->contains(step)) return {};
+    if (!frame_comes(plan_, step, random)) return {};
     return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
                        random);
   }
@@ -65,6 +63,11 @@ class Sight {
 };
 
 }  // namespace
+
+bool frame_comes(const FlightPlan& plan, int step, Random& random) {
+  const bool lost = uniform(random, 0.0, 1.0) < plan.missing_share;
+  return !lost && step % plan.frame_every == 0 && !(plan.outage && plan.outage->contains(step));
+}
 
 Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,
            const std::function<void()>& seen) {

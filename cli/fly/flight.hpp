@@ -55,6 +55,9 @@ struct Moment {
 
 using Flight = std::vector<Moment>;
 
+/// Whether the plan has a frame at this step, some of them lost at random.
+bool frame_comes(const FlightPlan& plan, int step, bench::Random& random);
+
 /// Equal arguments give equal flights; what the steps see does not depend on the other steps. `seen` is called after
 /// each step. Throws InvalidInput "no-place-to-fly", "kidnapping-too-far".
 Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,

@@ -22,19 +22,23 @@ double normal(bench::Random& random) {
   return radius * std::cos(bench::uniform(random, 0.0, 2.0 * std::numbers::pi));
 }
 
+OdometrySensor::OdometrySensor(const OdometryErrors& errors, bench::Random& random)
+    : errors_(errors), scale_(1.0 + errors.scale * normal(random)), turn_drift_(normal(random) * errors.turn_drift) {}
+
+Odometry OdometrySensor::tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const {
+  const double spread = errors_.share * length_m;
+  return {scale_ * moved.forward_m + spread * normal(random), scale_ * moved.right_m + spread * normal(random),
+          moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn};
+}
+
 Vehicle::Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random)
-    : pose_(start),
-      handling_(handling),
-      errors_(errors),
-      scale_(1.0 + errors.scale * normal(random)),
-      turn_drift_(normal(random) * errors.turn_drift) {}
+    : pose_(start), handling_(handling), odometry_(errors, random) {}
 
 Odometry Vehicle::move(Angle turn, bench::Random& random) {
-  const Odometry step = arc(handling_.speed_m_s * handling_.step_s, turn);
+  const double length_m = handling_.speed_m_s * handling_.step_s;
+  const Odometry step = arc(length_m, turn);
   pose_ = moved(pose_, step);
-  const double spread = errors_.share * handling_.speed_m_s * handling_.step_s;
-  return {scale_ * step.forward_m + spread * normal(random), scale_ * step.right_m + spread * normal(random),
-          turn + handling_.step_s * turn_drift_ + normal(random) * errors_.turn};
+  return odometry_.tell(step, length_m, handling_.step_s, random);
 }
 
 }  // namespace roadfix::fly

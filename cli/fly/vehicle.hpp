@@ -15,6 +15,20 @@ struct OdometryErrors {
   Angle turn_drift = Angle::degrees(0.05);  ///< per second
 };
 
+/// Of one flight: what it draws once is drawn when it is made.
+class OdometrySensor {
+ public:
+  OdometrySensor(const OdometryErrors& errors, bench::Random& random);
+
+  /// What it says of a motion of that length and duration.
+  Odometry tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
+
+ private:
+  OdometryErrors errors_;
+  double scale_;
+  Angle turn_drift_;
+};
+
 class Vehicle {
  public:
   Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random);
@@ -29,9 +43,7 @@ class Vehicle {
  private:
   GridPose pose_;
   Handling handling_;
-  OdometryErrors errors_;
-  double scale_ = 1.0;
-  Angle turn_drift_;
+  OdometrySensor odometry_;
 };
 
 /// Standard normal, the same on every platform.

@@ -16,12 +16,15 @@ using testing::ProgramResult;
 using testing::run_program;
 using testing::text_of;
 
+constexpr int kFrames = 3;
+
 class FlyCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     shared_folder = new testing::TemporaryFolder;
     const std::string town = (*shared_folder / "town").string();
-    ASSERT_EQ(roadfix("world " + town + " --size-km 0.7x0.7 --frames 0").code, 0);
+    ASSERT_EQ(
+        roadfix("world " + town + " --size-km 0.7x0.7 --footprint-m 300 --frames " + std::to_string(kFrames)).code, 0);
     ASSERT_EQ(roadfix("ingest " + town + "/pre.tif --detector tree --map " + map()).code, 0);
   }
   static void TearDownTestSuite() {
@@ -56,6 +59,17 @@ TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
   EXPECT_EQ(nlohmann::json::parse(text_of(file("out.geojson")))["type"], "FeatureCollection");
   EXPECT_TRUE(std::filesystem::exists(file("pictures/paper-0002.png")));
   EXPECT_GT(std::filesystem::file_size(file("film.gif")), 1000u);
+}
+
+TEST_F(FlyCommand, ReplaysARecordedFlight) {
+  const std::string replay = "fly " + map() + " --over " + file("town/frames/frames.csv") +
+                             " --detector tree --tree-roots 500 --particles 500";
+  const ProgramResult flown = roadfix(replay + " --csv " + file("replay.csv"));
+  ASSERT_EQ(flown.code, 0) << flown.err;
+  EXPECT_THAT(flown.out, HasSubstr("frames.csv"));
+  const std::string table = text_of(file("replay.csv"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 1 + kFrames);
+  EXPECT_THAT(roadfix(replay + " --course survey").err, HasSubstr("recorded-course"));
 }
 
 TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {

@@ -25,11 +25,12 @@ class Vehicles : public ::testing::Test {
  protected:
   Vehicles() {
     testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0);
-    campaign_.plan.steps = kSteps;
-    campaign_.plan.missing_share = 0.2;
-    campaign_.box = {{600'500.0, 6'399'500.0}, {600'800.0, 6'399'800.0}};
-    campaign_.pilot = [this] { return make_random_pilot(campaign_.box, campaign_.plan.handling); };
-    campaign_.sensor = sensor_.get();
+    flight_plan_.steps = kSteps;
+    flight_plan_.missing_share = 0.2;
+    campaign_.flight = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
+      const GridBox box{{600'500.0, 6'399'500.0}, {600'800.0, 6'399'800.0}};
+      return fly(flight_plan_, box, *make_random_pilot(box, flight_plan_.handling), *sensor_, seed, seen);
+    };
     campaign_.filters = {"default"};
     campaign_.runs = kVehicles;
     campaign_.jobs = kVehicles;
@@ -71,6 +72,7 @@ class Vehicles : public ::testing::Test {
   const testing::TemporaryFolder folder_;
   MapView map_ = testing::view_of(town_.roads);
   std::unique_ptr<Sensor> sensor_ = make_simulated_sensor(map_, {250.0, 250.0}, {0.1, 0.1, 0.0, 1.0, 0.0, 0.0});
+  FlightPlan flight_plan_;
   Campaign campaign_;
   ServicePlan plan_;
 };
@@ -96,7 +98,7 @@ void expect_equal(const std::vector<fly::Run>& a, const std::vector<fly::Run>& b
 TEST_F(Vehicles, AreFollowedAndLeaveNoTracksBehind) {
   const auto running = service("tracks.sqlite");
   plan_.keeps_tracks = false;
-  campaign_.plan.missing_share = 0.0;
+  flight_plan_.missing_share = 0.0;
   std::size_t shown = 0;
   campaign_.watch = [&](const std::string&, const Record&, const Localizer& localizer) {
     shown += localizer.particles(50).size();
@@ -109,7 +111,7 @@ TEST_F(Vehicles, AreFollowedAndLeaveNoTracksBehind) {
 
 TEST_F(Vehicles, SayWhyTheyCannotBeFollowed) {
   auto running = service("tracks.sqlite");
-  campaign_.plan.steps = 1;
+  flight_plan_.steps = 1;
   const auto code = [&] { return testing::code_of([&] { flown(running->port()); }); };
   campaign_.filters = {"search"};
   EXPECT_EQ(code(), "filter-unknown");

@@ -25,6 +25,14 @@ TEST(FramesCsv, KnowsTheSequenceWhereThereIsOne) {
   EXPECT_EQ(frames.at(1).sequence, "");
 }
 
+TEST(FramesCsv, KnowsTheTimeWhereThereIsOne) {
+  const auto frames =
+      parse_frames_csv("file,lat,lon,heading_deg,gsd_m,time_s\na,1,1,0,1,12.5\nb,1,1,0,1,\nc,1,1,0,1\n");
+  EXPECT_EQ(frames.at(0).time_s, 12.5);
+  EXPECT_FALSE(frames.at(1).time_s);
+  EXPECT_FALSE(frames.at(2).time_s);
+}
+
 TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   const auto complaint = [](const char* text, const char* part) {
     EXPECT_THAT([&] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;
@@ -34,6 +42,7 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   complaint("file,lat,lon,heading_deg,gsd_m\na,91,0,0,1\n", "lat is '91'");
   complaint("file,lat,lon,heading_deg,gsd_m\na,1,0,0,1\nb,1,nan,0,1\n", "line 3");
   complaint("file,lat,lon,heading_deg,gsd_m\na,1,0\n", "too few");
+  complaint("file,lat,lon,heading_deg,gsd_m,time_s\na,1,1,0,1,12:30\n", "time_s is '12:30'");
 }
 
 }  // namespace

@@ -22,10 +22,11 @@ using testing::code_of;
 class Campaigns : public ::testing::Test {
  protected:
   Campaigns() {
-    campaign.plan.steps = 6;
-    campaign.box = {{600'420.0, 6'399'720.0}, {600'580.0, 6'399'880.0}};
-    campaign.pilot = [this] { return make_random_pilot(campaign.box, campaign.plan.handling); };
-    campaign.sensor = sensor.get();
+    plan.steps = 6;
+    campaign.flight = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
+      const GridBox box{{600'420.0, 6'399'720.0}, {600'580.0, 6'399'880.0}};
+      return fly(plan, box, *make_random_pilot(box, plan.handling), *sensor, seed, seen);
+    };
     campaign.localizer = library_localizers(map, 200, 1, {}, {});
     campaign.filters = {"default", "paper"};
     campaign.runs = 2;
@@ -36,6 +37,7 @@ class Campaigns : public ::testing::Test {
   RoadGrid town = testing::street_map(41, {2.0, {300'100, -3'200'050}, 300, 300});
   MapView map = testing::view_of(town);
   std::unique_ptr<Sensor> sensor = make_simulated_sensor(map, {300.0, 300.0}, {0.1, 0.1, 0.0, 1.0, 0.0, 0.0});
+  FlightPlan plan;
   Campaign campaign;
 };
 

@@ -1,0 +1,126 @@
+#include "cli/fly/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cli/bench/frame_files.hpp"
+#include "cli/fly/vehicle.hpp"
+#include "core/detect/frame.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using bench::FrameTruth;
+
+// Streams of a seed, as those of a simulated flight.
+constexpr std::uint64_t kMotion = 0;
+constexpr std::uint64_t kCamera = 1;
+
+struct Sequence {
+  std::string name;
+  std::vector<FrameTruth> frames;
+};
+
+/// Frames of one sequence need not follow each other in the file.
+std::vector<Sequence> sequences_of(std::vector<FrameTruth> frames, std::size_t most_frames) {
+  std::vector<Sequence> sequences;
+  for (FrameTruth& frame : frames) {
+    auto found = std::ranges::find(sequences, frame.sequence, &Sequence::name);
+    if (found == sequences.end()) found = sequences.insert(found, {frame.sequence, {}});
+    if (most_frames == 0 || found->frames.size() < most_frames) found->frames.push_back(std::move(frame));
+  }
+  return sequences;
+}
+
+/// Seconds of each frame; the first has `step_s`.
+std::vector<double> times_of(const Sequence& sequence, double step_s) {
+  std::vector<double> times;
+  const FrameTruth* before = nullptr;
+  for (const FrameTruth& frame : sequence.frames) {
+    double passed = step_s;
+    if (before != nullptr && frame.time_s && before->time_s) passed = *frame.time_s - *before->time_s;
+    if (!(passed > 0.0)) {
+      throw InvalidInput("recording-time",
+                         fmt::format("{} was taken {} s after {}, the frame before it: put the frames of a sequence in "
+                                     "the order of their times",
+                                     frame.file.string(), passed, before->file.string()));
+    }
+    times.push_back((times.empty() ? 0.0 : times.back()) + passed);
+    before = &frame;
+  }
+  return times;
+}
+
+RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& truth, double time_s, const UtmZone& zone,
+                       const RecordingOptions& options) {
+  GroundImage picture = bench::read_frame(folder, truth, options.border);
+  RecordedFrame frame{on_grid(truth.pose, zone),
+                      time_s,
+                      {picture.pixels.cols * picture.gsd_m, picture.pixels.rows * picture.gsd_m},
+                      {}};
+  if (options.detector != nullptr) {
+    frame.sighting.features =
+        detect_features(*options.detector, rectified(std::move(picture)), options.cell_m, options.seed);
+  } else {
+    frame.sighting.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
+      return CameraFrame{bench::read_frame(folder, truth, border), cell_m, seed};
+    };
+  }
+  return frame;
+}
+
+}  // namespace
+
+std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
+                                       const RecordingOptions& options,
+                                       const std::function<void(std::int64_t, std::int64_t)>& seen) {
+  const std::vector<Sequence> sequences = sequences_of(bench::read_frames_csv(csv), options.most_frames);
+  std::int64_t total = 0;
+  for (const Sequence& sequence : sequences) total += std::ssize(sequence.frames);
+  std::vector<Recording> recordings;
+  std::int64_t done = 0;
+  for (const Sequence& sequence : sequences) {
+    const std::vector<double> times = times_of(sequence, options.step_s);
+    Recording recording{sequence.name, {}};
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      recording.frames.push_back(recorded(csv.parent_path(), sequence.frames[i], times[i], zone, options));
+      seen(++done, total);
+    }
+    recordings.push_back(std::move(recording));
+  }
+  return recordings;
+}
+
+Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t seed,
+              const std::function<void()>& seen) {
+  bench::Random motion = bench::stream(seed, kMotion, 0);
+  const OdometrySensor odometry(plan.odometry, motion);
+  Flight flight;
+  const RecordedFrame* before = nullptr;
+  for (const RecordedFrame& frame : recording.frames) {
+    const int step = static_cast<int>(flight.size());
+    bench::Random camera = bench::stream(seed, kCamera, static_cast<std::uint64_t>(step));
+    Report input;
+    input.sequence = step;
+    input.time_us = std::llround(1e6 * frame.time_s);
+    if (before != nullptr && plan.tells_odometry) {
+      const Odometry moved = offset_from(before->truth, frame.truth);
+      const double length_m = std::hypot(moved.forward_m, moved.right_m);
+      input.odometry = odometry.tell(moved, length_m, frame.time_s - before->time_s, motion);
+    }
+    if (frame_comes(plan, step, camera)) {
+      input.features = frame.sighting.features;
+      input.frame = frame.sighting.frame;
+    }
+    flight.push_back({frame.truth, std::move(input)});
+    before = &frame;
+    seen();
+  }
+  return flight;
+}
+
+}  // namespace roadfix::fly

@@ -1,0 +1,49 @@
+// A flight that was recorded: real frames with their true poses, told to the filters as those of a simulated flight.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/fly/flight.hpp"
+#include "core/detect/frame_image.hpp"
+#include "core/detect/road_detector.hpp"
+
+namespace roadfix::fly {
+
+struct RecordedFrame {
+  GridPose truth;
+  double time_s = 0.0;  ///< since a step before the first frame
+  Footprint footprint;
+  Sighting sighting;
+};
+
+struct Recording {
+  std::string sequence;  ///< as in the CSV; may be empty
+  std::vector<RecordedFrame> frames;
+};
+
+struct RecordingOptions {
+  Border border = Border::kSeen;
+  const RoadDetector* detector = nullptr;  ///< null = frames are kept as pictures, for a detector elsewhere
+  double cell_m = 2.0;                     ///< of the feature maps
+  double step_s = 1.0;                     ///< between frames whose times are not recorded
+  std::size_t most_frames = 0;             ///< of a sequence; 0 = all
+  std::uint64_t seed = 1;                  ///< of the detector
+};
+
+/// The flights of a CSV as bench::read_frames_csv reads it, one for each sequence, in its order. Each frame has its
+/// roads detected once; `seen` is called with (done, of all). Throws as bench::read_frames_csv and bench::read_frame,
+/// and InvalidInput "recording-time" where a sequence's times run backwards.
+std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
+                                       const RecordingOptions& options,
+                                       const std::function<void(std::int64_t, std::int64_t)>& seen);
+
+/// Frames are lost as the plan says, and its odometry's errors are added to the true way from frame to frame. The seed
+/// draws both; `seen` is called after each step.
+Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t seed,
+              const std::function<void()>& seen);
+
+}  // namespace roadfix::fly

@@ -1,0 +1,120 @@
+#include "cli/fly/recording.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using testing::code_of;
+
+/// Every cell of a picture has its brightness.
+class Brightness : public RoadDetector {
+ public:
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t, const std::stop_token&) const override {
+    const auto cells = [&](int pixels) { return static_cast<int>(std::ceil(pixels * image.gsd_m / cell_m)); };
+    return {cells(image.pixels.cols), cells(image.pixels.rows), image.pixels.at<cv::Vec3b>(0, 0)[0]};
+  }
+  double preferred_gsd_m() const override { return 1.0; }
+  double halo_m() const override { return 0.0; }
+  std::string describe() const override { return "brightness"; }
+};
+
+class Recordings : public ::testing::Test {
+ protected:
+  Recordings() {
+    for (const int brightness : {10, 20, 30, 40}) {
+      cv::imwrite((folder / (std::to_string(brightness) + ".png")).string(),
+                  cv::Mat(30, 20, CV_8UC3, cv::Scalar::all(brightness)));
+    }
+    options.detector = &detector;
+  }
+
+  std::vector<Recording> recorded(const std::string& lines) const {
+    std::ofstream(folder / "frames.csv") << "file,lat,lon,heading_deg,gsd_m,sequence,time_s\n" << lines;
+    return read_recordings(folder / "frames.csv", zone, options, [](std::int64_t, std::int64_t) {});
+  }
+  Flight replayed(const Recording& recording, std::uint64_t seed = 1) const {
+    return replay(recording, plan, seed, [] {});
+  }
+
+  const testing::TemporaryFolder folder;
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  const Brightness detector;
+  RecordingOptions options;
+  FlightPlan plan;
+};
+
+constexpr const char* kTwoFlights =
+    "10.png,57.50,21.000,0,2,a,100\n"
+    "20.png,57.51,21.000,90,2,b,7\n"
+    "30.png,57.501,21.000,90,2,a,103.5\n"
+    "40.png,57.501,21.002,180,2,a,\n";
+
+TEST_F(Recordings, AreOneFlightForEachSequenceInTheOrderOfTheirFrames) {
+  const auto recordings = recorded(kTwoFlights);
+  ASSERT_EQ(recordings.size(), 2u);
+  EXPECT_EQ(recordings[0].sequence, "a");
+  ASSERT_EQ(recordings[0].frames.size(), 3u);
+  EXPECT_EQ(recordings[1].frames.size(), 1u);
+  const RecordedFrame& first = recordings[0].frames[0];
+  EXPECT_EQ(first.footprint.width_m, 40.0);
+  EXPECT_EQ(first.footprint.height_m, 60.0);
+  EXPECT_EQ(first.sighting.features->cells, CellArray(20, 30, 10));
+  EXPECT_EQ(recordings[0].frames[1].sighting.features->cells.at(0, 0), 30);
+  options.most_frames = 2;
+  EXPECT_EQ(recorded(kTwoFlights)[0].frames.size(), 2u);
+}
+
+TEST_F(Recordings, AreReplayedAtTheirTimesAndOdometryWithoutErrorsLeadsFromPoseToPose) {
+  plan.odometry = {0.0, Angle(), 0.0, Angle()};
+  const Flight flight = replayed(recorded(kTwoFlights)[0]);
+  ASSERT_EQ(flight.size(), 3u);
+  EXPECT_EQ(flight[1].input.time_us - flight[0].input.time_us, 3'500'000);
+  EXPECT_EQ(flight[2].input.time_us - flight[1].input.time_us, 1'000'000) << "no time is known: a step";
+  EXPECT_FALSE(flight[0].input.odometry);
+  // One thousandth of a degree of latitude at 57.5 degrees is 111.36 m on the ellipsoid, 2 of longitude 119.95 m.
+  const Odometry north = flight[1].input.odometry.value();
+  EXPECT_NEAR(north.forward_m, 111.36, 0.1);
+  EXPECT_NEAR(north.right_m, 0.0, 0.01);
+  EXPECT_NEAR(north.turn.degrees(), 90.0, 0.01);
+  const Odometry east = flight[2].input.odometry.value();
+  EXPECT_NEAR(east.forward_m, 119.95, 0.15);
+  EXPECT_NEAR(east.right_m, 0.0, 0.01);
+  EXPECT_EQ(flight[2].input.features->cells.at(0, 0), 40);
+}
+
+TEST_F(Recordings, HaveOdometryErrorsAndLostFramesByTheSeedAndThePlan) {
+  const Recording recording = recorded(kTwoFlights)[0];
+  const auto forward = [&](std::uint64_t seed) { return replayed(recording, seed)[1].input.odometry->forward_m; };
+  EXPECT_EQ(forward(1), forward(1));
+  EXPECT_NE(forward(1), forward(2));
+  plan.outage = StepRange{1, 2};
+  const Flight flight = replayed(recording);
+  EXPECT_TRUE(flight[0].input.saw());
+  EXPECT_FALSE(flight[1].input.saw());
+  EXPECT_TRUE(flight[1].input.odometry);
+  EXPECT_TRUE(flight[2].input.saw());
+}
+
+TEST_F(Recordings, KeepTheirPicturesForADetectorElsewhere) {
+  options.detector = nullptr;
+  const Flight flight = replayed(recorded(kTwoFlights)[0]);
+  EXPECT_FALSE(flight[1].input.features);
+  EXPECT_EQ(flight[1].input.frame().image.pixels.at<cv::Vec3b>(3, 4)[1], 30);
+}
+
+TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
+  EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
+  EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "image-unreadable");
+  EXPECT_EQ(code_of([&] { read_recordings(folder / "none.csv", zone, options, {}); }), "frames-missing");
+}
+
+}  // namespace
+}  // namespace roadfix::fly

@@ -58,7 +58,7 @@ struct TrackSettings {
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
   /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
   double beyond_map_m = 1000.0;
-  double max_search_km2 = 500.0;          ///< larger priors start uniformly; recovery looks around the last place
+  double max_search_km2 = 2000.0;         ///< larger priors start uniformly; recovery looks around the last place
   std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
   std::shared_ptr<const Calibration> calibration;  ///< of its searches; nullptr = the one that is shipped
 

@@ -26,7 +26,8 @@ def arguments():
     parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
     parser.add_argument("--begin-with", type=Path, metavar="CHECKPOINT", help="its weights instead of random ones")
     parser.add_argument("--teacher", type=Path, nargs="+", default=[], metavar="CHECKPOINT",
-                        help="learn from the mean of these networks too: one network that answers like several")
+                        help="learn too what the mean of these networks says of the crops before augmentation, in any "
+                             "orientation: one network that answers like several in all of them")
     parser.add_argument("--trust", default=0.5, type=float, help="share of the loss that is the teacher's, the rest is the labels' (%(default)s)")
     parser.add_argument("--steps", default=3000, type=int)
     parser.add_argument("--minutes", default=0.0, type=float, help="stop after this time if the steps are not done; 0 = no limit")

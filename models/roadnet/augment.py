@@ -19,8 +19,10 @@ def apply(image, label, weight, gsd_m, rng, strength=1.0):
             (0.35, lambda x: block_shadows(x, gsd_m, rng)),
             (0.10, lambda x: blob_shadow(x, rng)),
             (0.75, lambda x: tone(x, rng)),
+            (0.15, lambda x: season(x, rng)),
             (0.50, lambda x: colour(x, rng)),
             (0.20, lambda x: haze(x, rng)),
+            (0.15, lambda x: sharpen(x, rng)),
             (0.20, lambda x: blur(x, rng)),
             (0.12, lambda x: coarse(x, rng)),
             (0.25, lambda x: noise(x, rng)),
@@ -58,6 +60,12 @@ def tone(image, rng):
     return (x + rng.uniform(-0.15, 0.15)) * 255
 
 
+def season(image, rng):
+    """What is green becomes dry and brown, or greener and darker."""
+    green = np.clip(image[:, :, 1:2] - 0.5 * (image[:, :, :1] + image[:, :, 2:]), 0, None)
+    return image + green * rng.uniform(-1.0, 2.0) * np.array([1.0, -0.4, 0.2], np.float32)
+
+
 def colour(image, rng):
     grey = image.mean(2, keepdims=True)
     kind = rng.random()
@@ -86,6 +94,12 @@ def blur(image, rng):
     if rng.random() < 0.5:
         kernel = kernel.T.copy()
     return cv2.filter2D(image, -1, kernel)
+
+
+def sharpen(image, rng):
+    """The unsharp mask of a sensor's processing, or on larger scales the evened light of a mosaic."""
+    base = cv2.GaussianBlur(image, (0, 0), math.exp(rng.uniform(math.log(0.7), math.log(12))))
+    return image + (image - base) * rng.uniform(0.3, 1.5)
 
 
 def coarse(image, rng):

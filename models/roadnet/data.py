@@ -163,7 +163,8 @@ def warp(level, gsd_m, size, angle, flip, centre, view):
 
 class Crops:
     """Endless augmented crops; crop number i of a seed is always the same one. Augmentation reaches its full strength
-    at crop number `ramp`."""
+    at crop number `ramp`. A crop is the network's input, the same without the augmentation of its colours and objects, label
+    and weight, each with channels first."""
 
     def __init__(self, sets, root, gsd_m, size, seed, ramp=1):
         self.gsd_m, self.size, self.seed, self.ramp = gsd_m, size, seed, ramp
@@ -185,8 +186,10 @@ class Crops:
         rng = np.random.default_rng([self.seed, index])
         chosen = int(rng.choice(len(self.pairs), p=self.shares))
         image, label, weight = self.crop(chosen, self.size, rng)
+        clean = network_input(image, ~augment.weight_is_unseen(image, weight))
         image, weight, seen = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
-        return network_input(image, seen).transpose(2, 0, 1).copy(), label[None], weight[None]
+        changed, clean = (np.ascontiguousarray(x.transpose(2, 0, 1)) for x in (network_input(image, seen), clean))
+        return changed, clean, label[None], weight[None]
 
     def crop(self, chosen, size, rng):
         """A tile that is much smaller than the crop is joined with three others into one."""

@@ -23,7 +23,18 @@ def road_loss(logits, label, weight, missing=0.05):
     return entropy + 0.5 * dice
 
 
-def distillation_loss(logits, taught):
+def distillation_loss(logits, taught, picture):
     """Cross-entropy against the probabilities of a teacher's logits (Hinton, Vinyals and Dean 2015, at temperature 1). It
-    speaks about every cell, also where a label is missing or unsure."""
-    return F.binary_cross_entropy_with_logits(logits, torch.sigmoid(taught))
+    speaks about every cell of the picture that the pupil saw, also where a label is missing or unsure."""
+    seen = (F.max_pool2d(picture.abs().amax(1, keepdim=True), 2) > 0).float()
+    entropy = F.binary_cross_entropy_with_logits(logits, torch.sigmoid(taught), reduction="none")
+    return (entropy * seen).sum() / seen.sum().clamp(min=1)
+
+
+def taught_in_a_random_orientation(teacher, picture, generator):
+    """The teacher's logits of a picture turned by quarters or flipped, turned back. The mean over many crops is what the
+    teacher says on the mean of all eight orientations, for the price of one."""
+    quarters, flip = (int(torch.randint(n, (), generator=generator)) for n in (4, 2))
+    turned = torch.rot90(picture.flip(3) if flip else picture, quarters, (2, 3))
+    back = torch.rot90(teacher(turned.contiguous(memory_format=torch.channels_last)), -quarters, (2, 3))
+    return back.flip(3) if flip else back

@@ -6,7 +6,7 @@ from pathlib import Path
 import torch
 from torch.utils.data import DataLoader, Sampler
 
-from .losses import distillation_loss, road_loss
+from .losses import distillation_loss, road_loss, taught_in_a_random_orientation
 from .metrics import evaluate_pairs
 from .network import RoadNet, read_network
 from .predict import TorchNetwork
@@ -73,11 +73,12 @@ def train(crops, options):
         optimizer.load_state_dict(state["optimizer"])
         first = state["step"]
         print(f"resume from {checkpoint} at step {first}", flush=True)
+    turns = torch.Generator().manual_seed(options.seed + first)
     batches = Consecutive(first * options.batch, options.steps * options.batch)
     loader = DataLoader(crops, options.batch, sampler=batches, num_workers=options.workers)
     started, running = time.time(), None
     over = False
-    for step, (image, label, weight) in zip(range(first, options.steps), loader):
+    for step, (image, clean, label, weight) in zip(range(first, options.steps), loader):
         model.train()
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(step, share_done(step, started, options), options.rate, options.cool)
@@ -85,10 +86,10 @@ def train(crops, options):
         with torch.autocast(device.type, torch.bfloat16, enabled=options.bf16):
             logits = model(picture).float()
             with torch.no_grad():
-                taught = teacher(picture).float() if teacher else None
+                taught = taught_in_a_random_orientation(teacher, clean.to(device), turns).float() if teacher else None
         loss = road_loss(logits, label.to(device), weight.to(device))
         if teacher:
-            loss = (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught)
+            loss = (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)

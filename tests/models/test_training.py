@@ -129,6 +129,26 @@ class Parts(unittest.TestCase):
         other[:, :, 6:] = 30
         self.assertAlmostEqual(losses.road_loss(logits, label, weight).item(), losses.road_loss(other, label, weight).item(), 5)
 
+    def test_a_teacher_is_asked_in_every_orientation_and_answers_in_the_pictures_own(self):
+        asked = []
+
+        def teacher(picture):
+            asked.append(picture.flatten().tolist())
+            return torch.nn.functional.avg_pool2d(picture, 2)
+
+        picture, turns = torch.randn(1, 1, 8, 8), torch.Generator().manual_seed(1)
+        for _ in range(100):
+            answer = losses.taught_in_a_random_orientation(teacher, picture, turns)
+            torch.testing.assert_close(answer, torch.nn.functional.avg_pool2d(picture, 2))
+        self.assertEqual(len({tuple(values) for values in asked}), 8)
+
+    def test_a_teacher_is_not_heard_where_the_pupil_saw_nothing(self):
+        logits, taught, picture = torch.randn(1, 1, 8, 8), torch.randn(1, 1, 8, 8), torch.ones(1, 3, 16, 16)
+        picture[:, :, 12:] = 0
+        other = taught.clone()
+        other[:, :, 6:] = 30
+        self.assertEqual(losses.distillation_loss(logits, taught, picture).item(), losses.distillation_loss(logits, other, picture).item())
+
     def test_precision_and_recall_bear_a_shift_within_the_tolerance_only(self):
         truth = np.zeros((50, 50), bool)
         truth[20:24] = True

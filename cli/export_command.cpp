@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/export/map_export.hpp"
 
 namespace roadfix::cli {
@@ -20,7 +22,7 @@ namespace {
 struct Options {
   std::string map;
   std::string target;
-  ExportFormat format = ExportFormat::kCog;
+  std::string format;
   std::vector<double> bbox;
   std::optional<double> cell_m;
 };
@@ -30,7 +32,7 @@ GridBox box_of(const UtmZone& zone, const std::vector<double>& bbox) {
   const auto [west, south, east, north] = std::array{bbox[0], bbox[1], bbox[2], bbox[3]};
   if (!(west < east) || !(south < north)) {
     throw InvalidInput("bbox-empty",
-                       "--bbox: give WEST SOUTH EAST NORTH in degrees, west below east, south below north");
+                       "--bbox: give WEST,SOUTH,EAST,NORTH in degrees, west below east, south below north");
   }
   // Meridians and parallels are curves on the grid: look along the whole rim.
   constexpr int kSteps = 16;
@@ -48,10 +50,30 @@ GridBox box_of(const UtmZone& zone, const std::vector<double>& bbox) {
   return box;
 }
 
+/// That of the name of the target, where none was asked for.
+ExportFormat format_of(const Options& options) {
+  static const std::map<std::string, ExportFormat> kFormats{
+      {"cog", ExportFormat::kCog},   {"gtiff", ExportFormat::kGeoTiff},    {"png", ExportFormat::kPng},
+      {".tif", ExportFormat::kCog},  {"mbtiles", ExportFormat::kMbTiles},  {".png", ExportFormat::kPng},
+      {".tiff", ExportFormat::kCog}, {".mbtiles", ExportFormat::kMbTiles},
+  };
+  const std::string ending = lower_case(std::filesystem::path(options.target).extension().string());
+  const auto format = kFormats.find(options.format.empty() ? ending : options.format);
+  if (format != kFormats.end()) return format->second;
+  throw InvalidInput("export-format-unknown",
+                     fmt::format("{}: its name does not say in which format: let it end in .tif, .png or .mbtiles, or "
+                                 "give --format",
+                                 options.target));
+}
+
 void run_export(const Options& options) {
   const std::stop_token stop = stop_on_signals();
   const MapReader map(options.map);
-  ExportOptions what{.format = options.format, .cell_m = options.cell_m};
+  std::error_code none;  // where there is no target yet
+  if (std::filesystem::equivalent(options.map, options.target, none)) {
+    throw InvalidInput("target-is-source", fmt::format("{} is the map itself: name another file", options.target));
+  }
+  ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
   if (!options.bbox.empty()) what.box = box_of(map.info().settings.zone, options.bbox);
   Progress progress("export", "%", 0.1);
   export_map(
@@ -64,17 +86,13 @@ void add_export_command(CLI::App& app) {
   auto* command = app.add_subcommand("export", "Writes a map, or a region of it, for other programs");
   command->footer(
       "Examples: roadfix export adiyaman.gpkg adiyaman.tif\n"
-      "          roadfix export adiyaman.gpkg centre.png --format png --bbox 38.26 37.75 38.29 37.77");
+      "          roadfix export adiyaman.gpkg centre.png --bbox 38.26,37.75,38.29,37.77");
   const auto options = std::make_shared<Options>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("target", options->target, "File to write")->required();
-  const std::map<std::string, ExportFormat> formats{{"cog", ExportFormat::kCog},
-                                                    {"gtiff", ExportFormat::kGeoTiff},
-                                                    {"png", ExportFormat::kPng},
-                                                    {"mbtiles", ExportFormat::kMbTiles}};
-  command->add_option("--format", options->format, "cog (default), gtiff, png or mbtiles")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""));
-  command->add_option("--bbox", options->bbox, "Region: WEST SOUTH EAST NORTH in degrees")->expected(4);
+  command->add_option("--format", options->format, "Default: by the end of the target's name, cog for .tif")
+      ->check(CLI::IsMember({"cog", "gtiff", "png", "mbtiles"}));
+  command->add_option("--bbox", options->bbox, "Region: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
   command->add_option("--cell", options->cell_m, "Cell size in metres: that of the map times a power of two");
   command->callback([options] { run_export(*options); });
 }

@@ -1,6 +1,7 @@
 // roadfix info, verify and export as a script meets them: exit codes, JSON on stdout, one line on stderr.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -82,6 +83,25 @@ TEST_F(MapCommands, ExportWritesARegion) {
   const ProgramResult elsewhere = roadfix("export " + arguments + " --bbox 39 37 39.1 37.1");
   EXPECT_EQ(elsewhere.code, 1);
   EXPECT_THAT(elsewhere.err, HasSubstr("[region-outside-map]"));
+}
+
+TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {
+  const auto begin_of = [&](const std::string& name, const std::string& more) {
+    const ProgramResult result =
+        roadfix("export " + path.string() + " " + (folder / name).string() + " --cell 8 " + more);
+    EXPECT_EQ(result.code, 0) << result.err;
+    std::string begin(4, ' ');
+    std::ifstream(folder / name, std::ios::binary).read(begin.data(), 4);
+    return begin;
+  };
+  EXPECT_EQ(begin_of("a.TIF", "--bbox 38.248,37.765,38.25,37.767"), "II*" + std::string(1, '\0'));
+  EXPECT_EQ(begin_of("a.png", ""), "\x89PNG");
+  EXPECT_EQ(begin_of("a.mbtiles", ""), "SQLi");
+  EXPECT_EQ(begin_of("a.out", "--format png"), "\x89PNG");
+  EXPECT_THAT(roadfix("export " + path.string() + " a.jpg").err, HasSubstr("[export-format-unknown]"));
+  EXPECT_EQ(roadfix("export " + path.string() + " a.tif --format jpg").code, 2);
+  EXPECT_THAT(roadfix("export " + path.string() + " " + path.string() + " --format png").err,
+              HasSubstr("[target-is-source]"));
 }
 
 TEST_F(MapCommands, FailureIsOneLineAndWrongUsageIsTwo) {

@@ -12,7 +12,7 @@ import torch
 from roadnet.data import load_pairs, read_sets
 from roadnet.export import difference, export, fit_calibration
 from roadnet.metrics import logits_and_labels
-from roadnet.network import read_network
+from roadnet.network import mean_of_weights, read_network
 from roadnet.predict import TorchNetwork
 
 
@@ -21,6 +21,8 @@ def arguments():
     here = Path(__file__).resolve().parent
     parser.add_argument("--checkpoint", default=[Path("build/roadnet/checkpoint.pt")], type=Path, nargs="+",
                         help="several become one network: the mean of their logits")
+    parser.add_argument("--mean-weights", action="store_true",
+                        help="of several checkpoints of which one began with another, the mean of their weights: no slower than one")
     parser.add_argument("--out", default=here / "roadnet.onnx", type=Path)
     parser.add_argument("--name", default="", help="name in the provenance of maps; the file's stem and the step by default")
     parser.add_argument("--data", default=here.parent / "../shared/data", type=Path)
@@ -38,7 +40,7 @@ def main():
     gsd_m = states[0]["gsd_m"]
     if any(state["gsd_m"] != gsd_m for state in states):
         raise SystemExit("the checkpoints see different metres per pixel: they cannot become one network")
-    model = read_network(options.checkpoint)
+    model = (mean_of_weights if options.mean_weights else read_network)(options.checkpoint)
     held_out = [p for s in read_sets(options.sets, options.data) if s.share > 0 for p in load_pairs(s, options.data)[1]]
     scale, bias = 1.0, 0.0
     if held_out:

@@ -88,5 +88,15 @@ def read_network(checkpoints):
     return Ensemble(members) if len(members) > 1 else members[0]
 
 
+def mean_of_weights(checkpoints):
+    """One network of the averaged weights' mean, for checkpoints of which one began with another (Wortsman et al. 2022,
+    "Model soups"); in evaluation mode."""
+    states = [torch.load(path, map_location="cpu")["averaged"] for path in checkpoints]
+    network = RoadNet()
+    network.load_state_dict({name: torch.stack([state[name].double() for state in states]).mean(0).to(value.dtype)
+                             for name, value in states[0].items()})
+    return network.eval()
+
+
 def twice(x):
     return F.interpolate(x, scale_factor=2.0, mode="nearest")

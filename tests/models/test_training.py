@@ -22,7 +22,7 @@ except ImportError as missing:
 MODELS = Path(__file__).resolve().parents[2] / "models"
 sys.path.insert(0, str(MODELS))
 
-from roadnet import augment, data, losses, metrics  # noqa: E402
+from roadnet import augment, data, losses, metrics, network  # noqa: E402
 
 
 def draw_pairs(folder, count=8, size=160):
@@ -141,6 +141,16 @@ class Parts(unittest.TestCase):
             answer = losses.taught_in_a_random_orientation(teacher, picture, turns)
             torch.testing.assert_close(answer, torch.nn.functional.avg_pool2d(picture, 2))
         self.assertEqual(len({tuple(values) for values in asked}), 8)
+
+    def test_the_mean_of_weights_lies_half_way_between_two_networks(self):
+        with tempfile.TemporaryDirectory() as place:
+            paths = [Path(place) / name for name in ("a.pt", "b.pt")]
+            members = [network.RoadNet() for _ in paths]
+            for path, member in zip(paths, members):
+                torch.save({"averaged": member.state_dict()}, path)
+            mean = network.mean_of_weights(paths)
+            torch.testing.assert_close(mean.head.weight, (members[0].head.weight + members[1].head.weight) / 2)
+            torch.testing.assert_close(network.mean_of_weights(paths[:1]).state_dict(), members[0].state_dict())
 
     def test_a_teacher_is_not_heard_where_the_pupil_saw_nothing(self):
         logits, taught, picture = torch.randn(1, 1, 8, 8), torch.randn(1, 1, 8, 8), torch.ones(1, 3, 16, 16)

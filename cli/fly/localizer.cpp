@@ -88,6 +88,8 @@ TrackSettings filter_named(const std::string& name, int particles) {
   if (name == "search") return settings;
   settings.filter.adapts_count = true;
   if (name == "default") return settings;
+  settings.evidence.kind = EvidenceKind::kDetectionRates;
+  if (name == "rates") return settings;
   throw InvalidInput("filter-unknown", fmt::format("no filter is called '{}'; there are {}", name, kFilterNames));
 }
 

@@ -25,8 +25,9 @@ class Localizer {
 /// The tracker of the library, for flights whose vehicle detects roads itself.
 std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop);
 
-/// From the paper's filter to the default, one improvement after the other.
-inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default";
+/// From the paper's filter to the default, one improvement after the other, and the default that weighs cells one by
+/// one (EvidenceKind::kDetectionRates).
+inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default, rates";
 
 /// Throws InvalidInput "filter-unknown". At most `particles` of them.
 TrackSettings filter_named(const std::string& name, int particles);

@@ -66,6 +66,9 @@ struct TrackSettings {
   static TrackSettings paper(int particles);
 };
 
+/// So long a place is claimed without an accepted measurement; then it is searched for.
+inline constexpr double kStaleAfterS = 60.0;
+
 struct StepInput {
   std::int64_t sequence = 0;         ///< counts up by 1; what is left out counts as lost
   std::int64_t time_us = 0;          ///< of capture, any epoch

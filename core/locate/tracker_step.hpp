@@ -10,9 +10,7 @@
 namespace roadfix {
 
 class Tracker::Step {
-  // Beyond either a place is not claimed, and is searched for.
-  static constexpr double kMostDoubt = 0.4;
-  static constexpr double kStaleAfterS = 60.0;
+  static constexpr double kMostDoubt = 0.4;  // beyond it a place is not claimed, and is searched for
 
  public:
   /// Refers to all but `before`.

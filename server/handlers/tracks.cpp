@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/locate/tracker.hpp"
 #include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
 #include "server/api/feature_request.hpp"
@@ -21,7 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMostHistory = 10'000;
-constexpr std::chrono::seconds kStale{60};  // as long as core/locate trusts a measurement
 constexpr int kMostParticlesShown = 10'000;
 
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
@@ -49,15 +49,16 @@ std::int64_t digest_of(const http::Request& request) {
 
 json track_json(const Service& service, const StoredTrack& track) {
   const auto silent = service.tracks.silent(track.id);
+  const double silent_s = std::chrono::duration<double>(silent).count();
   const auto left = std::max(service.tracks.limits().idle - silent, std::chrono::milliseconds(0));
   return {{"id", track.id},
           {"map", {{"name", track.map}, {"version", track.map_version}}},
           {"request", api::stored_json(track.request)},
           {"created_us", track.created_us},
           {"touched_us", track.touched_us},
-          {"silent_s", std::chrono::duration<double>(silent).count()},
+          {"silent_s", silent_s},
           {"expires_in_s", std::chrono::duration<double>(left).count()},
-          {"stale", silent >= kStale}};
+          {"stale", silent_s >= kStaleAfterS}};
 }
 
 http::Response post_track(const Service& service, const http::Request& request) {

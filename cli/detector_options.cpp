@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace roadfix::cli {
 
@@ -44,7 +45,7 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
 void add_detector_options(CLI::App& command, DetectorChoice& choice) {
   command.add_option("--detector", choice.name, "Road detector")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "neural", "tree"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kDetectorNames.begin(), kDetectorNames.end())));
   command.add_option("--model", choice.model, "ONNX file of the neural detector, with its JSON beside it")
       ->type_name("FILE");
   command

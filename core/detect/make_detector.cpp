@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/detect/model_files.hpp"
 #include "core/detect/neural_detector.hpp"
 #include "core/units/error.hpp"
@@ -9,9 +11,9 @@
 namespace roadfix {
 
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
-  if (choice.name != "auto" && choice.name != "neural" && choice.name != "tree") {
-    throw InvalidInput("unknown-detector",
-                       fmt::format("\"{}\" is no detector: choose one of {}.", choice.name, kDetectorNames));
+  if (std::ranges::find(kDetectorNames, choice.name) == kDetectorNames.end()) {
+    throw InvalidInput("unknown-detector", fmt::format("\"{}\" is no detector: choose one of {}.", choice.name,
+                                                       fmt::join(kDetectorNames, ", ")));
   }
   if (choice.name == "tree") {
     if (!choice.model.empty()) {

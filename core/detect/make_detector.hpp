@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -19,7 +20,7 @@ struct DetectorChoice {
 };
 
 /// "auto": neural where `model` is named or default_model() finds one, else the tree.
-inline constexpr const char* kDetectorNames = "auto, neural, tree";
+inline constexpr std::array<const char*, 3> kDetectorNames{"auto", "neural", "tree"};
 
 /// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network" and those
 /// of the detectors' constructors.

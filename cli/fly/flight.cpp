@@ -49,7 +49,7 @@ class Sight {
   }
 
   Sighting at(int step, const GridPose& pose) const {
-    Random random = stream(seed_, kCamera, static_cast<std::uint64_t>(step));
+    Random random = camera_stream(seed_, step);
     if (!frame_comes(plan_, step, random)) return {};
     return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
                        random);
@@ -64,6 +64,10 @@ class Sight {
 
 }  // namespace
 
+Random motion_stream(std::uint64_t seed) { return stream(seed, kMotion, 0); }
+
+Random camera_stream(std::uint64_t seed, int step) { return stream(seed, kCamera, static_cast<std::uint64_t>(step)); }
+
 bool frame_comes(const FlightPlan& plan, int step, Random& random) {
   const bool lost = uniform(random, 0.0, 1.0) < plan.missing_share;
   return !lost && step % plan.frame_every == 0 && !(plan.outage && plan.outage->contains(step));
@@ -71,7 +75,7 @@ bool frame_comes(const FlightPlan& plan, int step, Random& random) {
 
 Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,
            const std::function<void()>& seen) {
-  Random random = stream(seed, kMotion, 0);
+  Random random = motion_stream(seed);
   Vehicle vehicle(first_pose(pilot, sensor, random), plan.handling, plan.odometry, random);
   const Sight sight(plan, sensor, seed);
   Flight flight;

@@ -55,6 +55,10 @@ struct Moment {
 
 using Flight = std::vector<Moment>;
 
+/// Streams of a flight's seed: what is drawn for the motion, and for the camera at each step.
+bench::Random motion_stream(std::uint64_t seed);
+bench::Random camera_stream(std::uint64_t seed, int step);
+
 /// Whether the plan has a frame at this step, some of them lost at random.
 bool frame_comes(const FlightPlan& plan, int step, bench::Random& random);
 

@@ -16,10 +16,6 @@ namespace {
 
 using bench::FrameTruth;
 
-// Streams of a seed, as those of a simulated flight.
-constexpr std::uint64_t kMotion = 0;
-constexpr std::uint64_t kCamera = 1;
-
 struct Sequence {
   std::string name;
   std::vector<FrameTruth> frames;
@@ -97,13 +93,13 @@ std::vector<Recording> read_recordings(const std::filesystem::path& csv, const U
 
 Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t seed,
               const std::function<void()>& seen) {
-  bench::Random motion = bench::stream(seed, kMotion, 0);
+  bench::Random motion = motion_stream(seed);
   const OdometrySensor odometry(plan.odometry, motion);
   Flight flight;
   const RecordedFrame* before = nullptr;
   for (const RecordedFrame& frame : recording.frames) {
     const int step = static_cast<int>(flight.size());
-    bench::Random camera = bench::stream(seed, kCamera, static_cast<std::uint64_t>(step));
+    bench::Random camera = camera_stream(seed, step);
     Report input;
     input.sequence = step;
     input.time_us = std::llround(1e6 * frame.time_s);

@@ -20,8 +20,8 @@ bool is_same_place(const GridPose& a, const GridPose& b) {
 std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
   GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
   for (std::size_t i = 0; i < p.size(); ++i) {
-    box.min = {std::min(box.min.east_m, p.east_m[i]), std::min(box.min.north_m, p.north_m[i])};
-    box.max = {std::max(box.max.east_m, p.east_m[i]), std::max(box.max.north_m, p.north_m[i])};
+    const GridPoint at{p.east_m[i], p.north_m[i]};
+    box = united(box, {at, at});
   }
   const GridPoint centre = box.centre();
   const double radius_m = distance_m(box.min, box.max) / 2.0;

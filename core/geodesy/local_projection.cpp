@@ -67,12 +67,17 @@ ProjectedPoint LocalProjection::at(LatLon point) const {
   return {{sum(east_), sum(north_)}, Angle::radians(sum(convergence_))};
 }
 
+PointProjector::Box& PointProjector::box_of(BoxIndex index) {
+  if (last_ == boxes_.end() || last_->first != index) last_ = boxes_.try_emplace(index).first;
+  return last_->second;
+}
+
 std::optional<ProjectedPoint> PointProjector::operator()(LatLon point) {
   constexpr double kTurn = 360.0;
   if (!(std::abs(point.lat_deg) <= 90.0) || !(std::abs(point.lon_deg) <= kTurn)) return exactly(zone_, point);
   const double row = std::floor(point.lat_deg / LocalProjection::kSideDeg);
   const double col = std::floor(point.lon_deg / LocalProjection::kSideDeg);
-  Box& box = boxes_[{static_cast<int>(row), static_cast<int>(col)}];
+  Box& box = box_of({static_cast<int>(row), static_cast<int>(col)});
   if (++box.asked == kAskedOften) {
     box.local = LocalProjection::over(zone_, {row * LocalProjection::kSideDeg, col * LocalProjection::kSideDeg});
   }

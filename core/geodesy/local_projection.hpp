@@ -44,17 +44,23 @@ class LocalProjection {
 class PointProjector {
  public:
   explicit PointProjector(const UtmZone& zone) : zone_(zone) {}
+  PointProjector(const PointProjector&) = delete;
+  PointProjector& operator=(const PointProjector&) = delete;
   /// nullopt where UTM is undefined. Throws InvalidInput for NaN and out-of-range values.
   std::optional<ProjectedPoint> operator()(LatLon point);
 
  private:
+  using BoxIndex = std::pair<int, int>;
   struct Box {
     int asked = 0;
     std::optional<LocalProjection> local;
   };
 
+  Box& box_of(BoxIndex index);
+
   UtmZone zone_;
-  std::map<std::pair<int, int>, Box> boxes_;
+  std::map<BoxIndex, Box> boxes_;
+  std::map<BoxIndex, Box>::iterator last_ = boxes_.end();  ///< asked for: the next point is mostly there too
 };
 
 }  // namespace roadfix

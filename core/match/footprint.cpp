@@ -47,7 +47,7 @@ Footprint::Footprint(const FeatureMap& north_up) {
   const int nadir_col = static_cast<int>(std::floor(north_up.nadir.col));
   const int nadir_row = static_cast<int>(std::floor(north_up.nadir.row));
   const std::size_t blocks_of_row = (static_cast<std::size_t>(cells.cols()) + kAlignment - 1) / kAlignment;
-  values_.reserve(blocks_of_row * static_cast<std::size_t>(cells.rows()));
+  values_.reserve(blocks_of_row * static_cast<std::size_t>(cells.rows()) + 1);
   for (int r = 0; r < cells.rows(); ++r) {
     const auto row = cells.row(r);
     const std::size_t first = unobserved_before(row);
@@ -60,6 +60,7 @@ Footprint::Footprint(const FeatureMap& north_up) {
     std::memcpy(values_.data()->cells + rows_.back().offset, &row[first], last - first);
     reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
   }
+  values_.resize((values_.size() + 1) / 2 * 2);
   mask_.resize(values_.size());
   for (std::size_t i = 0; i < values_.size(); ++i) mask_and_count(values_[i], mask_[i]);
 }

@@ -15,7 +15,7 @@ namespace roadfix {
 /// Observed cells only matter, so each row keeps just the span from its first to its last observed cell.
 class Footprint {
  public:
-  static constexpr int kAlignment = 64;
+  static constexpr int kAlignment = 32;
   static constexpr int kMaxCols = 65536;
 
   struct Row {
@@ -30,7 +30,7 @@ class Footprint {
   explicit Footprint(const FeatureMap& north_up);
 
   std::span<const Row> rows() const { return rows_; }
-  /// 0..254, 0 where unobserved or padding.
+  /// 0..254, 0 where unobserved or padding. Of an even number of blocks of kAlignment.
   const std::uint8_t* values() const { return values_.data()->cells; }
   /// 255 where observed, else 0.
   const std::uint8_t* mask() const { return mask_.data()->cells; }

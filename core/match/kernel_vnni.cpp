@@ -22,19 +22,37 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kStep = 64;
-static_assert(kStep == Footprint::kAlignment);
+constexpr int kHalf = Footprint::kAlignment;
+static_assert(2 * kHalf == kStep);
 // A vector adds at most 4 * 254 * 128 to a 32-bit lane: after so many vectors the lanes are emptied.
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 128 < (std::size_t{1} << 31));
 
-/// Where the map's cells below each vector of the footprint's values lie, as seen from that below the nadir.
-std::vector<std::ptrdiff_t> offsets_of(const Footprint& footprint, std::ptrdiff_t stride) {
-  std::vector<std::ptrdiff_t> offsets;
+/// Where the map's cells below the two halves of a vector of the footprint's values lie, as seen from that below the
+/// nadir. Turned footprints have many short rows: two of them fit a vector.
+struct Offsets {
+  std::ptrdiff_t low = 0;
+  std::ptrdiff_t high = 0;
+};
+
+std::vector<Offsets> offsets_of(const Footprint& footprint, std::ptrdiff_t stride) {
+  std::vector<Offsets> offsets;
   offsets.reserve(2 * footprint.rows().size());
+  bool low = true;
   for (const Footprint::Row& row : footprint.rows()) {
-    for (int i = 0; i < row.cells; i += int{kStep}) offsets.push_back(row.row * stride + row.first_col + i);
+    for (int i = 0; i < row.cells; i += kHalf, low = !low) {
+      const std::ptrdiff_t offset = row.row * stride + row.first_col + i;
+      if (low) offsets.push_back({offset, 0});
+      offsets.back().high = offset;
+    }
   }
   return offsets;
+}
+
+ROADFIX_VNNI inline __m512i cells_below(const std::uint8_t* nadir, Offsets offsets) {
+  const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + offsets.low));
+  const __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + offsets.high));
+  return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
 ROADFIX_VNNI inline std::int64_t emptied(__m512i& lanes) {
@@ -66,7 +84,7 @@ struct Hidden {
 /// Several places at once: the processor need not wait for a sum of one before it adds to the others. The instruction
 /// wants signed bytes for one factor: cells of the map less 128, 0 where the footprint has not observed.
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::span<const std::ptrdiff_t> offsets,
+ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::span<const Offsets> offsets,
                          const PlaneCell* cells, IntegerSums* out) {
   const __m512i high_bit = _mm512_set1_epi8(-128);
   const __m512i unobserved = _mm512_set1_epi8(kUnobserved - 128);
@@ -83,10 +101,10 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::s
   for (std::size_t first = 0; first < offsets.size(); first += kVectorsPerFlush) {
     const std::size_t last = std::min(offsets.size(), first + kVectorsPerFlush);
     for (std::size_t i = first; i < last; ++i) {
-      const __m512i l = _mm512_load_si512(footprint.values() + i * kStep);
-      const __m512i mask = _mm512_load_si512(footprint.mask() + i * kStep);
+      const __m512i l = _mm512_loadu_si512(footprint.values() + i * kStep);
+      const __m512i mask = _mm512_loadu_si512(footprint.mask() + i * kStep);
       for (std::size_t k = 0; k < kPlaces; ++k) {
-        const __m512i below = _mm512_loadu_si512(nadir[k] + offsets[i]);
+        const __m512i below = cells_below(nadir[k], offsets[i]);
         __m512i less_128 = _mm512_and_si512(_mm512_xor_si512(below, high_bit), mask);
         const __mmask64 unseen = _mm512_cmpeq_epi8_mask(less_128, unobserved);
         if (unseen != 0) [[unlikely]] {
@@ -130,7 +148,7 @@ void allow_byte_products_for_test(bool allow) { allowed = allow; }
 void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums) {
   assert(places.size() == sums.size());
-  const std::vector<std::ptrdiff_t> offsets = offsets_of(footprint, map.stride());
+  const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
   std::size_t i = 0;
   for (; i + 4 <= places.size(); i += 4) add_up<4>(map, footprint, offsets, &places[i], &sums[i]);
   for (; i < places.size(); ++i) add_up<1>(map, footprint, offsets, &places[i], &sums[i]);

@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "core/units/error.hpp"
+#include "core/units/memory.hpp"
 
 namespace {
 
@@ -14,6 +15,7 @@ constexpr int kWrongUsage = 2;
 }  // namespace
 
 int main(int argc, char** argv) {
+  roadfix::keep_freed_memory();
   CLI::App app(
       "Localizes UAVs by roads: builds road maps from imagery and road data, serves them, answers where a frame was "
       "taken.",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/geodesy/local_projection.hpp"
 #include "core/locate/binned_matches.hpp"
@@ -23,24 +24,23 @@ struct GridQuery {
   Angle heading;
 };
 
-/// Where the poses lie; those off the map are left out, since nothing is observed there.
-std::vector<GridQuery> queries_of(const MapView& map, std::span<const GeoPose> poses, double cell_m, double reach_m) {
-  const GridBox wide = grown(map.extent, reach_m);
+/// Calls use(query) for each of the poses but those off the map, since nothing is observed there.
+template <typename Use>
+void for_each_on_map(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses, Use use) {
+  const double cell_m = features.cell_m;
+  const GridBox wide = grown(map.extent, footprint_reach(features) * cell_m);
   PointProjector project(map.zone);
-  std::vector<GridQuery> queries;
-  queries.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto projected = project(poses[i].position);
     if (!projected || !wide.contains(projected->point)) continue;
     const GridPoint at = projected->point;
     const double col = std::floor(at.east_m / cell_m);
     const double row = std::floor(-at.north_m / cell_m);
-    queries.push_back({i,
-                       {static_cast<int>(col), static_cast<int>(row)},
-                       {at.east_m / cell_m - col - 0.5, -at.north_m / cell_m - row - 0.5},
-                       poses[i].heading - projected->convergence});
+    use(GridQuery{i,
+                  {static_cast<int>(col), static_cast<int>(row)},
+                  {at.east_m / cell_m - col - 0.5, -at.north_m / cell_m - row - 0.5},
+                  poses[i].heading - projected->convergence});
   }
-  return queries;
 }
 
 MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridQuery& query, int reach) {
@@ -53,8 +53,10 @@ MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridQuer
   return sums;
 }
 
-void match_exactly(const MapView& map, const FeatureMap& features, std::span<const GridQuery> queries,
+void match_exactly(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                    const MatchOptions& options, std::span<MatchSums> sums) {
+  std::vector<GridQuery> queries;
+  for_each_on_map(map, features, poses, [&](const GridQuery& query) { queries.push_back(query); });
   const int reach = footprint_reach(features) + 1;  // a nadir off its cell's centre may need one more
   const Deadline deadline(options.stop, {});
   parallel_for(static_cast<int>(queries.size()), options.threads, [&](int i) {
@@ -64,18 +66,18 @@ void match_exactly(const MapView& map, const FeatureMap& features, std::span<con
   });
 }
 
-void match_in_bins(const MapView& map, const FeatureMap& features, std::span<const GridQuery> queries,
+void match_in_bins(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                    const MatchOptions& options, std::span<MatchSums> sums) {
   constexpr double kMostBins = 1e6;
   const double wanted = std::ceil(2.0 * std::numbers::pi / options.heading_step.radians());
   const HeadingBins bins = HeadingBins(static_cast<int>(std::min(wanted, kMostBins))).in_quarters();
   std::vector<BinnedPose> binned;
-  binned.reserve(queries.size());
-  for (const GridQuery& query : queries) {
+  binned.reserve(poses.size());
+  for_each_on_map(map, features, poses, [&](const GridQuery& query) {
     const double turned = query.heading.compass_degrees() / 360.0 * bins.count();
     binned.push_back({query.cell, bins.wrapped(static_cast<int>(std::round(turned))), query.index});
-  }
-  match_binned(map, features, bins, binned, options.threads, options.stop, sums);
+  });
+  match_binned(map, features, bins, std::move(binned), options.threads, options.stop, sums);
 }
 
 }  // namespace
@@ -83,12 +85,11 @@ void match_in_bins(const MapView& map, const FeatureMap& features, std::span<con
 std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                               const MatchOptions& options) {
   const FeatureMap cells = in_cells_of(map, features);
-  const std::vector<GridQuery> queries = queries_of(map, poses, cells.cell_m, footprint_reach(cells) * cells.cell_m);
   std::vector<MatchSums> sums(poses.size());
   if (options.heading_step.radians() > 0.0) {
-    match_in_bins(map, cells, queries, options, sums);
+    match_in_bins(map, cells, poses, options, sums);
   } else {
-    match_exactly(map, cells, queries, options, sums);
+    match_exactly(map, cells, poses, options, sums);
   }
   std::vector<MatchScore> scores;
   scores.reserve(sums.size());

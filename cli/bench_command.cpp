@@ -172,7 +172,9 @@ void add_bench_command(CLI::App& app) {
   command->footer("Example: roadfix bench city.bench.json --seed 1 --json out.json");
   command->add_option("manifest", a->manifest, "JSON file, see docs/bench.md")->required();
   command->add_option("--json", a->json_file, "Write figures and every query with truth, answer and error");
-  command->add_option("--seed", a->options.seed, "Of the query poses and the detector")->capture_default_str();
+  command->add_option("--seed", a->options.seed, "Of the query poses and the detector")
+      ->capture_default_str()
+      ->check(seed());
   command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
       ->check(not_negative());
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");

@@ -86,7 +86,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   auto* cell = command.add_option("--cell,--cell-m", o.cell_m, "The input is a feature map: its cell size in metres")
                    ->check(positive());
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell);
-  command.add_option("--seed", o.seed, "Of detectors that draw random numbers")->capture_default_str();
+  command.add_option("--seed", o.seed, "Of detectors that draw random numbers")->capture_default_str()->check(seed());
   add_detector_options(command, o.detector);
 }
 

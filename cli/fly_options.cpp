@@ -30,7 +30,7 @@ void add_basics(CLI::App& command, FlyOptions& o) {
       .add_option("--runs", o.runs, "Flights, with seeds that count up; of a recorded flight so many of each sequence")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
-  command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str();
+  command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str()->check(seed());
   o.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command.add_option("--jobs", o.jobs, "Flights at a time; results do not depend on it")
       ->capture_default_str()

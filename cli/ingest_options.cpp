@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
 #include "core/units/error.hpp"
 
@@ -61,7 +62,10 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
 }
 
 void add_provenance_options(CLI::App& command, IngestArguments& a) {
-  command.add_option("--date", a.record.date, "Date of the content, ISO 8601");
+  command
+      .add_option("--date", a.record.date,
+                  "Date of the content, ISO 8601: 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z")
+      ->check(iso_date());
   command.add_option("--licence", a.record.licence, "Licence of the content");
   command.add_option("--attribution", a.record.attribution, "Whom to name");
   command
@@ -104,7 +108,7 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
   a.options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command.add_option("--jobs", a.options.jobs, "Blocks in work at a time; default: number of processors")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1");
+  command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());
   command.add_flag("--replace", a.options.replace, "Replace a source of the same name");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");
   command.add_flag("--json", a.json, "Print one line of JSON for each source");

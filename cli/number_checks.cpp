@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 namespace roadfix::cli {
@@ -23,5 +26,17 @@ CLI::Validator number_within(double least, bool is_open, double most, const char
 CLI::Validator positive(double most) { return number_within(0.0, true, most, "POSITIVE"); }
 
 CLI::Validator not_negative(double most) { return number_within(0.0, false, most, "NONNEGATIVE"); }
+
+CLI::Validator seed() {
+  return {[](std::string& text) -> std::string {
+            std::int32_t value = -1;
+            const char* const end = text.data() + text.size();
+            const auto [after, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc{} && after == end && value >= 0) return {};
+            return fmt::format("must be a whole number from 0 to {}, not {}", std::numeric_limits<std::int32_t>::max(),
+                               text);
+          },
+          "SEED"};
+}
 
 }  // namespace roadfix::cli

@@ -14,4 +14,7 @@ CLI::Validator positive(double most = kMostOfAll);
 /// 0 or positive(most).
 CLI::Validator not_negative(double most = kMostOfAll);
 
+/// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.
+CLI::Validator seed();
+
 }  // namespace roadfix::cli

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "tiles/world/world.hpp"
@@ -64,7 +65,9 @@ void add_world_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder,--out", options->folder, "Folder to write, made where it is missing")->required();
-  command->add_option("--seed", settings.seed, "The same seed gives the same files")->capture_default_str();
+  command->add_option("--seed", settings.seed, "The same seed gives the same files")
+      ->capture_default_str()
+      ->check(seed());
   command
       ->add_option(
           "--land", settings.land,

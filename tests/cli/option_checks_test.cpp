@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "cli/date_check.hpp"
+#include "cli/number_checks.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+std::string complaint(const CLI::Validator& check, std::string text) { return check(text); }
+
+TEST(IsoDate, IsAsExactAsItIsKnown) {
+  for (const char* date : {"2023", "2023-02", "2023-02-06", "2024-02-29", "2023-02-06T10:30", "2023-02-06T10:30:05Z",
+                           "2023-02-06T10:30:05.25+03:00"}) {
+    EXPECT_EQ(complaint(iso_date(), date), "") << date;
+  }
+}
+
+TEST(IsoDate, IsNoWordNoOtherOrderAndNoDayThatIsNotInTheCalendar) {
+  for (const char* date : {"", "yesterday", "23", "06.02.2023", "2023/02/06", "2023-2-6", "2023-13", "2023-00",
+                           "2023-02-30", "2023-02-29", "2023-02-06 10:30", "2023-02-06T24:10", "2023-02-06T"}) {
+    EXPECT_NE(complaint(iso_date(), date), "") << date;
+  }
+  EXPECT_EQ(complaint(iso_date(), "yesterday"),
+            "must be a date like 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z (ISO 8601), not yesterday");
+}
+
+TEST(Seed, IsAWholeNumberThatTheServiceTakesToo) {
+  for (const char* number : {"0", "1", "2147483647"}) EXPECT_EQ(complaint(seed(), number), "") << number;
+  for (const char* number : {"-1", "2147483648", "1.5", "1e3", "", "one"}) {
+    EXPECT_NE(complaint(seed(), number), "") << number;
+  }
+  EXPECT_EQ(complaint(seed(), "-1"), "must be a whole number from 0 to 2147483647, not -1");
+}
+
+}  // namespace
+}  // namespace roadfix::cli

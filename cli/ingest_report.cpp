@@ -68,9 +68,10 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
 void print_notes(const SourceFiles& files, const SourceSummary& summary) {
   for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
   if (files.left_out.empty()) return;
-  fmt::print(stderr,
-             "note: a folder is one source, {} one of images; left out are {}: ingest vectors by their own paths\n",
-             files.location, fmt::join(files.left_out, ", "));
+  fmt::print(
+      stderr,
+      "note: a folder or archive is one source, {} one of images; left out are {}: ingest vectors by their own paths\n",
+      files.location, fmt::join(files.left_out, ", "));
 }
 
 }  // namespace roadfix::cli

@@ -8,9 +8,9 @@
 namespace roadfix {
 
 LatLon centre_of_source(const SourceRequest& request) {
-  const std::string& path = request.files.paths.front();
-  if (request.files.kind == SourceKind::kRoadVectors) return centre_of_roads(path, request.vectors);
-  return centre_of(RasterFile(path, request.raster));
+  const SourceFiles& files = request.files;
+  if (files.kind == SourceKind::kRoadVectors) return centre_of_roads(files.paths, request.vectors);
+  return centre_of(RasterFile(files.paths.front(), request.raster));
 }
 
 std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,

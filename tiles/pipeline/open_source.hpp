@@ -22,7 +22,7 @@ struct SourceRequest {
   RoadRules rules;
 };
 
-/// Geographic centre of the first file, to choose the zone of a new map by.
+/// Geographic centre of the first file that holds something, to choose the zone of a new map by.
 LatLon centre_of_source(const SourceRequest& request);
 
 /// `detector` is needed for imagery and must outlive the source.

@@ -82,7 +82,9 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
 struct Parts {
   RoadNetwork classified;
   RoadNetwork plain;
+  bool any_layer = false;
   bool any_classified = false;
+  std::int64_t features = 0;
   std::int64_t lines = 0;
   std::map<std::string, std::int64_t> unknown_classes;
   /// Layers of lines without classes by name: the first file that has them, and their attributes.
@@ -133,6 +135,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   const OGRSpatialReference plane = utm_reference(zone);
   std::map<const OGRLayer*, RoadLayer> layers;
   for (OGRLayer* layer : file.layers()) {
+    parts.any_layer = true;
     const OGRSpatialReference crs = file.crs_of(*layer);
     if (parts.plain.crs.empty()) parts.plain.crs = parts.classified.crs = crs_name(crs);
     layers.emplace(layer, RoadLayer(*layer, transformation(crs, plane, path), rules));
@@ -141,6 +144,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     const auto found = layers.find(&of);
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (found == layers.end() || geometry == nullptr) return;
+    ++parts.features;
     RoadLayer& layer = found->second;
     RoadNetwork& network = layer.classified() ? parts.classified : parts.plain;
     const std::optional<double> width = layer.width_of(feature);
@@ -213,29 +217,23 @@ std::string why_none_is_drawn(const Parts& parts, const RoadRules& rules) {
       rules.describe());
 }
 
-}  // namespace
-
-RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
-                              const RoadRules& rules, UtmZone zone) {
-  Parts parts;
-  for (const std::string& path : paths) add_file(path, options, rules, zone, parts);
-  RoadNetwork network = join(parts, rules);
-  if (!options.extent.empty()) network.covered = read_extent(options.extent, zone);
-  if (network.lines.empty() || network.covered.empty()) {
-    throw InvalidInput("source-without-roads",
-                       fmt::format("{}: none of its {} features is drawn as a road: {}", paths.front(),
-                                   network.left_out, why_none_is_drawn(parts, rules)));
-  }
-  note_unknown_classes(parts, network);
-  return network;
+[[noreturn]] void refuse_layer(const std::string& path, const VectorOptions& options) {
+  throw InvalidInput("layer-unknown",
+                     fmt::format("{}: has no layer {}; it has {}", path,
+                                 options.layer.empty() ? "with geometries" : fmt::format("'{}'", options.layer),
+                                 VectorFile(path, options).layer_names()));
 }
 
-LatLon centre_of_roads(const std::string& path, const VectorOptions& options) {
-  if (const std::optional<OGREnvelope> box = box_in_degrees(options.extent)) {
-    return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
-  }
-  if (!options.extent.empty()) return centre_of_roads(options.extent, {});
-  VectorFile file(path, options);
+[[noreturn]] void refuse_empty(const std::string& path, const VectorOptions& options) {
+  throw InvalidInput(
+      "source-without-roads",
+      fmt::format("{}: {} empty, no feature has a geometry. Export the roads again, with a selection or filter that "
+                  "leaves some, and look at the result with ogrinfo -so -al",
+                  path, options.layer.empty() ? "it is" : fmt::format("its layer '{}' is", options.layer)));
+}
+
+/// nullopt where the file has no layer or no feature to look at.
+std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path) {
   for (OGRLayer* layer : file.layers()) {
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
     if (!box) continue;
@@ -250,9 +248,43 @@ LatLon centre_of_roads(const std::string& path, const VectorOptions& options) {
                       "the right one with --crs",
                       path));
     }
-    return {lat, lon};
+    return LatLon{lat, lon};
   }
-  throw InvalidInput("source-without-roads", fmt::format("{}: holds no features", path));
+  return std::nullopt;
+}
+
+}  // namespace
+
+RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
+                              const RoadRules& rules, UtmZone zone) {
+  Parts parts;
+  for (const std::string& path : paths) add_file(path, options, rules, zone, parts);
+  if (!parts.any_layer) refuse_layer(paths.front(), options);
+  if (parts.features == 0) refuse_empty(paths.front(), options);
+  RoadNetwork network = join(parts, rules);
+  if (!options.extent.empty()) network.covered = read_extent(options.extent, zone);
+  if (network.lines.empty() || network.covered.empty()) {
+    throw InvalidInput("source-without-roads",
+                       fmt::format("{}: none of its {} features is drawn as a road: {}", paths.front(),
+                                   network.left_out, why_none_is_drawn(parts, rules)));
+  }
+  note_unknown_classes(parts, network);
+  return network;
+}
+
+LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options) {
+  if (const std::optional<OGREnvelope> box = box_in_degrees(options.extent)) {
+    return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
+  }
+  if (!options.extent.empty()) return centre_of_roads({options.extent}, {});
+  bool any_layer = false;
+  for (const std::string& path : paths) {
+    VectorFile file(path, options);
+    any_layer = any_layer || !file.layers().empty();
+    if (const std::optional<LatLon> centre = centre_of_file(file, path)) return *centre;
+  }
+  if (!any_layer) refuse_layer(paths.front(), options);
+  refuse_empty(paths.front(), options);
 }
 
 }  // namespace roadfix

@@ -45,12 +45,12 @@ struct RoadNetwork {
 /// class and road_class whose values are mostly classes of the rules. Where no layer has any, every line is a road;
 /// where some layers of lines have one, the lines of the others (rivers, bus routes) are not drawn. OSM PBF and XML,
 /// GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound, InvalidInput
-/// ("source-unreadable", "roads-without-georeference", "source-without-roads", "crs-not-transformable",
-/// "extent-unreadable") or CorruptData ("roads-unreadable").
+/// ("source-unreadable", "layer-unknown" where none of the files has it, "roads-without-georeference",
+/// "source-without-roads", "crs-not-transformable", "extent-unreadable") or CorruptData ("roads-unreadable").
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);
 
-/// Geographic centre of the ground that is asked for, or of the file, to choose a zone by.
-LatLon centre_of_roads(const std::string& path, const VectorOptions& options);
+/// Geographic centre of the ground that is asked for, or of the first file with features, to choose a zone by.
+LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options);
 
 }  // namespace roadfix

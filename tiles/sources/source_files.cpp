@@ -1,5 +1,7 @@
 #include "tiles/sources/source_files.hpp"
 
+#include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,18 +60,41 @@ std::string name_of_folder(const fs::path& folder) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
+std::vector<std::string> files_in_folder(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  return files;
+}
+
+/// As GDAL opens them.
+std::vector<std::string> files_in_zip(const std::string& archive) {
+  const GdalMessages messages;
+  const std::string inside = "/vsizip/" + archive;
+  const CPLStringList names(VSIReadDirRecursive(inside.c_str()));
+  if (names.empty()) {
+    throw InvalidInput("source-unreadable",
+                       fmt::format("{}: cannot be opened as a ZIP archive; fetch it again, or unpack it", archive));
+  }
+  std::vector<std::string> files;
+  for (int i = 0; i < names.size(); ++i) files.push_back(inside + "/" + names[i]);
+  return files;
+}
+
+/// One source of all images, or where there are none of all vector files.
+SourceFiles source_of_all(const std::vector<std::string>& files, const std::string& location, SourceMeaning meaning) {
   SourceFiles result;
   std::vector<std::string> images;
   std::vector<std::string> vectors;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string ending = ending_of(entry.path());
-    if (listed(kImageEndings, ending)) images.push_back(entry.path().string());
-    if (listed(kVectorEndings, ending)) vectors.push_back(entry.path().string());
+  for (const std::string& file : files) {
+    if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
+    const std::string ending = ending_of(file);
+    if (listed(kImageEndings, ending)) images.push_back(file);
+    if (listed(kVectorEndings, ending)) vectors.push_back(file);
   }
   if (images.empty() && vectors.empty()) {
-    throw InvalidInput("source-empty", fmt::format("{}: holds neither images nor vector files", folder.string()));
+    throw InvalidInput("source-empty", fmt::format("{}: holds neither images nor vector files", location));
   }
   result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
   result.paths = std::move(images);
@@ -82,6 +107,13 @@ SourceFiles files_below(const fs::path& folder, SourceMeaning meaning) {
   std::ranges::sort(result.paths);
   std::ranges::sort(result.left_out);
   return result;
+}
+
+/// "liechtenstein" of "liechtenstein.osm.pbf" and of "liechtenstein.shp.zip".
+std::string name_of_file(const fs::path& path) {
+  const fs::path stem = path.stem();
+  const std::string inner = ending_of(stem);
+  return inner == ".osm" || inner == ".shp" ? stem.stem().string() : stem.string();
 }
 
 }  // namespace
@@ -98,8 +130,11 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
   const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();
   SourceFiles result;
   if (fs::is_directory(path)) {
-    result = files_below(path, meaning);
+    result = source_of_all(files_in_folder(path), path.string(), meaning);
     result.name = name_of_folder(path);
+  } else if (ending_of(path) == ".zip" && fs::exists(path)) {
+    result = source_of_all(files_in_zip(argument), argument, meaning);
+    result.name = name_of_file(path);
   } else {
     result.paths = {argument};
     result.kind = kind_of(argument);
@@ -108,8 +143,7 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
     } else if (meaning != SourceMeaning::kAuto) {
       result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
     }
-    result.name = path.stem().string();
-    if (result.name.ends_with(".osm")) result.name.resize(result.name.size() - 4);
+    result.name = name_of_file(path);
   }
   if (meaning == SourceMeaning::kImagery && result.kind == SourceKind::kRoadVectors) {
     throw InvalidInput("source-not-imagery", fmt::format("{}: holds vectors, no pixels; give it as roads", argument));

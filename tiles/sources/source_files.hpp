@@ -15,11 +15,11 @@ enum class SourceMeaning { kAuto, kImagery, kRoads };
 SourceMeaning parse_meaning(std::string_view text);
 
 struct SourceFiles {
-  std::string name;  ///< stem of the file or name of the folder
+  std::string name;  ///< stem of the file or archive, or name of the folder
   std::string location;
   SourceKind kind = SourceKind::kImagery;
-  std::vector<std::string> paths;          ///< of a folder all images or vector files in it and below, sorted
-  std::vector<std::string> left_out = {};  ///< vector files of a folder whose images are the source, sorted
+  std::vector<std::string> paths;  ///< of a folder or ZIP archive all images or vector files in it and below, sorted
+  std::vector<std::string> left_out = {};  ///< vector files beside the images of a folder or archive, sorted
 };
 
 /// Throws NotFound "source-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").

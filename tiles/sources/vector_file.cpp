@@ -77,12 +77,18 @@ VectorFile::VectorFile(const std::string& path, const VectorOptions& options)
   for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
     OGRLayer* layer = dataset_->GetLayer(i);
     const std::string name = layer->GetName();
-    if (!options.layer.empty() ? name == options.layer : !osm || name == "lines") layers_.push_back(layer);
+    // QGIS keeps styles in tables beside the layers of a GeoPackage.
+    const bool usual = layer->GetGeomType() != wkbNone && (!osm || name == "lines");
+    if (options.layer.empty() ? usual : name == options.layer) layers_.push_back(layer);
   }
-  if (layers_.empty()) {
-    throw InvalidInput("layer-unknown", fmt::format("{}: has no layer '{}'; ogrinfo lists what it has", path_,
-                                                    options.layer.empty() ? "of lines" : options.layer));
+}
+
+std::string VectorFile::layer_names() const {
+  std::string names;
+  for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
+    names += fmt::format("{}'{}'", i == 0 ? "" : ", ", dataset_->GetLayer(i)->GetName());
   }
+  return names;
 }
 
 OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {

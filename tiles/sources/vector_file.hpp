@@ -26,11 +26,13 @@ std::optional<VectorTile> vector_tile_of(const std::string& path);
 
 class VectorFile {
  public:
-  /// Throws NotFound or InvalidInput ("source-unreadable", "layer-unknown").
+  /// Throws NotFound or InvalidInput ("source-unreadable").
   VectorFile(const std::string& path, const VectorOptions& options);
 
-  /// All, or the one that the user chose; of OpenStreetMap files the lines.
+  /// All that have geometries, or the one that the user chose, if the file has it; of OpenStreetMap files the lines.
   const std::vector<OGRLayer*>& layers() const { return layers_; }
+  /// Of all layers of the file, "'roads', 'rivers'", for messages.
+  std::string layer_names() const;
   /// Throws InvalidInput "roads-without-georeference".
   OGRSpatialReference crs_of(OGRLayer& layer) const;
   /// In the layer's own coordinates; of a vector tile the whole tile. nullopt for an empty layer.

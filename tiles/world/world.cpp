@@ -29,7 +29,7 @@ enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisas
 
 LatLon center_of(const WorldSettings& settings) {
   if (settings.center) return *settings.center;
-  return settings.roads.empty() ? kDefaultCenter : centre_of_roads(settings.roads, {});
+  return settings.roads.empty() ? kDefaultCenter : centre_of_roads({settings.roads}, {});
 }
 
 Plan empty_plan(const Placement& placement) {

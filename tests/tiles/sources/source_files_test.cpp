@@ -1,10 +1,12 @@
 #include "tiles/sources/source_files.hpp"
 
+#include <cpl_vsi.h>
 #include <gmock/gmock.h>
 
 #include <array>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
@@ -86,6 +88,25 @@ TEST_F(SourceFilesTest, VectorsBesideTheImagesOfAFolderAreLeftOutAndNamed) {
   const SourceFiles files = find_source(folder.path().string(), SourceMeaning::kAuto);
   EXPECT_THAT(files.paths, ElementsAre(a));
   EXPECT_THAT(files.left_out, ElementsAre(lines));
+}
+
+TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
+  const std::string archive = (folder / "city.shp.zip").string();
+  require_gdal();
+  for (const char* name : {"town/lines.geojson", "__MACOSX/town/._lines.geojson", "read me.txt"}) {
+    VSILFILE* file = VSIFOpenL(("/vsizip/" + archive + "/" + name).c_str(), "wb");
+    ASSERT_NE(file, nullptr);
+    VSIFWriteL(kLine, 1, std::string_view(kLine).size(), file);
+    VSIFCloseL(file);
+  }
+  const SourceFiles files = find_source(archive, SourceMeaning::kAuto);
+  EXPECT_THAT(files.paths, ElementsAre("/vsizip/" + archive + "/town/lines.geojson"));
+  EXPECT_EQ(files.kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(files.name, "city");
+  EXPECT_EQ(code_of([&] { open_dataset(files.paths.front(), GDAL_OF_VECTOR); }), "no error");
+  std::ofstream(folder / "cut-off.zip") << "PK";
+  EXPECT_EQ(code_of([&] { find_source((folder / "cut-off.zip").string(), SourceMeaning::kAuto); }),
+            "source-unreadable");
 }
 
 TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {

@@ -128,16 +128,16 @@ TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
 
 TEST_F(VectorRoads, TheCentreIsThatOfTheGroundThatIsAskedFor) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-9000, 0), at(0, 0))});
-  EXPECT_NEAR(kZone.project(centre_of_roads(path, {})).east_m, kCentre.east_m - 4500.0, 1.0);
+  EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m - 4500.0, 1.0);
   VectorOptions options;
   options.extent = extent_around_centre(100);
-  EXPECT_NEAR(kZone.project(centre_of_roads(path, options)).east_m, kCentre.east_m, 1.0);
+  EXPECT_NEAR(kZone.project(centre_of_roads({path}, options)).east_m, kCentre.east_m, 1.0);
   const std::string known = (folder / "known.geojson").string();
   std::ofstream(known) << R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[)"
                        << degrees(at(-9, -9)) << ',' << degrees(at(9, -9)) << ',' << degrees(at(9, 9)) << ','
                        << degrees(at(-9, -9)) << "]]}}";
   options.extent = known;
-  EXPECT_NEAR(kZone.project(centre_of_roads(path, options)).east_m, kCentre.east_m, 1.0);
+  EXPECT_NEAR(kZone.project(centre_of_roads({path}, options)).east_m, kCentre.east_m, 1.0);
 }
 
 TEST_F(VectorRoads, AnExtentMayCrossTheAntimeridian) {
@@ -147,7 +147,7 @@ TEST_F(VectorRoads, AnExtentMayCrossTheAntimeridian) {
                                     R"({"type":"LineString","coordinates":[[-180,-17],[-179.995,-17]]}})"});
   VectorOptions options;
   options.extent = "179.99,-17.01,-179.99,-16.99";
-  const LatLon centre = centre_of_roads(path, options);
+  const LatLon centre = centre_of_roads({path}, options);
   const UtmZone zone = *UtmZone::from_epsg(32760);
   EXPECT_EQ(UtmZone::containing({centre.lat_deg, centre.lon_deg - 1e-6}), zone);
   const auto source = open_road_vectors({path}, options, RoadRules(), zone, 2.0);
@@ -363,11 +363,46 @@ TEST_F(VectorRoads, FilesThatHoldNoRoadsAreRefused) {
             "source-unreadable");
   VectorOptions options;
   options.layer = "motorways";
-  EXPECT_EQ(code_of([&] { read_road_network({rivers}, options, RoadRules(), kZone); }), "layer-unknown");
+  EXPECT_EQ(message_of([&] { read_road_network({rivers}, options, RoadRules(), kZone); }),
+            rivers + ": has no layer 'motorways'; it has 'roads'");
+  EXPECT_EQ(code_of([&] { centre_of_roads({rivers}, options); }), "layer-unknown");
   options = {};
   options.extent = "12,13,11,14";
   const std::string roads = geojson({feature(R"("highway":"primary")", at(0, 0), at(9, 9))});
   EXPECT_EQ(code_of([&] { read_road_network({roads}, options, RoadRules(), kZone); }), "extent-unreadable");
+}
+
+TEST_F(VectorRoads, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {
+  const std::string empty = (folder / "empty.geojson").string();
+  std::ofstream(empty) << R"({"type":"FeatureCollection","features":[]})";
+  EXPECT_THAT(message_of([&] { read_road_network({empty}, {}, RoadRules(), kZone); }), HasSubstr("it is empty"));
+  EXPECT_THAT(message_of([&] { centre_of_roads({empty}, {}); }), HasSubstr("it is empty"));
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  EXPECT_EQ(read_road_network({empty, roads}, {}, RoadRules(), kZone).lines.size(), 1U);
+  EXPECT_NEAR(kZone.project(centre_of_roads({empty, roads}, {})).east_m, kCentre.east_m, 1.0);
+}
+
+TEST_F(VectorRoads, ALayerIsTakenFromThoseFilesOfAFolderThatHaveIt) {
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  const std::string rivers = (folder / "rivers.geojson").string();
+  std::filesystem::copy_file(roads, rivers);
+  VectorOptions options;
+  options.layer = "roads";
+  EXPECT_EQ(read_road_network({rivers, roads}, options, RoadRules(), kZone).lines.size(), 1U);
+  EXPECT_NEAR(kZone.project(centre_of_roads({rivers, roads}, options)).east_m, kCentre.east_m, 1.0);
+}
+
+TEST_F(VectorRoads, TablesWithoutGeometriesBesideTheRoadsAreNoConcern) {
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  const std::string path = (folder / "project.gpkg").string();
+  {
+    const DatasetPtr from = open_dataset(roads, GDAL_OF_VECTOR);
+    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
+    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    to->CreateLayer("layer_styles", nullptr, wkbNone, nullptr);
+    to->CopyLayer(from->GetLayer(0), "roads");
+  }
+  EXPECT_EQ(read_road_network({path}, {}, RoadRules(), kZone).lines.size(), 1U);
 }
 
 TEST(VectorTileName, TellsZoomColumnAndRow) {

@@ -98,8 +98,9 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
   if (!header) throw InvalidInput("image-format", "the bytes are neither a PNG nor a JPEG image");
   if (header->cols <= 0 || header->rows <= 0 || !is_whole(bytes, *header)) refuse_damaged();
   if (header->cols > max_pixels / header->rows) {
-    throw LimitExceeded("image-too-large", fmt::format("the image has {} x {} pixels; at most {} pixels are allowed",
-                                                       header->cols, header->rows, max_pixels));
+    throw LimitExceeded("image-too-large",
+                        fmt::format("the image has {} x {} pixels; at most {} pixels are allowed: send it smaller",
+                                    header->cols, header->rows, max_pixels));
   }
   // OpenCV takes a non-const pointer but only reads.
   const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));

@@ -120,6 +120,19 @@ GroundView view_of(const Content& content, const RoadDetector& detector, const L
   return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(limits.pixels));
 }
 
+/// Detectors draw a coarse frame in finer pixels of their own before they look at it.
+void require_few_pixels(const GroundImage& image, const RoadDetector& detector, const Limits& limits) {
+  const double finer = std::max(1.0, image.gsd_m / detector.preferred_gsd_m());
+  const double pixels = static_cast<double>(image.pixels.total()) * finer * finer;
+  if (pixels <= static_cast<double>(limits.pixels)) return;
+  throw LimitExceeded(
+      "ground-too-large",
+      fmt::format("the frame shows {:.1f} x {:.1f} km, {:.0f} pixels of the {:g} m that roads are looked for in; at "
+                  "most {} are allowed: send a part of it",
+                  image.pixels.cols * image.gsd_m / 1e3, image.pixels.rows * image.gsd_m / 1e3, pixels,
+                  detector.preferred_gsd_m(), limits.pixels));
+}
+
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
@@ -157,10 +170,12 @@ Features detected(const Content& content, const RoadDetector& detector, double d
   const double cell_m = content.fields.optional_number("cell_m", {0.1, 100.0}).value_or(default_cell_m);
   const int seed = content.fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1);
   const GroundView view = view_of(content, detector, limits);
+  require_few_pixels(view.image, detector, limits);
   const double cells = static_cast<double>(view.image.pixels.total()) * std::pow(view.image.gsd_m / cell_m, 2.0);
   if (cells > static_cast<double>(limits.cells)) {
-    throw LimitExceeded("too-many-cells", fmt::format("the frame would have {:.0f} cells of {} m, more than {}", cells,
-                                                      cell_m, limits.cells));
+    throw LimitExceeded("too-many-cells", fmt::format("the frame would have {:.0f} cells of {} m; at most {} are "
+                                                      "allowed: send a part of it, or ask for larger cells with cell_m",
+                                                      cells, cell_m, limits.cells));
   }
   const auto start = std::chrono::steady_clock::now();
   FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed), stop);

@@ -27,6 +27,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"track-ended", 410},
       {"body-too-large", 413},
       {"image-too-large", 413},
+      {"ground-too-large", 413},
       {"too-many-cells", 413},
       {"too-many-poses", 413},
       {"url-too-long", 414},

@@ -88,6 +88,14 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
 }
 
+TEST_F(BadRequests, WithAFrameOfMoreGroundThanADetectorCanLookAtAreTooLarge) {
+  const std::string frame = testing::text_of(encode_feature_map(CellArray(500, 500, kNoRoad)));
+  EXPECT_EQ(refusal(client_.Post("/v1/detect?gsd_m=5&cell_m=20", frame, "image/png")), "413 ground-too-large");
+  EXPECT_EQ(refusal(client_.Post("/v1/detect?gsd_m=0.5&cell_m=0.2", frame, "image/png")), "413 too-many-cells");
+  EXPECT_EQ(refusal(client_.Post("/v1/detect?fov_deg=150&agl_m=300&cell_m=20", frame, "image/png")),
+            "413 ground-too-large");
+}
+
 TEST_F(BadRequests, WithNumbersBeyondAllSenseNameThem) {
   const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
   for (const std::string field : {"time_us", "time_limit_s", "proof_s", "radius_m", "nadir_col", "max_modes"}) {

@@ -4,9 +4,10 @@
 
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
+#include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::bench {
@@ -18,9 +19,18 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
 }
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
-  const cv::Mat decoded = cv::imread((folder / frame.file).string(), cv::IMREAD_UNCHANGED);
-  if (decoded.empty()) {
-    throw InvalidInput("image-unreadable", fmt::format("{} is not an image that can be read", frame.file.string()));
+  constexpr std::int64_t kMostPixels = 400'000'000;
+  const auto refuse = [&](const char* why) {
+    throw InvalidInput("image-unreadable", fmt::format("{}: {}", frame.file.string(), why));
+  };
+  std::ifstream in(folder / frame.file, std::ios::binary);
+  if (!in) refuse("cannot be opened");
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+  cv::Mat decoded;
+  try {
+    decoded = decode_image(bytes, kMostPixels);
+  } catch (const InvalidInput& error) {
+    refuse(error.what());
   }
   return frame_image(decoded, frame.gsd_m, border);
 }

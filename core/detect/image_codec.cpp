@@ -11,6 +11,8 @@
 
 #include "core/detect/frame_image.hpp"
 #include "core/detect/ground_scale.hpp"
+#include "core/detect/jpeg_decoder.hpp"
+#include "core/detect/png_decoder.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -27,8 +29,7 @@ std::int64_t big_endian(Bytes bytes) {
 std::optional<ImageHeader> png_header(Bytes bytes) {
   constexpr std::size_t kHeaderEnd = 24;  // signature, chunk length and name, width, height
   if (bytes.size() < kHeaderEnd || !std::ranges::equal(bytes.first(8), kPngSignature)) return std::nullopt;
-  return ImageHeader{ImageHeader::Format::kPng, big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)),
-                     kHeaderEnd};
+  return ImageHeader{ImageHeader::Format::kPng, big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4))};
 }
 
 bool is_frame_header(std::uint8_t marker) {
@@ -47,25 +48,11 @@ std::optional<ImageHeader> jpeg_header(Bytes bytes) {
     }
     if (is_frame_header(marker)) {
       return ImageHeader{ImageHeader::Format::kJpeg, big_endian(bytes.subspan(at + 7, 2)),
-                         big_endian(bytes.subspan(at + 5, 2)), at + 9};
+                         big_endian(bytes.subspan(at + 5, 2))};
     }
     at += 2 + static_cast<std::size_t>(big_endian(bytes.subspan(at + 2, 2)));
   }
   return std::nullopt;
-}
-
-[[noreturn]] void refuse_damaged() {
-  throw InvalidInput("image-damaged", "the image cannot be decoded: it is damaged or cut off");
-}
-
-/// The library fills a JPEG that was cut off with grey. Within scan data 0xff is always followed by 0 or a restart
-/// marker, and thumbnails come before the frame header, so an end marker behind it is the image's own.
-bool is_whole(Bytes bytes, const ImageHeader& header) {
-  if (header.format == ImageHeader::Format::kPng) return true;
-  constexpr std::array<std::uint8_t, 2> kEnd{0xff, 0xd9};
-  // Not std::ranges::search: Clang 14 cannot compile it.
-  const Bytes rest = bytes.subspan(header.end);
-  return std::search(rest.begin(), rest.end(), kEnd.begin(), kEnd.end()) != rest.end();
 }
 
 /// A frame that was sent as a feature map would be searched for as if its brightness were road.
@@ -96,21 +83,16 @@ std::optional<ImageHeader> read_image_header(Bytes bytes) {
 cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
   const auto header = read_image_header(bytes);
   if (!header) throw InvalidInput("image-format", "the bytes are neither a PNG nor a JPEG image");
-  if (header->cols <= 0 || header->rows <= 0 || !is_whole(bytes, *header)) refuse_damaged();
+  if (header->cols <= 0 || header->rows <= 0) throw InvalidInput("image-damaged", "the image has no pixels");
   if (header->cols > max_pixels / header->rows) {
     throw LimitExceeded("image-too-large",
                         fmt::format("the image has {} x {} pixels; at most {} pixels are allowed: send it smaller",
                                     header->cols, header->rows, max_pixels));
   }
-  // OpenCV takes a non-const pointer but only reads.
-  const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-  cv::Mat image;
-  try {
-    image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {
-    refuse_damaged();
+  const cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes);
+  if (image.cols != header->cols || image.rows != header->rows) {
+    throw InvalidInput("image-damaged", "the image is damaged: it has two sizes");
   }
-  if (image.empty() || image.cols != header->cols || image.rows != header->rows) refuse_damaged();
   return image;
 }
 

@@ -21,7 +21,6 @@ struct ImageHeader {
   Format format = Format::kPng;
   std::int64_t cols = 0;
   std::int64_t rows = 0;
-  std::size_t end = 0;  ///< bytes up to and with the size
 };
 
 /// nullopt for bytes that are neither PNG (W3C PNG 5.2, 11.2.2) nor JPEG (ITU-T T.81 B.2.2).

@@ -116,5 +116,83 @@ TEST(DecodeImage, RefusesAJpegThatWasCutOffAnywhere) {
   }
 }
 
+TEST(DecodeImage, RefusesAPngWithAnyByteOfItsPixelsChanged) {
+  cv::Mat noise(64, 64, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  const auto png = encoded(".png", noise);
+  for (std::size_t at = 60; at + 20 < png.size(); at += 997) {
+    auto damaged = png;
+    damaged[at] ^= 0x55;
+    EXPECT_EQ(code_of([&] { decode_image(damaged, kMany); }), "image-damaged") << at;
+  }
+}
+
+TEST(DecodeImage, RefusesAJpegThatEndsBeforeItsPixelsDo) {
+  cv::Mat noise(64, 64, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  auto jpeg = encoded(".jpg", noise);
+  jpeg[jpeg.size() / 2] = 0xff;
+  jpeg[jpeg.size() / 2 + 1] = 0xd9;
+  EXPECT_EQ(code_of([&] { decode_image(jpeg, kMany); }), "image-damaged");
+}
+
+TEST(DecodeImage, TakesAJpegWithBytesToNoPurposeBeforeItsEnd) {
+  cv::Mat noise(64, 64, CV_8UC1);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  const auto jpeg = encoded(".jpg", noise);
+  auto padded = jpeg;
+  padded.insert(padded.end() - 2, 7, 0);
+  EXPECT_EQ(cv::norm(decode_image(padded, kMany), decode_image(jpeg, kMany), cv::NORM_INF), 0.0);
+}
+
+TEST(DecodeImage, PrintsNothingWhateverItIsGiven) {
+  cv::Mat noise(64, 64, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  ::testing::internal::CaptureStderr();
+  for (const char* extension : {".png", ".jpg"}) {
+    const auto bytes = encoded(extension, noise);
+    for (std::size_t at = 30; at < bytes.size(); at += 211) {
+      auto damaged = bytes;
+      damaged[at] ^= 0x55;
+      code_of([&] { decode_image(damaged, kMany); });
+      code_of([&] { decode_image(Bytes(bytes).first(at), kMany); });
+    }
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(DecodeImage, GivesThePixelsThatOpenCvGives) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4}) {
+    cv::Mat noise(37, 50, type);
+    cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 1 << 16);
+    EXPECT_EQ(cv::norm(decode_image(encoded(".png", noise), kMany), noise, cv::NORM_INF), 0.0) << type;
+    if (type != CV_8UC1 && type != CV_8UC3) continue;
+    const auto jpeg = encoded(".jpg", noise);
+    EXPECT_EQ(cv::norm(decode_image(jpeg, kMany), cv::imdecode(jpeg, cv::IMREAD_UNCHANGED), cv::NORM_INF), 0.0) << type;
+  }
+}
+
+TEST(DecodeImage, LooksUpPalettesAndCountsTheGreyThatStandsForNothingAsUnseen) {
+  // 2 x 1 pixels of one bit, 0 and 1: of the palette red and green, and of a grey picture whose black is transparent.
+  const std::vector<std::uint8_t> palette{
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+      0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0xce, 0xec, 0xed, 0xc9, 0x00,
+      0x00, 0x00, 0x06, 0x50, 0x4c, 0x54, 0x45, 0xff, 0x00, 0x00, 0x00, 0xff, 0x00, 0xd2, 0x87, 0xef, 0x71,
+      0x00, 0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x70, 0x00, 0x00, 0x00, 0x42, 0x00,
+      0x41, 0x29, 0x37, 0xf4, 0xef, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  const std::vector<std::uint8_t> grey{
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+      0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x01, 0x00, 0x00, 0x00, 0x00, 0xdc, 0x59, 0x42, 0x27, 0x00,
+      0x00, 0x00, 0x02, 0x74, 0x52, 0x4e, 0x53, 0x00, 0x00, 0x76, 0x93, 0xcd, 0x38, 0x00, 0x00, 0x00, 0x0a,
+      0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x70, 0x00, 0x00, 0x00, 0x42, 0x00, 0x41, 0x29, 0x37, 0xf4,
+      0xef, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  const cv::Mat colours = decode_image(palette, kMany);
+  EXPECT_EQ(colours.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255));
+  EXPECT_EQ(colours.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 255, 0));
+  const GroundImage picture = frame_image(decode_image(grey, kMany), 1.0);
+  EXPECT_EQ(picture.observed.at<uchar>(0, 0), 0);
+  EXPECT_EQ(picture.observed.at<uchar>(0, 1), 255);
+}
+
 }  // namespace
 }  // namespace roadfix

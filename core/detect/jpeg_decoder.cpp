@@ -1,0 +1,87 @@
+#include "core/detect/jpeg_decoder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+// Needs size_t and FILE before it.
+#include <jpeglib.h>
+// Needs jpeglib.h before it.
+#include <jerror.h>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+/// What libjpeg's callbacks need. Everything that lives across a longjmp is owned here, outside the frame that jumps.
+struct Reader {
+  Reader() = default;
+  ~Reader() { jpeg_destroy_decompress(&jpeg); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  jpeg_decompress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  std::jmp_buf before{};
+  std::array<char, JMSG_LENGTH_MAX> message{};
+  cv::Mat pixels;
+};
+
+[[noreturn]] void on_error(j_common_ptr jpeg) {
+  auto& reader = *static_cast<Reader*>(jpeg->client_data);
+  jpeg->err->format_message(jpeg, reader.message.data());
+  std::longjmp(reader.before, 1);
+}
+
+/// Where libjpeg only warns (`level` < 0), it goes on with invented pixels.
+void on_message(j_common_ptr jpeg, int level) {
+  if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) on_error(jpeg);
+}
+
+void print_nothing(j_common_ptr) {}
+
+void choose_colours(jpeg_decompress_struct& jpeg) {
+  jpeg.out_color_space = jpeg.num_components == 1 ? JCS_GRAYSCALE : jpeg.num_components == 3 ? JCS_EXT_BGR : JCS_CMYK;
+}
+
+/// False: reader.message says why. No object with a destructor may live in this frame.
+bool read(Reader& reader, std::span<const std::uint8_t> bytes) {
+  jpeg_decompress_struct& jpeg = reader.jpeg;
+  if (setjmp(reader.before) != 0) return false;
+  jpeg_create_decompress(&jpeg);
+  jpeg_mem_src(&jpeg, bytes.data(), bytes.size());
+  jpeg_read_header(&jpeg, TRUE);
+  choose_colours(jpeg);
+  jpeg_start_decompress(&jpeg);
+  reader.pixels.create(static_cast<int>(jpeg.output_height), static_cast<int>(jpeg.output_width),
+                       CV_8UC(jpeg.output_components));
+  while (jpeg.output_scanline < jpeg.output_height) {
+    JSAMPROW row = reader.pixels.ptr(static_cast<int>(jpeg.output_scanline));
+    jpeg_read_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_decompress(&jpeg);
+  return true;
+}
+
+}  // namespace
+
+cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes) {
+  Reader reader;
+  reader.jpeg.err = jpeg_std_error(&reader.errors);
+  reader.errors.error_exit = on_error;
+  reader.errors.emit_message = on_message;
+  reader.errors.output_message = print_nothing;
+  reader.jpeg.client_data = &reader;
+  if (!read(reader, bytes)) {
+    throw InvalidInput("image-damaged",
+                       fmt::format("the JPEG image is damaged or cut off ({})", reader.message.data()));
+  }
+  if (reader.pixels.channels() > 3) {
+    throw InvalidInput("image-format", "the JPEG image has the colours of a printer (CMYK); save it as RGB");
+  }
+  return reader.pixels;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,16 @@
+// JPEG from outside as pixels. libjpeg is used as it is, since OpenCV lets it print to standard error what is wrong,
+// and fills what is missing with grey.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <span>
+
+namespace roadfix {
+
+/// Grey or BGR of 8 bits. Bytes to no purpose between the parts of a file, which some cameras write, are passed over.
+/// The caller has looked at the size in the header. Throws InvalidInput "image-damaged", and "image-format" for colours
+/// of printers (CMYK).
+cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes);
+
+}  // namespace roadfix

@@ -37,6 +37,17 @@ ValueRange share_range(const std::vector<float>& values, bool integers) {
   return {0.0, largest <= 255.0F ? 255.0 : 65535.0};
 }
 
+/// What the sampled values of an image say of its range.
+struct Sampled {
+  float most = 0.0F;
+  bool mask = false;  ///< of 0 and the largest value alone
+};
+
+Sampled sampled_in(const std::vector<float>& values) {
+  const float most = values.empty() ? 0.0F : *std::ranges::max_element(values);
+  return {most, std::ranges::all_of(values, [most](float v) { return v == 0.0F || v == most; })};
+}
+
 std::string_view kind_of_values(const RasterFile& file) {
   if (!file.holds_integers()) return "real numbers";
   return file.declared_range() ? "bytes" : "integers of more than 8 bits";
@@ -59,6 +70,7 @@ struct Mosaic::Image {
   GridBox footprint;
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
+  Sampled sampled = {};
   ValueRange range = {};
   std::shared_ptr<const Collar> collar = nullptr;
 };
@@ -89,6 +101,7 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     if (images_.empty()) crs_ = crs_name(file.crs());
     if (!image.declared) {
       const std::vector<float> sample = file.sample_values();
+      image.sampled = sampled_in(sample);
       values.insert(values.end(), sample.begin(), sample.end());
     }
     images_.push_back(std::move(image));
@@ -104,8 +117,12 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   }
   if (rule == ValueRule::kShare) channels_ = 1;
+  // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
+  const bool masks = rule == ValueRule::kShare && integers_ &&
+                     std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
+    if (masks && image.sampled.most == 1.0F) image.range = {0.0, 1.0};
     if (!options.collar) continue;
     RasterFile file(image.path, options);
     image.collar = std::make_shared<Collar>(file, *options.collar, image.range);

@@ -177,6 +177,25 @@ TEST_F(RoadRaster, MasksOfAnyRangeCarryTheCertaintyOfDrawnRoads) {
   }
 }
 
+TEST_F(RoadRaster, MasksOfZeroAndOneKeepTheirRangeBesideOthersButNotBesideGradedShares) {
+  const auto west_of_both = [&](double least, double most) {
+    const auto raster = [&](const char* name, double west_m, double elsewhere, double road) {
+      return write_raster(folder / name, {.transform = {{west_m, 1.0, 0.0, 4200064.0, 0.0, -1.0}}},
+                          [=](int, int col, int) { return col < 31 ? road : elsewhere; });
+    };
+    const std::string small = raster("small.tif", 400000.0, 0.0, 1.0);
+    const std::string large = raster("large.tif", 400064.0, least, most);
+    const auto source = open_road_raster({small, large}, {}, kZone, 2.0);
+    const CellArray result = source->read({2.0, {200000, -2100032}, 64, 32}, 1);
+    return std::pair{result.at(14, 5), result.at(46, 5)};
+  };
+  const Cell road = cell_from_probability(Certainty{}.on_road);
+  EXPECT_EQ(west_of_both(0.0, 255.0), (std::pair{road, road}));
+  const auto [faint, graded] = west_of_both(40.0, 255.0);
+  EXPECT_LT(probability(faint), 0.05);
+  EXPECT_EQ(graded, road);
+}
+
 TEST_F(RoadRaster, ValuesThatAreNoSharesAreRefused) {
   for (const auto& [type, value] : {std::pair{GDT_Float32, 100.0}, {GDT_Float32, -9999.0}, {GDT_Int16, -9999.0}}) {
     EXPECT_EQ(testing::code_of([&, t = type, v = value] { cells(t, v); }), "road-values-out-of-range") << value;

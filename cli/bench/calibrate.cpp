@@ -130,10 +130,10 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   const double region = kRegionSigmas * scales.position / in_force.position_sigma_scale;
   std::vector<Example> examples;
   for (const Outcome& outcome : outcomes) {
-    if (!outcome.answer.evidence || !outcome.position_nees) continue;
+    if (!outcome.answer.figures || !outcome.position_nees) continue;
     Example& example = examples.emplace_back();
     for (std::size_t i = 0; i < kFigures; ++i) {
-      example.figures[i] = (*outcome.answer.evidence).*kCountedFigures[i].value;
+      example.figures[i] = (*outcome.answer.figures).*kCountedFigures[i].value;
     }
     example.right = *outcome.position_nees <= region * region;
     report.right += example.right ? 1 : 0;

@@ -33,7 +33,7 @@ struct Answer {
   std::string reason;
   std::optional<GeoPose> best;  ///< best guess, also where the status is not `fix`
   std::optional<FixMode> mode;  ///< the same with its ellipse, from methods that give one
-  std::optional<SearchEvidence> evidence;
+  std::optional<SearchFigures> figures;
   double probability = 0.0;
   double time_ms = 0.0;
 };

@@ -22,11 +22,11 @@ json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(*value) : json(nullptr);
 }
 
-json evidence_json(const std::optional<SearchEvidence>& evidence) {
-  if (!evidence) return nullptr;
-  json figures{{"agreement", evidence->agreement}};
-  for (const CountedFigure& figure : kCountedFigures) figures[figure.name] = (*evidence).*figure.value;
-  return figures;
+json figures_json(const std::optional<SearchFigures>& figures) {
+  if (!figures) return nullptr;
+  json result{{"agreement", figures->agreement}};
+  for (const CountedFigure& counted : kCountedFigures) result[counted.name] = (*figures).*counted.value;
+  return result;
 }
 
 json outcome_json(const Outcome& outcome) {
@@ -37,7 +37,7 @@ json outcome_json(const Outcome& outcome) {
           {"reason", answer.reason},
           {"answer", answer.best ? api::pose_json(*answer.best) : json(nullptr)},
           {"probability", answer.probability},
-          {"evidence", evidence_json(answer.evidence)},
+          {"evidence", figures_json(answer.figures)},
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
           {"position_nees", number_or_null(outcome.position_nees)},

@@ -20,7 +20,7 @@ class RoadsMethod : public Method {
     answer.status = fix.status;
     answer.reason = fix.reason;
     answer.probability = fix.probability;
-    answer.evidence = fix.evidence;
+    answer.figures = fix.figures;
     if (!fix.modes.empty()) {
       answer.mode = fix.modes.front();
       answer.best = answer.mode->pose;

@@ -75,7 +75,7 @@ std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSetting
 TrackSettings filter_named(const std::string& name, int particles) {
   TrackSettings settings = TrackSettings::paper(particles);
   if (name == "paper") return settings;
-  settings.evidence = {};
+  settings.measurement_model = {};
   if (name == "likelihood") return settings;
   settings.filter = {};
   settings.filter.max_particles = particles;
@@ -88,7 +88,7 @@ TrackSettings filter_named(const std::string& name, int particles) {
   if (name == "search") return settings;
   settings.filter.adapts_count = true;
   if (name == "default") return settings;
-  settings.evidence.kind = EvidenceKind::kDetectionRates;
+  settings.measurement_model.kind = LikelihoodKind::kDetectionRates;
   if (name == "rates") return settings;
   throw InvalidInput("filter-unknown", fmt::format("no filter is called '{}'; there are {}", name, kFilterNames));
 }

@@ -26,7 +26,7 @@ class Localizer {
 std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop);
 
 /// From the paper's filter to the default, one improvement after the other, and the default that weighs cells one by
-/// one (EvidenceKind::kDetectionRates).
+/// one (LikelihoodKind::kDetectionRates).
 inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default, rates";
 
 /// Throws InvalidInput "filter-unknown". At most `particles` of them.

@@ -54,7 +54,7 @@ Box box_of(std::span<const PlacedFeatures> parts) {
 }
 
 /// Sum and number of log-odds of each cell.
-struct Evidence {
+struct LogOddsSums {
   std::vector<float> sum;
   std::vector<std::uint8_t> count;
 };
@@ -65,7 +65,7 @@ float log_odds(Cell cell) {
   return static_cast<float>(std::log(p / (1.0 - p)));
 }
 
-void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Evidence& evidence) {
+void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, LogOddsSums& sums) {
   const double c = cos(part.offset.turn);
   const double s = sin(part.offset.turn);
   const CellPosition centre = centre_of(part);
@@ -80,8 +80,8 @@ void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Evi
       const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
       if (!is_observed(cell)) continue;
       const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(col);
-      evidence.sum[i] += log_odds(cell);
-      ++evidence.count[i];
+      sums.sum[i] += log_odds(cell);
+      ++sums.count[i];
     }
   }
 }
@@ -104,16 +104,16 @@ FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   const int rows = std::max(1, static_cast<int>(height));
   const CellPosition nadir{-box.left, -box.front};
   FeatureMap result{CellArray(cols, rows), cell_m, nadir};
-  Evidence evidence{std::vector<float>(result.cells.cells().size()),
-                    std::vector<std::uint8_t>(result.cells.cells().size())};
+  LogOddsSums sums{std::vector<float>(result.cells.cells().size()),
+                   std::vector<std::uint8_t>(result.cells.cells().size())};
   for (const PlacedFeatures& part : parts) {
     assert(part.features.cell_m == cell_m);
-    add(part, nadir, cols, rows, evidence);
+    add(part, nadir, cols, rows, sums);
   }
   const auto cells = result.cells.cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (evidence.count[i] == 0) continue;
-    const double mean = static_cast<double>(evidence.sum[i]) / evidence.count[i];
+    if (sums.count[i] == 0) continue;
+    const double mean = static_cast<double>(sums.sum[i]) / sums.count[i];
     cells[i] = cell_from_probability(1.0 / (1.0 + std::exp(-mean)));
   }
   return result;

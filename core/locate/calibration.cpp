@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSureByExamples = 0.5;  ///< more needs evidence that chance explains nothing
+constexpr double kSureByExamples = 0.5;  ///< more only where chance explains nothing
 
 [[noreturn]] void refuse(const std::string& field, const std::string& what) {
   throw InvalidInput("calibration-field", fmt::format("calibration file: {} {}; write a new one with roadfix bench "
@@ -46,14 +46,14 @@ json parsed(std::string_view text) {
 
 }  // namespace
 
-double Calibration::probability(const SearchEvidence& evidence) const {
+double Calibration::probability(const SearchFigures& figures) const {
   double sum = bias;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    sum += terms[i].weight * std::min(evidence.*kCountedFigures[i].value, terms[i].most);
+    sum += terms[i].weight * std::min(figures.*kCountedFigures[i].value, terms[i].most);
   }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
-  const double not_by_chance = std::exp(-std::exp(-evidence.surprise));
+  const double not_by_chance = std::exp(-std::exp(-figures.surprise));
   return std::min(learned, std::max(kSureByExamples, not_by_chance));
 }
 

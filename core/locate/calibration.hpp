@@ -7,20 +7,20 @@
 #include <array>
 #include <string_view>
 
-#include "core/locate/search_evidence.hpp"
+#include "core/locate/search_figures.hpp"
 
 namespace roadfix {
 
 struct CountedFigure {
   std::string_view name;  ///< in calibration files
-  double SearchEvidence::*value;
+  double SearchFigures::*value;
 };
 
-/// The figures of the evidence that the probability rests on.
-inline constexpr std::array<CountedFigure, 4> kCountedFigures{{{"surprise", &SearchEvidence::surprise},
-                                                               {"lead", &SearchEvidence::lead},
-                                                               {"gap", &SearchEvidence::gap},
-                                                               {"ground", &SearchEvidence::ground}}};
+/// Those that the probability rests on.
+inline constexpr std::array<CountedFigure, 4> kCountedFigures{{{"surprise", &SearchFigures::surprise},
+                                                               {"lead", &SearchFigures::lead},
+                                                               {"gap", &SearchFigures::gap},
+                                                               {"ground", &SearchFigures::ground}}};
 
 /// Value of "format" in a calibration file; another set of figures is another format.
 inline constexpr std::string_view kCalibrationFormat = "roadfix-calibration-2";
@@ -40,7 +40,7 @@ struct Calibration {
   double heading_sigma_scale = 1.0;
 
   /// That the true position lies within the region of the best mode (kRegionSigmas).
-  double probability(const SearchEvidence& evidence) const;
+  double probability(const SearchFigures& figures) const;
 };
 
 /// The text of a calibration file; its `origin` is for people. Throws InvalidInput "calibration-..." naming the field.

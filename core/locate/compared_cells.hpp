@@ -2,8 +2,8 @@
 // detector is less sure of roads in a picture of another day, and those that it doubts tell places apart too:
 // docs/experiments.md has the measurement. Coarser cells hold the mean of what is compared, not what is compared of the
 // mean: the latter would widen every road. Equation (5) stays of the cells as they are, and so does what weighs the
-// particles of a track: equation (7) is the paper's, and the correlation that evidence.hpp expects is that of plain
-// cells.
+// particles of a track: equation (7) is the paper's, and the correlation that measurement_model.hpp expects is that of
+// plain cells.
 #pragma once
 
 #include "core/grid/feature_map.hpp"

@@ -69,9 +69,9 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
         "the region or ingest more sources";
     return decision;
   }
-  const SearchEvidence evidence = evidence_of(found);
+  const SearchFigures figures = figures_of(found);
   const std::vector<double> posterior = shares(found);
-  decision.probability = found.scanned_share * calibration.probability(evidence);
+  decision.probability = found.scanned_share * calibration.probability(figures);
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
     decision.reason = kTimeLimitReason;
@@ -84,7 +84,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   }
   const auto alike =
       std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
-  if (evidence.surprise >= kBeyondChance || evidence.agreement >= kBeyondChanceDeviations) {
+  if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     decision.status = FixStatus::kAmbiguous;
     decision.weights.resize(static_cast<std::size_t>(alike));
     decision.reason = alike > 1 ? "several-places-fit" : "below-confidence";

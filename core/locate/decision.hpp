@@ -1,6 +1,6 @@
 // Is the best place the true one? From the scores of a search to a status and a probability.
 //
-// The probability comes from the evidence of the search by the calibration. The other places that
+// The probability comes from the figures of the search by the calibration. The other places that
 // fit are to the best one as their posteriors from the tempered log-likelihood are (ScoreBackground), as far as the
 // probability leaves room for them.
 #pragma once

@@ -87,10 +87,10 @@ struct FixMode {
 struct Fix {
   FixStatus status = FixStatus::kNoFix;
   std::string reason;  ///< stable word for no_fix and ambiguous ("too-few-roads", "not-above-chance", ...), else empty
-  std::string explanation;                 ///< the same for a person, with what to do
-  double probability = 0.0;                ///< that the true position lies within kRegionSigmas of the best mode
-  std::vector<FixMode> modes;              ///< best first; also given for no_fix, as a hint that must not be flown on
-  std::optional<SearchEvidence> evidence;  ///< of the best mode
+  std::string explanation;               ///< the same for a person, with what to do
+  double probability = 0.0;              ///< that the true position lies within kRegionSigmas of the best mode
+  std::vector<FixMode> modes;            ///< best first; also given for no_fix, as a hint that must not be flown on
+  std::optional<SearchFigures> figures;  ///< of the best mode
   double searched_km2 = 0.0;
   /// Of the poses of the region, looked at before the time was over; of the others nothing is known.
   double searched_share = 1.0;

@@ -33,7 +33,7 @@ TrackSettings TrackSettings::paper(int particles) {
   settings.recovers = false;
   settings.beyond_map_m = 0.0;
   settings.filter = FilterOptions::paper(particles);
-  settings.evidence.kind = EvidenceKind::kEquation7;
+  settings.measurement_model.kind = LikelihoodKind::kEquation7;
   return settings;
 }
 

@@ -16,9 +16,9 @@
 
 #include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
-#include "core/locate/evidence.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/map_view.hpp"
+#include "core/locate/measurement_model.hpp"
 #include "core/locate/recent_frames.hpp"
 #include "core/locate/track_claim.hpp"
 
@@ -48,7 +48,7 @@ struct TrackSettings {
   /// it from other places (see TrackClaim). Without it a track converges by its particles alone.
   bool recovers = true;
   FilterOptions filter;
-  EvidenceModel evidence;
+  MeasurementModel measurement_model;
   VehicleNoise vehicle;
   ClusterOptions clusters;
   std::uint64_t seed = 1;

@@ -133,7 +133,7 @@ void Tracker::Step::measure() {
 void Tracker::Step::weigh(std::span<const MatchSums> sums, std::int64_t frame_cells) {
   std::vector<double> log_likelihoods(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    log_likelihoods[i] = settings_.evidence.log_likelihood(sums[i], frame_cells, features_->cell_m);
+    log_likelihoods[i] = settings_.measurement_model.log_likelihood(sums[i], frame_cells, features_->cell_m);
   }
   const Correction correction = filter_.correct(log_likelihoods);
   estimate_.mean_likelihood = correction.mean_likelihood;
@@ -141,7 +141,7 @@ void Tracker::Step::weigh(std::span<const MatchSums> sums, std::int64_t frame_ce
     estimate_.measurement = Measurement::kUseless;
     return;
   }
-  if (settings_.evidence.supports(correction.mean_likelihood)) {
+  if (settings_.measurement_model.supports(correction.mean_likelihood)) {
     estimate_.measurement = Measurement::kAccepted;
     state_.claim.accept();
     state_.accepted_time_us = input_.time_us;
@@ -155,7 +155,7 @@ void Tracker::Step::weigh(std::span<const MatchSums> sums, std::int64_t frame_ce
 /// Whether the belief lies where the map shows next to nothing, so that a frame speaks neither for nor against it.
 bool Tracker::Step::is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const {
   constexpr double kLeastShare = 0.25;
-  if (settings_.evidence.kind == EvidenceKind::kEquation7) return false;
+  if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return false;
   const Particles& p = filter_.particles();
   double seen = 0.0;
   for (std::size_t i = 0; i < sums.size(); ++i) seen += p.weight[i] * static_cast<double>(sums[i].n);
@@ -185,7 +185,7 @@ bool Tracker::Step::has_converged(const Cluster& best) const {
 
 /// Equation (7) is no ratio to chance, and bears out what it does not reject.
 bool Tracker::Step::is_borne_out() const {
-  if (settings_.evidence.kind == EvidenceKind::kEquation7) return true;
+  if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return true;
   return state_.claim.outweighs_chance() && (state_.claim.compared || !settings_.recovers);
 }
 

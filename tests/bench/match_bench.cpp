@@ -8,9 +8,9 @@
 #include <random>
 
 #include "core/filter/filter.hpp"
-#include "core/locate/evidence.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/match_poses.hpp"
+#include "core/locate/measurement_model.hpp"
 #include "core/locate/particle_matches.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
@@ -137,14 +137,14 @@ void filter_step(benchmark::State& state) {
   OdometryCovariance covariance{};
   for (std::size_t i = 0; i < 3; ++i) covariance[i][i] = 1e-4;
   const OdometryMotion motion({5.0, 0.0, Angle::degrees(3.0)}, covariance, 1.0, 0.1);
-  const EvidenceModel evidence;
+  const MeasurementModel model;
   const auto frame_cells = static_cast<std::int64_t>(window.cells.observed_count());
   std::vector<double> log_likelihoods(kPoses);
   for (auto _ : state) {
     filter.predict(motion);
     const std::vector<MatchSums> sums = match_particles(view, window, filter.particles());
     for (std::size_t i = 0; i < sums.size(); ++i)
-      log_likelihoods[i] = 0.01 * evidence.log_likelihood(sums[i], frame_cells, 2.0);
+      log_likelihoods[i] = 0.01 * model.log_likelihood(sums[i], frame_cells, 2.0);
     benchmark::DoNotOptimize(filter.correct(log_likelihoods));
   }
   count_cells(state, static_cast<int>(state.range(0)));

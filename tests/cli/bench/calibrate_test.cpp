@@ -18,7 +18,7 @@ std::vector<Outcome> drawn(int n, std::uint64_t seed) {
   for (int i = 0; i < n; ++i) {
     Outcome outcome;
     const double surprise = uniform(random, -5.0, 5.0);
-    outcome.answer.evidence = SearchEvidence{surprise, 0.0, 0.0};
+    outcome.answer.figures = SearchFigures{surprise, 0.0, 0.0};
     outcome.answer.mode = FixMode{};
     outcome.answer.mode->heading_sigma = Angle::degrees(1.0);
     const bool right = uniform(random, 0.0, 1.0) < 1.0 / (1.0 + std::exp(-1.5 * surprise));

@@ -101,14 +101,14 @@ TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
 }
 
 TEST(FilterNames, RunFromThePapersFilterToTheDefaultAndOthersAreRefused) {
-  EXPECT_EQ(filter_named("paper", 700).evidence.kind, EvidenceKind::kEquation7);
+  EXPECT_EQ(filter_named("paper", 700).measurement_model.kind, LikelihoodKind::kEquation7);
   EXPECT_EQ(filter_named("likelihood", 700).start, TrackStart::kUniform);
   EXPECT_EQ(filter_named("likelihood", 700).filter.injection, Injection::kFixedShare);
   EXPECT_EQ(filter_named("injection", 700).filter.injection, Injection::kLikelihoodAverages);
   EXPECT_EQ(filter_named("search", 700).filter.adapts_count, false);
   EXPECT_EQ(filter_named("default", 700).filter.max_particles, 700);
-  EXPECT_EQ(filter_named("default", 700).evidence.kind, EvidenceKind::kCorrelation);
-  EXPECT_EQ(filter_named("rates", 700).evidence.kind, EvidenceKind::kDetectionRates);
+  EXPECT_EQ(filter_named("default", 700).measurement_model.kind, LikelihoodKind::kCorrelation);
+  EXPECT_EQ(filter_named("rates", 700).measurement_model.kind, LikelihoodKind::kDetectionRates);
   EXPECT_EQ(filter_named("rates", 700).filter.adapts_count, true);
   EXPECT_EQ(code_of([] { filter_named("papr", 700); }), "filter-unknown");
 }

@@ -17,54 +17,53 @@ constexpr const char* kText = R"({"format": "roadfix-calibration-2", "bias": -3.
             "gap": {"weight": 0.25, "most": 10.0}, "ground": {"weight": 2.0, "most": 11.0}},
   "highest": 0.995, "sigma_scale": {"position": 1.1, "heading": 0.6}, "origin": {"maps": ["town"]}})";
 
-SearchEvidence evidence(double surprise, double lead, double gap, double ground = 100.0) {
+SearchFigures figures(double surprise, double lead, double gap, double ground = 100.0) {
   return {.surprise = surprise, .lead = lead, .gap = gap, .ground = ground};
 }
 
-TEST(Calibration, IsALogisticFunctionOfTheEvidence) {
+TEST(Calibration, IsALogisticFunctionOfTheFigures) {
   const Calibration calibration = parse_calibration(kText);
-  EXPECT_NEAR(calibration.probability(evidence(1.0, 2.0, 4.0, 0.1)),
-              1.0 / (1.0 + std::exp(3.0 - 0.5 - 2.0 - 1.0 - 0.2)), 1e-12);
+  EXPECT_NEAR(calibration.probability(figures(1.0, 2.0, 4.0, 0.1)), 1.0 / (1.0 + std::exp(3.0 - 0.5 - 2.0 - 1.0 - 0.2)),
+              1e-12);
   EXPECT_EQ(calibration.position_sigma_scale, 1.1);
   EXPECT_EQ(calibration.heading_sigma_scale, 0.6);
 }
 
 TEST(Calibration, IsNeverSurerThanItsExamples) {
   const Calibration calibration = parse_calibration(kText);
-  EXPECT_EQ(calibration.probability(evidence(1e9, 1e9, 1e9)), 0.995);
-  EXPECT_EQ(calibration.probability(evidence(1e9, 0.0, 0.0, 0.0)),
-            calibration.probability(evidence(8.0, 0.0, 0.0, 0.0)));
+  EXPECT_EQ(calibration.probability(figures(1e9, 1e9, 1e9)), 0.995);
+  EXPECT_EQ(calibration.probability(figures(1e9, 0.0, 0.0, 0.0)), calibration.probability(figures(8.0, 0.0, 0.0, 0.0)));
 }
 
 TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
   const Calibration& calibration = default_calibration();
-  EXPECT_EQ(calibration.probability(evidence(2.6, 100.0, 100.0)), std::exp(-std::exp(-2.6)));
-  EXPECT_EQ(calibration.probability(evidence(0.0, 100.0, 100.0)), 0.5);
-  EXPECT_GE(calibration.probability(evidence(5.0, 100.0, 100.0)), 0.99);
+  EXPECT_EQ(calibration.probability(figures(2.6, 100.0, 100.0)), std::exp(-std::exp(-2.6)));
+  EXPECT_EQ(calibration.probability(figures(0.0, 100.0, 100.0)), 0.5);
+  EXPECT_GE(calibration.probability(figures(5.0, 100.0, 100.0)), 0.99);
 }
 
 TEST(Calibration, RisesWithEveryFigure) {
   const Calibration& calibration = default_calibration();
   for (double surprise = -10.0; surprise < 20.0; surprise += 1.0) {
     for (double lead = 0.0; lead < 12.0; lead += 1.0) {
-      const double here = calibration.probability(evidence(surprise, lead, lead, 10.0));
-      EXPECT_LE(here, calibration.probability(evidence(surprise + 1.0, lead, lead, 10.0)));
-      EXPECT_LE(here, calibration.probability(evidence(surprise, lead + 1.0, lead, 10.0)));
-      EXPECT_LE(here, calibration.probability(evidence(surprise, lead, lead + 1.0, 10.0)));
-      EXPECT_LE(here, calibration.probability(evidence(surprise, lead, lead, 10.5)));
+      const double here = calibration.probability(figures(surprise, lead, lead, 10.0));
+      EXPECT_LE(here, calibration.probability(figures(surprise + 1.0, lead, lead, 10.0)));
+      EXPECT_LE(here, calibration.probability(figures(surprise, lead + 1.0, lead, 10.0)));
+      EXPECT_LE(here, calibration.probability(figures(surprise, lead, lead + 1.0, 10.0)));
+      EXPECT_LE(here, calibration.probability(figures(surprise, lead, lead, 10.5)));
     }
   }
 }
 
 TEST(Calibration, AsShippedDoubtsSmallFootprintsMoreThanLargeOnes) {
-  const auto of_footprint = [](double side_m) { return evidence(3.0, 2.0, 2.0, std::log(side_m * side_m)); };
+  const auto of_footprint = [](double side_m) { return figures(3.0, 2.0, 2.0, std::log(side_m * side_m)); };
   const Calibration& calibration = default_calibration();
   EXPECT_LT(calibration.probability(of_footprint(70.0)) + 0.1, calibration.probability(of_footprint(300.0)));
 }
 
 TEST(Calibration, AsShippedReachesTheUsualConfidenceAndDoubtsWhatChanceExplains) {
-  EXPECT_GE(default_calibration().probability(evidence(100.0, 100.0, 100.0)), 0.99);
-  EXPECT_LT(default_calibration().probability(evidence(0.0, 0.5, 0.5)), 0.5);
+  EXPECT_GE(default_calibration().probability(figures(100.0, 100.0, 100.0)), 0.99);
+  EXPECT_LT(default_calibration().probability(figures(0.0, 0.5, 0.5)), 0.5);
 }
 
 TEST(Calibration, SaysWhichFieldOfAFileIsWrong) {

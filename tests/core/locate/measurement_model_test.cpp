@@ -1,4 +1,4 @@
-#include "core/locate/evidence.hpp"
+#include "core/locate/measurement_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ Cells seen(std::mt19937_64& random, double a, double b) {
   return cells;
 }
 
-TEST(Evidence, OfDetectionRatesIsTheSumOverTheCells) {
+TEST(MeasurementModel, OfDetectionRatesIsTheSumOverTheCells) {
   std::mt19937_64 random(1);
   const Cells cells = seen(random, 0.6, 0.1);
   const MatchSums s = sums_of(cells.m, cells.l);
@@ -44,18 +44,18 @@ TEST(Evidence, OfDetectionRatesIsTheSumOverTheCells) {
     const double rate = cells.m[i] ? 0.6 : 0.1;
     expected += cells.l[i] ? std::log(rate / average) : std::log((1.0 - rate) / (1.0 - average));
   }
-  EvidenceModel model;
-  model.kind = EvidenceKind::kDetectionRates;
+  MeasurementModel model;
+  model.kind = LikelihoodKind::kDetectionRates;
   model.useless_share = 0.0;
   model.temper = 1.0;
   model.independent_m2 = 400.0;
   EXPECT_NEAR(model.log_likelihood(s, s.n, 2.0), expected * 4.0 / 400.0, 1e-9);
 }
 
-TEST(Evidence, IsForTheTruePlaceAndAgainstOthers) {
+TEST(MeasurementModel, IsForTheTruePlaceAndAgainstOthers) {
   std::mt19937_64 random(2);
-  for (const EvidenceKind kind : {EvidenceKind::kCorrelation, EvidenceKind::kDetectionRates}) {
-    EvidenceModel model;
+  for (const LikelihoodKind kind : {LikelihoodKind::kCorrelation, LikelihoodKind::kDetectionRates}) {
+    MeasurementModel model;
     model.kind = kind;
     const Cells truth = seen(random, 0.5, 0.1);
     const Cells other = seen(random, 0.5, 0.1);
@@ -65,9 +65,9 @@ TEST(Evidence, IsForTheTruePlaceAndAgainstOthers) {
   }
 }
 
-TEST(Evidence, ByCorrelationHasAMeanRatioOfOneByChance) {
+TEST(MeasurementModel, ByCorrelationHasAMeanRatioOfOneByChance) {
   // Without tempering and useless frames, the ratio to chance averages to 1 over chance by its definition.
-  EvidenceModel model;
+  MeasurementModel model;
   model.useless_share = 0.0;
   model.temper = 1.0;
   model.expected_correlation = 0.03;
@@ -84,25 +84,25 @@ TEST(Evidence, ByCorrelationHasAMeanRatioOfOneByChance) {
   EXPECT_NEAR(sum / kRuns, 1.0, 5.0 * 2.25 / std::sqrt(kRuns));
 }
 
-TEST(Evidence, FallsNoFurtherThanTheShareOfUselessFrames) {
-  EvidenceModel model;
+TEST(MeasurementModel, FallsNoFurtherThanTheShareOfUselessFrames) {
+  MeasurementModel model;
   std::mt19937_64 random(4);
   const Cells cells = seen(random, 0.0, 0.9);
   EXPECT_NEAR(model.log_likelihood(sums_of(cells.m, cells.l), 2000, 16.0), std::log(model.useless_share), 0.01);
 }
 
-TEST(Evidence, SaysNothingWhereNothingWasObserved) {
-  EXPECT_EQ(EvidenceModel{}.log_likelihood({}, 0, 2.0), 0.0);
-  EvidenceModel paper;
-  paper.kind = EvidenceKind::kEquation7;
+TEST(MeasurementModel, SaysNothingWhereNothingWasObserved) {
+  EXPECT_EQ(MeasurementModel{}.log_likelihood({}, 0, 2.0), 0.0);
+  MeasurementModel paper;
+  paper.kind = LikelihoodKind::kEquation7;
   EXPECT_EQ(paper.log_likelihood({}, 0, 2.0), -std::numeric_limits<double>::infinity());
 }
 
-TEST(Evidence, OfAPoseThatIsMostlyOutsideTheMapIsNoBetterThanThatOfAWrongPlace) {
+TEST(MeasurementModel, OfAPoseThatIsMostlyOutsideTheMapIsNoBetterThanThatOfAWrongPlace) {
   std::mt19937_64 random(6);
   const Cells truth = seen(random, 0.5, 0.1);
   const Cells other = seen(random, 0.5, 0.1);
-  const EvidenceModel model;
+  const MeasurementModel model;
   const double wrong = model.log_likelihood(sums_of(other.m, truth.l), 2000, 16.0);
   EXPECT_NEAR(model.log_likelihood({}, 2000, 16.0), wrong, 0.5) << "nothing in common";
   // A tenth of the footprint on the map, and all that is seen there fits.
@@ -111,11 +111,11 @@ TEST(Evidence, OfAPoseThatIsMostlyOutsideTheMapIsNoBetterThanThatOfAWrongPlace) 
   EXPECT_GT(model.log_likelihood(sums_of(few, few), 200, 16.0), 0.0);
 }
 
-TEST(Evidence, OfEquation7IsItself) {
+TEST(MeasurementModel, OfEquation7IsItself) {
   std::mt19937_64 random(5);
   const Cells cells = seen(random, 0.6, 0.1);
-  EvidenceModel paper;
-  paper.kind = EvidenceKind::kEquation7;
+  MeasurementModel paper;
+  paper.kind = LikelihoodKind::kEquation7;
   const MatchSums s = sums_of(cells.m, cells.l);
   EXPECT_NEAR(std::exp(paper.log_likelihood(s, 2000, 2.0)), *rho(s), 1e-12);
 }

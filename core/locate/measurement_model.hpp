@@ -7,7 +7,7 @@
 
 namespace roadfix {
 
-enum class EvidenceKind {
+enum class LikelihoodKind {
   /// How much likelier the correlation (Pearson's, over the means of m and l apart) is at the true pose than by chance,
   /// both taken as normal with the spread that independent samples of the ground leave.
   kCorrelation,
@@ -20,8 +20,8 @@ enum class EvidenceKind {
 };
 
 /// Assumed values, not learned from data: they set how soon the filter commits, not which place it prefers.
-struct EvidenceModel {
-  EvidenceKind kind = EvidenceKind::kCorrelation;
+struct MeasurementModel {
+  LikelihoodKind kind = LikelihoodKind::kCorrelation;
   double expected_correlation = 0.25;  ///< at the true pose
   double detection_rate = 0.6;         ///< a
   double false_rate = 0.1;             ///< b

@@ -1,4 +1,4 @@
-#include "core/locate/search_evidence.hpp"
+#include "core/locate/search_figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,55 +27,55 @@ SearchResult found(double score, double lowest, double mean_excess, int rivals =
   return result;
 }
 
-TEST(SearchEvidence, CountsHowManyPlacesChanceWouldPutThere) {
+TEST(SearchFigures, CountsHowManyPlacesChanceWouldPutThere) {
   // An exponential tail of 200 places: exp(-5) of them lie five mean excesses above the lowest.
-  const SearchEvidence evidence = evidence_of(found(std::tanh(std::atanh(0.2) + 5 * 0.02), 0.2, 0.02));
-  EXPECT_NEAR(evidence.surprise, 5.0 - std::log(200.0), 0.2);
+  const SearchFigures figures = figures_of(found(std::tanh(std::atanh(0.2) + 5 * 0.02), 0.2, 0.02));
+  EXPECT_NEAR(figures.surprise, 5.0 - std::log(200.0), 0.2);
 }
 
-TEST(SearchEvidence, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
+TEST(SearchFigures, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
   SearchResult result = found(0.6, 0.2, 0.02);
   const double ahead = std::atanh(0.6) - std::atanh(result.modes[1].score);
-  const SearchEvidence evidence = evidence_of(result);
-  EXPECT_NEAR(evidence.lead, ahead / 0.05, 1e-9);
-  EXPECT_NEAR(evidence.gap, ahead / 0.02, 0.05 * ahead / 0.02);
+  const SearchFigures figures = figures_of(result);
+  EXPECT_NEAR(figures.lead, ahead / 0.05, 1e-9);
+  EXPECT_NEAR(figures.gap, ahead / 0.02, 0.05 * ahead / 0.02);
 }
 
-TEST(SearchEvidence, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
+TEST(SearchFigures, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
   SearchResult result = found(0.6, 0.2, 0.02);
   result.cell_m = 2.0;
   result.modes[0].pearson = 0.5;
   result.modes[0].observed_cells = 22'500;  // 90,000 m2, 400 samples
-  EXPECT_NEAR(evidence_of(result).agreement, 0.5 * 20.0, 1e-9);
-  EXPECT_NEAR(evidence_of(result).ground, std::log(20.0 * 20.0 * 15.0 * 15.0), 1e-9);
+  EXPECT_NEAR(figures_of(result).agreement, 0.5 * 20.0, 1e-9);
+  EXPECT_NEAR(figures_of(result).ground, std::log(20.0 * 20.0 * 15.0 * 15.0), 1e-9);
 }
 
-TEST(SearchEvidence, ASmallerRegionLeavesChanceLessRoom) {
+TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {
   SearchResult result = found(0.4, 0.2, 0.02);
-  const double whole = evidence_of(result).surprise;
+  const double whole = figures_of(result).surprise;
   result.background.region_share = 0.01;
-  EXPECT_NEAR(evidence_of(result).surprise - whole, std::log(100.0), 1e-9);
+  EXPECT_NEAR(figures_of(result).surprise - whole, std::log(100.0), 1e-9);
 }
 
-TEST(SearchEvidence, WithFewRivalsChanceMayExplainEverything) {
-  const SearchEvidence evidence = evidence_of(found(0.9, 0.2, 0.02, 5));
-  EXPECT_LT(evidence.surprise, -5.0);
-  EXPECT_EQ(evidence.gap, 0.0);
+TEST(SearchFigures, WithFewRivalsChanceMayExplainEverything) {
+  const SearchFigures figures = figures_of(found(0.9, 0.2, 0.02, 5));
+  EXPECT_LT(figures.surprise, -5.0);
+  EXPECT_EQ(figures.gap, 0.0);
 }
 
-TEST(SearchEvidence, APlaceAloneInItsRegionIsComparedWithThoseAround) {
+TEST(SearchFigures, APlaceAloneInItsRegionIsComparedWithThoseAround) {
   SearchResult result = found(0.6, 0.2, 0.02);
   result.modes.resize(1);
   result.background.rivals_within.clear();
-  EXPECT_NEAR(evidence_of(result).lead, (std::atanh(0.6) - std::atanh(result.background.rivals.back())) / 0.05, 1e-9);
+  EXPECT_NEAR(figures_of(result).lead, (std::atanh(0.6) - std::atanh(result.background.rivals.back())) / 0.05, 1e-9);
 }
 
-TEST(SearchEvidence, OfAConstantBackgroundIsNone) {
+TEST(SearchFigures, OfAConstantBackgroundIsNone) {
   SearchResult result = found(0.6, 0.2, 0.0);
   result.background.sd = 0.0;
-  const SearchEvidence evidence = evidence_of(result);
-  EXPECT_LT(evidence.surprise, 0.0);
-  EXPECT_EQ(evidence.lead, 0.0);
+  const SearchFigures figures = figures_of(result);
+  EXPECT_LT(figures.surprise, 0.0);
+  EXPECT_EQ(figures.lead, 0.0);
 }
 
 }  // namespace

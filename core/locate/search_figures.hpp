@@ -9,7 +9,7 @@ namespace roadfix {
 /// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample.
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
-struct SearchEvidence {
+struct SearchFigures {
   /// -ln of how many places of the region would fit as well as the best one by chance, if the scores of the distinct
   /// places beside it thin out like an exponential tail of Fisher's z above the lowest of them (the domain of
   /// attraction of Gumbel). Large = chance does not explain it.
@@ -28,6 +28,6 @@ struct SearchEvidence {
 };
 
 /// `found` holds a mode.
-SearchEvidence evidence_of(const SearchResult& found);
+SearchFigures figures_of(const SearchResult& found);
 
 }  // namespace roadfix

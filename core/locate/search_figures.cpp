@@ -1,4 +1,4 @@
-#include "core/locate/search_evidence.hpp"
+#include "core/locate/search_figures.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -40,27 +40,27 @@ double second_of(const SearchResult& found) {
 
 }  // namespace
 
-SearchEvidence evidence_of(const SearchResult& found) {
+SearchFigures figures_of(const SearchResult& found) {
   assert(!found.modes.empty());
   const ScoreBackground& background = found.background;
   const double best = fisher(found.modes.front().score);
   const double ahead = best - fisher(second_of(found));
   const double ground = ground_m2(found.modes.front(), found.cell_m);
-  SearchEvidence evidence;
-  evidence.surprise = kUnknown;
-  evidence.agreement = found.modes.front().pearson * std::sqrt(ground / kSampleM2);
-  evidence.ground = std::log(std::max(ground, 1.0));
-  if (background.sd > 0.0) evidence.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
-  if (background.rivals.size() < kFewestRivals) return evidence;
+  SearchFigures figures;
+  figures.surprise = kUnknown;
+  figures.agreement = found.modes.front().pearson * std::sqrt(ground / kSampleM2);
+  figures.ground = std::log(std::max(ground, 1.0));
+  if (background.sd > 0.0) figures.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
+  if (background.rivals.size() < kFewestRivals) return figures;
   const double scale = mean_excess(background.rivals);
   const double excess = best - fisher(background.rivals.back());
-  if (scale <= 0.0 || excess <= 0.0) return evidence;
+  if (scale <= 0.0 || excess <= 0.0) return figures;
   // The scale is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
   const auto count = static_cast<double>(background.rivals.size() - 1);
   const double log_expected = std::log(background.region_share * count) - count * std::log1p(excess / (scale * count));
-  evidence.surprise = std::clamp(-log_expected, kUnknown, kLargest);
-  evidence.gap = std::clamp(ahead / scale, 0.0, kLargest);
-  return evidence;
+  figures.surprise = std::clamp(-log_expected, kUnknown, kLargest);
+  figures.gap = std::clamp(ahead / scale, 0.0, kLargest);
+  return figures;
 }
 
 }  // namespace roadfix

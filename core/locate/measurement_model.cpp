@@ -1,4 +1,4 @@
-#include "core/locate/evidence.hpp"
+#include "core/locate/measurement_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@ namespace roadfix {
 namespace {
 
 /// Sum over the cells of log P(l | m) - log P(l | chance).
-double detection_evidence(const MatchSums& s, double a, double b) {
+double detection_log_ratio(const MatchSums& s, double a, double b) {
   const auto n = static_cast<double>(s.n);
   const double average = std::clamp(s.l / n, 1e-3, 1.0 - 1e-3);
   const double hit = std::log(a) - std::log(average);
@@ -19,25 +19,25 @@ double detection_evidence(const MatchSums& s, double a, double b) {
 
 }  // namespace
 
-double EvidenceModel::log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const {
-  if (kind == EvidenceKind::kEquation7) return std::log(likelihood(rho(sums).value_or(0.0)));
+double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const {
+  if (kind == LikelihoodKind::kEquation7) return std::log(likelihood(rho(sums).value_or(0.0)));
   const double samples_per_cell = std::min(1.0, cell_m * cell_m / independent_m2);
-  double evidence = 0.0;
-  if (kind == EvidenceKind::kDetectionRates) {
-    if (sums.n > 0) evidence = samples_per_cell * detection_evidence(sums, detection_rate, false_rate);
+  double log_ratio = 0.0;
+  if (kind == LikelihoodKind::kDetectionRates) {
+    if (sums.n > 0) log_ratio = samples_per_cell * detection_log_ratio(sums, detection_rate, false_rate);
   } else {
     const double samples = samples_per_cell * static_cast<double>(std::max(frame_cells, sums.n));
     const double seen = samples_per_cell * static_cast<double>(sums.n);
     const double r = pearson(sums).value_or(0.0);
-    evidence = expected_correlation * (seen * r - 0.5 * samples * expected_correlation);
+    log_ratio = expected_correlation * (seen * r - 0.5 * samples * expected_correlation);
   }
-  // exp() cannot overflow: evidence is at most a few thousand samples times a fraction, so it is bounded first.
+  // exp() cannot overflow: log_ratio is at most a few thousand samples times a fraction, so it is bounded first.
   constexpr double kMost = 300.0;
-  return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * evidence, kMost)));
+  return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * log_ratio, kMost)));
 }
 
-bool EvidenceModel::supports(double mean_likelihood) const {
-  return mean_likelihood > (kind == EvidenceKind::kEquation7 ? 0.0 : 1.0);
+bool MeasurementModel::supports(double mean_likelihood) const {
+  return mean_likelihood > (kind == LikelihoodKind::kEquation7 ? 0.0 : 1.0);
 }
 
 }  // namespace roadfix

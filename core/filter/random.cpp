@@ -4,27 +4,11 @@
 #include <numbers>
 
 namespace roadfix {
-namespace {
-
-constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15ULL;
-
-constexpr std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31U);
-}
-
-}  // namespace
 
 RandomStream::RandomStream(Draw purpose, const Address& address)
-    : state_(mixed(mixed(mixed(address.seed + kGoldenGamma * static_cast<std::uint64_t>(purpose)) + kGoldenGamma +
-                         address.step) +
-                   kGoldenGamma + address.index)) {}
-
-std::uint64_t RandomStream::next() {
-  state_ += kGoldenGamma;
-  return mixed(state_);
-}
+    : bits_(mix64(mix64(mix64(address.seed + kGoldenGamma * static_cast<std::uint64_t>(purpose)) + kGoldenGamma +
+                        address.step) +
+                  kGoldenGamma + address.index)) {}
 
 double RandomStream::normal() {
   if (has_spare_) {

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "core/units/splitmix.hpp"
+
 namespace roadfix {
 
 /// What a stream is drawn for; streams of different purposes are independent.
@@ -18,17 +20,16 @@ class RandomStream {
   };
   RandomStream(Draw purpose, const Address& address);
 
-  /// SplitMix64 (Steele, Lea and Flood, 2014).
-  std::uint64_t next();
+  std::uint64_t next() { return bits_.next(); }
   /// In [0, 1).
-  double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+  double uniform() { return bits_.uniform(); }
   /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Standard normal by Box and Muller: std::normal_distribution differs between libraries.
   double normal();
 
  private:
-  std::uint64_t state_;
+  SplitMix64 bits_;
   double spare_ = 0.0;
   bool has_spare_ = false;
 };

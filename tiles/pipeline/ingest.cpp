@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/splitmix.hpp"
 
 namespace roadfix {
 namespace {
@@ -22,14 +23,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// Steele, Lea, Flood: Fast splittable pseudorandom number generators (2014), the finalizer of SplitMix64.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
 
 struct Block {
   TileIndex index;
@@ -149,7 +142,7 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
 std::uint64_t block_seed(std::uint64_t seed, TileIndex block) {
   const auto col = static_cast<std::uint32_t>(block.col);
   const auto row = static_cast<std::uint32_t>(block.row);
-  return mixed(mixed(seed) ^ ((std::uint64_t{row} << 32U) | col));
+  return SplitMix64(SplitMix64(seed).next() ^ ((std::uint64_t{row} << 32U) | col)).next();
 }
 
 IngestReport ingest(const CellSource& source, const SourceRecord& record, const MapSettings& settings,

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/units/splitmix.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -11,10 +13,9 @@ constexpr std::size_t kEntryBytes = 192;
 }  // namespace
 
 std::size_t TileCache::Hash::operator()(const Key& key) const {
-  auto hash = static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.tile.col)) << 32 |
-              static_cast<std::uint32_t>(key.tile.row);
-  hash = (hash + static_cast<std::uint64_t>(key.level)) * 0x9e3779b97f4a7c15U;
-  return hash ^ (hash >> 32);
+  const auto place = static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.tile.col)) << 32 |
+                     static_cast<std::uint32_t>(key.tile.row);
+  return mix64(place + static_cast<std::uint64_t>(key.level) * kGoldenGamma);
 }
 
 std::size_t TileCache::cost(const Tile& tile) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/units/splitmix.hpp"
 #include "tiles/world/palette.hpp"
 
 namespace roadfix::world {
@@ -15,22 +16,16 @@ constexpr double kBareFrom = 0.72;
 class Quirks {
  public:
   explicit Quirks(PlanPoint p)
-      : state_(static_cast<std::uint64_t>((p.x + 1e5) * 64.0) * 0x9e3779b97f4a7c15ULL ^
-               static_cast<std::uint64_t>((p.y + 1e5) * 64.0)) {}
-  double next() {
-    // Steele and others' SplitMix64.
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
+      : bits_(static_cast<std::uint64_t>((p.x + 1e5) * 64.0) * kGoldenGamma ^
+              static_cast<std::uint64_t>((p.y + 1e5) * 64.0)) {}
+  double next() { return bits_.uniform(); }
   PlanPoint within(double radius) {
     const double angle = next() * 6.2831853;
     return PlanPoint(std::cos(angle), std::sin(angle)) * (radius * std::sqrt(next()));
   }
 
  private:
-  std::uint64_t state_;
+  SplitMix64 bits_;
 };
 
 class CrownPainter {

@@ -7,12 +7,14 @@
 #include <numbers>
 #include <random>
 
+#include "core/units/splitmix.hpp"
+
 namespace roadfix::world {
 
 class Random {
  public:
   /// `stream` keeps the parts of a world apart: one more tree must not move the streets.
-  Random(std::uint64_t seed, std::uint64_t stream) : engine_(seed * 0x9e3779b97f4a7c15ULL + stream) {}
+  Random(std::uint64_t seed, std::uint64_t stream) : engine_(seed * kGoldenGamma + stream) {}
 
   /// In [0, 1).
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }

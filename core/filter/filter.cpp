@@ -69,14 +69,14 @@ Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, std
 Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, FilterState state, int threads)
     : options_(options), region_(region), threads_(threads), state_(std::move(state)), started_(true) {}
 
-void Filter::start_uniformly(const AcceptanceRegion& over) { start_from({}, 1.0, over); }
+void Filter::start_uniformly(const PoseRegion& over) { start_from({}, 1.0, over); }
 
-void Filter::start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over) {
+void Filter::start_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   if (std::exchange(started_, true)) ++state_.resets;
   restart_from(proposals, uniform_share, over);
 }
 
-void Filter::restart_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over) {
+void Filter::restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   ++state_.step;
   state_.slow_support = state_.fast_support = 0.5;
   const ProposalDraw around(proposals);
@@ -85,7 +85,7 @@ void Filter::restart_from(std::span<const Proposal> proposals, double uniform_sh
   state_.particles.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     RandomStream random(Draw::kStart, {state_.seed, state_.step, i});
-    state_.particles.set(i, i < uniform ? over.draw(random) : around(random));
+    state_.particles.set(i, i < uniform ? uniform_draw(over, random) : around(random));
     state_.particles.weight[i] = 1.0 / static_cast<double>(count);
   }
 }
@@ -96,7 +96,7 @@ void Filter::begin_step() {
   if (options_.injection != Injection::kFixedShare) return;
   const auto count = static_cast<double>(state_.particles.size());
   replace_some(static_cast<std::size_t>(options_.injected_share * count),
-               [this](RandomStream& random) { return region_.draw(random); });
+               [this](RandomStream& random) { return uniform_draw(region_.poses, random); });
 }
 
 bool Filter::keep_within_region() {
@@ -105,7 +105,7 @@ bool Filter::keep_within_region() {
     if (!region_.keeps({p.east_m[i], p.north_m[i]})) p.weight[i] = 0.0;
   }
   if (normalise(p.weight)) return true;
-  start_uniformly(region_);
+  start_uniformly(region_.poses);
   return false;
 }
 
@@ -165,7 +165,7 @@ void Filter::resample() {
   p = std::move(drawn);
   roughen(ancestors);
   replace_some(static_cast<std::size_t>(share_to_inject() * static_cast<double>(count)),
-               [this](RandomStream& stream) { return region_.draw(stream); });
+               [this](RandomStream& stream) { return uniform_draw(region_.poses, stream); });
 }
 
 void Filter::roughen(std::span<const std::size_t> ancestors) {

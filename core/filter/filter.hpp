@@ -73,11 +73,11 @@ class Filter {
   Filter(const FilterOptions& options, const AcceptanceRegion& region, FilterState state, int threads = 1);
 
   /// The uniform belief of the paper over a region. Counts as a reset unless it is the first.
-  void start_uniformly(const AcceptanceRegion& over);
+  void start_uniformly(const PoseRegion& over);
   /// Draws around the proposals by their weights, and the rest uniformly. Counts as start_uniformly() does.
-  void start_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
+  void start_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
   /// The same where a search tells more about a belief that has just begun; no further reset.
-  void restart_from(std::span<const Proposal> proposals, double uniform_share, const AcceptanceRegion& over);
+  void restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
 
   /// Moves the particles; those that the region does not keep lose their weight. Returns false where none was left and
   /// the belief became uniform over the region.

@@ -10,26 +10,19 @@ GridBox clipped(const GridBox& box, const GridCircle& circle) {
 
 }  // namespace
 
-bool AcceptanceRegion::contains(GridPoint point) const {
-  return box.contains(point) && (!circle || roadfix::contains(*circle, point));
-}
+bool AcceptanceRegion::keeps(GridPoint point) const { return poses.grown(beyond_m, Angle()).contains(point); }
 
-bool AcceptanceRegion::keeps(GridPoint point) const {
-  return grown(box, beyond_m).contains(point) &&
-         (!circle || distance_m(point, circle->centre) <= circle->radius_m + beyond_m);
-}
-
-ParticleState AcceptanceRegion::draw(RandomStream& random) const {
-  const GridBox within = circle ? clipped(box, *circle) : box;
+ParticleState uniform_draw(const PoseRegion& region, RandomStream& random) {
+  const GridBox within = region.circle ? clipped(region.box, *region.circle) : region.box;
   ParticleState state;
   constexpr int kMostTries = 1000;  // a circle that only grazes the box
   for (int i = 0; i < kMostTries; ++i) {
     state.east_m = random.uniform(within.min.east_m, within.max.east_m);
     state.north_m = random.uniform(within.min.north_m, within.max.north_m);
-    if (contains({state.east_m, state.north_m})) break;
+    if (region.contains({state.east_m, state.north_m})) break;
   }
-  const double half_rad = heading_half_width.radians();
-  state.heading_rad = (heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
+  const double half_rad = region.heading_half_width.radians();
+  state.heading_rad = (region.heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
   return state;
 }
 

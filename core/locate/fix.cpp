@@ -114,7 +114,7 @@ GeoPose on_earth(const GridPose& pose, const UtmZone& zone) {
 
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  const SearchRegion region = region_of(map, prior);
+  const PoseRegion region = region_of(map, prior);
   require_valid(options, region.area_km2());
   const FeatureMap cells = in_cells_of(map, features);
   Fix fix;

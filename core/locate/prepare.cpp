@@ -114,12 +114,12 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
   return resampled(features, cell_m);
 }
 
-SearchRegion region_of(const MapView& map, const Prior& prior) {
+PoseRegion region_of(const MapView& map, const Prior& prior) {
   if (map.extent.empty() || map.extent.width_m() <= 0.0 || map.extent.height_m() <= 0.0) {
     throw InvalidInput("map-unobserved",
                        fmt::format("the map {} holds no observed cell: ingest imagery or roads first", map.name));
   }
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.extent;
   if (prior.circle) {
     region.circle = circle_in(map.zone, *prior.circle);

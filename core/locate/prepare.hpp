@@ -11,6 +11,6 @@ namespace roadfix {
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
 /// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing.
-SearchRegion region_of(const MapView& map, const Prior& prior);
+PoseRegion region_of(const MapView& map, const Prior& prior);
 
 }  // namespace roadfix

@@ -7,10 +7,6 @@
 
 namespace roadfix {
 
-AcceptanceRegion acceptance_of(const SearchRegion& region) {
-  return {region.box, region.circle, region.heading, region.heading_half_width, 0.0};
-}
-
 bool is_same_place(const GridPose& a, const GridPose& b) {
   constexpr double kNearM = 25.0;
   const Angle near = Angle::degrees(15.0);

@@ -7,11 +7,8 @@
 #include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
 #include "core/locate/tracker.hpp"
-#include "core/match/search_region.hpp"
 
 namespace roadfix {
-
-AcceptanceRegion acceptance_of(const SearchRegion& region);
 
 /// So near that a search and the particles mean one place.
 bool is_same_place(const GridPose& a, const GridPose& b);

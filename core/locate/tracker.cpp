@@ -40,10 +40,8 @@ TrackSettings TrackSettings::paper(int particles) {
 Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
       settings_(std::move(settings)),
-      start_(acceptance_of(region_of(map_, settings_.prior))),
-      region_(acceptance_of(region_of(map_, {}))) {
-  region_.beyond_m = settings_.beyond_map_m;
-}
+      start_(region_of(map_, settings_.prior)),
+      region_{region_of(map_, {}), settings_.beyond_map_m} {}
 
 StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
   return Step(*this, before, step, limits).run();

@@ -152,7 +152,7 @@ class Tracker {
   class Step;
   MapView map_;
   TrackSettings settings_;
-  AcceptanceRegion start_;   ///< the prior
+  PoseRegion start_;         ///< the prior
   AcceptanceRegion region_;  ///< of the flight: the map
 };
 

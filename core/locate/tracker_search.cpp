@@ -32,7 +32,7 @@ bool Tracker::Step::start_by_search() {
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
   filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
-                       first ? tracker_.start_ : tracker_.region_);
+                       first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
   if (fix->status == FixStatus::kFix) believe(*fix);
   return true;
@@ -67,7 +67,7 @@ void Tracker::Step::recover() {
   } else if (fix->status != FixStatus::kFix) {
     filter_.inject(proposals_of(tracker_.map_, *fix), kInjectedShare);
   } else {
-    filter_.start_from(proposals_of(tracker_.map_, *fix), 1.0 - kMostOfAFix, tracker_.region_);
+    filter_.start_from(proposals_of(tracker_.map_, *fix), 1.0 - kMostOfAFix, tracker_.region_.poses);
     estimate_.measurement = Measurement::kSearched;
     forget_support();
     state_.searched = true;

@@ -70,7 +70,7 @@ std::optional<double> Tracker::Step::since_accepted_s() const {
 
 void Tracker::Step::move() {
   if (seconds() > static_cast<double>(settings_.longest_gap.count())) {
-    filter_.start_uniformly(tracker_.region_);
+    filter_.start_uniformly(tracker_.region_.poses);
     forget_support();
     state_.recent.clear();
     return;

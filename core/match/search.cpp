@@ -17,8 +17,8 @@ double ScoreBackground::log_likelihood(double score) const {
   return -kTemper * 0.5 * std::log1p(-shared * shared) / (sd * sd);
 }
 
-SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,
-                    const SearchRegion& region, const SearchOptions& options) {
+SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
+                    const SearchOptions& options) {
   const Deadline deadline(options.stop, options.deadline);
   const SearchLevels levels(read, finest_cell_m, features, region, options);
   const SearchScan scan(levels, options);

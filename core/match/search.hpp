@@ -21,7 +21,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
 #include "core/match/search_cache.hpp"
-#include "core/match/search_region.hpp"
+#include "core/units/pose_region.hpp"
 
 namespace roadfix {
 
@@ -102,7 +102,7 @@ struct SearchResult {
 
 /// `features` in cells of `finest_cell_m` (see resampled()), with an observed cell that is not like all others.
 /// At the deadline it stops and says what it has; throws Interrupted when asked to stop.
-SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features,
-                    const SearchRegion& region, const SearchOptions& options);
+SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
+                    const SearchOptions& options);
 
 }  // namespace roadfix

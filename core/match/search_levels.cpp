@@ -24,7 +24,7 @@ constexpr int kProofFootprintCells = 64;  // likewise at least, where a proof is
 constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
 constexpr std::size_t kCandidatesOfLarge = 4096;  // followed from coarser cells
 
-int coarse_level(double finest_cell_m, double side_m, const SearchRegion& region) {
+int coarse_level(double finest_cell_m, double side_m, const PoseRegion& region) {
   const bool large = region.area_km2() >= kLargeKm2;
   const auto fits = [&](double cell_m) {
     const double across = side_m / cell_m;
@@ -39,7 +39,7 @@ int coarse_level(double finest_cell_m, double side_m, const SearchRegion& region
 }  // namespace
 
 SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
-                           const SearchRegion& region, const SearchOptions& options)
+                           const PoseRegion& region, const SearchOptions& options)
     : region_(region), side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())) {
   const int coarsest = coarse_level(finest_cell_m, side_m_, region);
   const double radius_m = 0.5 * side_m_;
@@ -71,7 +71,7 @@ int SearchLevels::proof_level() const {
 }
 
 bool SearchLevels::within_region(const Level& level, const LatticePose& pose) const {
-  const SearchRegion wide = region_.grown(0.71 * level.cell_m(), level.bins.step());
+  const PoseRegion wide = region_.grown(0.71 * level.cell_m(), level.bins.step());
   const GridPose at = level.pose_of(pose);
   return wide.contains(at.position) && wide.contains(at.heading);
 }

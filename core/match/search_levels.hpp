@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/match/refine.hpp"
-#include "core/match/search_region.hpp"
+#include "core/units/pose_region.hpp"
 
 namespace roadfix {
 
@@ -16,7 +16,7 @@ inline constexpr int kDistinctBins = 3;        ///< of the scan's headings, betw
 class SearchLevels {
  public:
   /// All outlive the levels.
-  SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features, const SearchRegion& region,
+  SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
                const SearchOptions& options);
 
   /// Index of the level that is scanned; the finest one has 0.
@@ -24,7 +24,7 @@ class SearchLevels {
   const Level& at(int index) const { return levels_[static_cast<std::size_t>(index)]; }
   const Level& coarse() const { return levels_.back(); }
   const Level& finest() const { return levels_.front(); }
-  const SearchRegion& region() const { return region_; }
+  const PoseRegion& region() const { return region_; }
   /// The longer side of the feature map.
   double side_m() const { return side_m_; }
   /// How many candidates are followed from a level to the next finer one.
@@ -38,7 +38,7 @@ class SearchLevels {
                                     int coarse_bins_apart, std::size_t keep) const;
 
  private:
-  const SearchRegion& region_;
+  const PoseRegion& region_;
   double side_m_;
   std::vector<Level> levels_;  ///< finest first
 };

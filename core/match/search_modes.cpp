@@ -44,14 +44,14 @@ bool on_one_peak(const Level& finest, const SearchMode& a, const SearchMode& b) 
          angular_distance(a.pose.heading, b.pose.heading) <= double{kPeakRadius} * finest.bins.halved().step();
 }
 
-double poses_of(const SearchRegion& region) {
+double poses_of(const PoseRegion& region) {
   return region.area_km2() * std::min(1.0, region.heading_half_width.degrees() / 180.0);
 }
 
 }  // namespace
 
-void rank(const SearchLevels& levels, const SearchRegion& scanned, const SearchOptions& options,
-          const Deadline& deadline, const std::vector<LatticePose>& candidates, SearchResult& result) {
+void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
+          const std::vector<LatticePose>& candidates, SearchResult& result) {
   const Level& finest = levels.finest();
   bool best_seen = false;
   std::vector<LatticePose> inside;

@@ -10,7 +10,7 @@ namespace roadfix {
 /// Modes from the best candidates of the region (at the finest level, distinct and best first), rivals from all others.
 /// `scanned`: the region that they come from. Candidates that were flanks of one peak give one mode. At the deadline it
 /// ends after the first mode.
-void rank(const SearchLevels& levels, const SearchRegion& scanned, const SearchOptions& options,
-          const Deadline& deadline, const std::vector<LatticePose>& candidates, SearchResult& result);
+void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
+          const std::vector<LatticePose>& candidates, SearchResult& result);
 
 }  // namespace roadfix

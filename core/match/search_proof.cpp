@@ -12,7 +12,7 @@ namespace {
 /// All but the feature map and the map.
 BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, const SearchOptions& options,
                              const std::vector<LatticePose>& candidates) {
-  const SearchRegion& region = levels.region();
+  const PoseRegion& region = levels.region();
   BoundedSearch bounded;
   bounded.bins = level.bins;
   for (int bin = 0; bin < level.bins.count(); ++bin) {

@@ -21,14 +21,14 @@ SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
       scanned_(enlarged()) {}
 
 /// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
-SearchRegion SearchScan::enlarged() const {
-  const SearchRegion& region = levels_.region();
+PoseRegion SearchScan::enlarged() const {
+  const PoseRegion& region = levels_.region();
   const double turns = region.heading_half_width.degrees() / 180.0;
   const double places_per_m2 = levels_.coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
   const double wanted_m2 = kRivalsWanted / places_per_m2;
   if (region.area_km2() * 1e6 * std::min(turns, 1.0) >= wanted_m2) return region;
   const double need = 0.5 * std::sqrt(wanted_m2);
-  SearchRegion result = region;
+  PoseRegion result = region;
   result.circle.reset();
   const GridPoint centre = region.box.centre();
   result.box.min.east_m = std::min(region.box.min.east_m, centre.east_m - need);
@@ -44,7 +44,7 @@ ScanRequest SearchScan::request() const {
   ScanRequest request;
   request.positions = GridGeometry::covering(scanned_.box, coarse.cell_m());
   request.bins = coarse.bins;
-  const SearchRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
+  const PoseRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
   for (int bin = 0; bin < request.bins.count(); ++bin) {
     if (wide.contains(request.bins.heading(bin))) request.headings.push_back(bin);
   }

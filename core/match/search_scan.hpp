@@ -19,16 +19,16 @@ class SearchScan {
 
   /// Places nearer than this are one.
   double separation_m() const { return separation_m_; }
-  const SearchRegion& scanned() const { return scanned_; }
+  const PoseRegion& scanned() const { return scanned_; }
 
  private:
-  SearchRegion enlarged() const;
+  PoseRegion enlarged() const;
   ScanRequest request() const;
 
   const SearchLevels& levels_;
   const SearchOptions& options_;
   double separation_m_;
-  SearchRegion scanned_;
+  PoseRegion scanned_;
 };
 
 }  // namespace roadfix

@@ -130,9 +130,9 @@ void filter_step(benchmark::State& state) {
   const MapView view = testing::view_of(small_map());
   const FeatureMap window = window_of(small_map(), static_cast<int>(state.range(0)));
   FilterOptions options = FilterOptions::paper(kPoses);
-  AcceptanceRegion region;
+  PoseRegion region;
   region.box = view.extent;
-  Filter filter(options, region, 5);
+  Filter filter(options, {region}, 5);
   filter.start_uniformly(region);
   OdometryCovariance covariance{};
   for (std::size_t i = 0; i < 3; ++i) covariance[i][i] = 1e-4;

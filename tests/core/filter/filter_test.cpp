@@ -13,7 +13,7 @@
 namespace roadfix {
 namespace {
 
-const AcceptanceRegion kSquare{{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)};
+const PoseRegion kSquare{{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)};
 
 /// Log-likelihood of seeing the place with an error of `sigma_m` per axis.
 std::vector<double> seen_at(const Particles& p, GridPoint place, double sigma_m) {
@@ -46,7 +46,7 @@ TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
   options.injection = Injection::kLikelihoodAverages;
   options.injected_share = 0.0;
   options.roughening_m = 0.0;
-  Filter filter(options, kSquare, 11);
+  Filter filter(options, {kSquare}, 11);
   const Proposal start{{{300.0, 400.0}, Angle()}, {{{100.0, 0, 0}, {0, 100.0, 0}, {0, 0, 0}}}, 1.0};
   filter.start_from(std::span(&start, 1), 0.0, kSquare);
   double mean = 300.0;
@@ -68,7 +68,7 @@ TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
 }
 
 TEST(Filter, ThePapersDrawsFifteenPercentUniformlyInEveryStepAndKeepsItsNumber) {
-  Filter filter(FilterOptions::paper(2000), kSquare, 3);
+  Filter filter(FilterOptions::paper(2000), {kSquare}, 3);
   const Proposal far{{{10.0, 10.0}, Angle()}, {}, 1.0};
   filter.start_from(std::span(&far, 1), 0.0, kSquare);
   filter.predict(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 1.0});
@@ -85,7 +85,7 @@ TEST(Filter, ThePapersDrawsFifteenPercentUniformlyInEveryStepAndKeepsItsNumber) 
 
 TEST(Filter, GivesTheSameParticlesFromTheSameSeedWithAnyNumberOfThreads) {
   const auto run = [](std::uint64_t seed, int threads) {
-    Filter filter({}, kSquare, seed, threads);
+    Filter filter({}, {kSquare}, seed, threads);
     filter.start_uniformly(kSquare);
     for (int step = 0; step < 5; ++step) {
       filter.predict(PlanarMotion{{20.0, 2.0}, {0.0, 0.05}, 1.0, 0.1});
@@ -98,7 +98,7 @@ TEST(Filter, GivesTheSameParticlesFromTheSameSeedWithAnyNumberOfThreads) {
 }
 
 TEST(Filter, NeedsFewerParticlesOnceItKnowsWhereItIs) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   filter.start_uniformly(kSquare);
   EXPECT_EQ(filter.particles().size(), 10'000U);
   for (int step = 0; step < 5; ++step) {
@@ -109,15 +109,13 @@ TEST(Filter, NeedsFewerParticlesOnceItKnowsWhereItIs) {
 }
 
 TEST(Filter, KeepsParticlesBeyondTheRegionAsFarAsItSaysAndDrawsNoneThere) {
-  AcceptanceRegion wide = kSquare;
-  wide.beyond_m = 200.0;
   FilterOptions options = FilterOptions::paper(4000);
   options.injected_share = 0.5;
-  Filter filter(options, wide, 5);
+  Filter filter(options, {kSquare, 200.0}, 5);
   const auto beyond = [&](double north_m) {
     return std::ranges::count_if(filter.particles().north_m, [&](double n) { return n > north_m; });
   };
-  filter.start_uniformly(wide);
+  filter.start_uniformly(kSquare);
   EXPECT_EQ(beyond(1000.0), 0);
   const OdometryMotion ahead({150.0, 0.0, Angle()}, {});
   // In particles of every heading, a share of about 150 / (1000 pi) crosses a side of the square.
@@ -136,7 +134,7 @@ TEST(Filter, KeepsParticlesBeyondTheRegionAsFarAsItSaysAndDrawsNoneThere) {
 }
 
 TEST(Filter, TakesParticlesThatLeaveTheRegionOutOfTheBelief) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   const Proposal at_edge{{{990.0, 500.0}, Angle::degrees(90.0)}, {{{100.0, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, 1.0};
   filter.start_from(std::span(&at_edge, 1), 0.0, kSquare);
   EXPECT_TRUE(filter.predict(OdometryMotion({5.0, 0.0, Angle()}, {})));
@@ -150,7 +148,7 @@ TEST(Filter, TakesParticlesThatLeaveTheRegionOutOfTheBelief) {
 }
 
 TEST(Filter, KeepsItsBeliefWhereNothingCouldExplainTheMeasurement) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   filter.start_uniformly(kSquare);
   const FilterState before = filter.state();
   const std::vector<double> impossible(before.particles.size(), -std::numeric_limits<double>::infinity());
@@ -159,7 +157,7 @@ TEST(Filter, KeepsItsBeliefWhereNothingCouldExplainTheMeasurement) {
 }
 
 TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
   filter.start_from(std::span(&start, 1), 0.0, kSquare);
   const auto feed = [&](double log_ratio, int steps) {
@@ -177,7 +175,7 @@ TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
 }
 
 TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
   filter.start_from(std::span(&start, 1), 0.0, kSquare);
   for (int i = 0; i < 100; ++i) {
@@ -189,7 +187,7 @@ TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
 }
 
 TEST(Filter, InjectsProposalsOfASearch) {
-  Filter filter({}, kSquare, 1);
+  Filter filter({}, {kSquare}, 1);
   const Proposal here{{{300.0, 300.0}, Angle()}, {}, 1.0};
   filter.start_from(std::span(&here, 1), 0.0, kSquare);
   const Proposal there{{{800.0, 700.0}, Angle::degrees(45.0)}, {{{4.0, 0, 0}, {0, 4.0, 0}, {0, 0, 1e-4}}}, 1.0};
@@ -201,14 +199,14 @@ TEST(Filter, InjectsProposalsOfASearch) {
 }
 
 TEST(FilterState, ComesBackFromItsBytesAndGoesOnTheSame) {
-  Filter filter({}, kSquare, 5);
+  Filter filter({}, {kSquare}, 5);
   filter.start_uniformly(kSquare);
   const auto step = [](Filter& f) {
     f.predict(PlanarMotion{{20.0, 2.0}, {0.0, 0.05}, 1.0, 0.1});
     f.correct(seen_at(f.particles(), {500.0, 300.0}, 30.0));
   };
   step(filter);
-  Filter copy({}, kSquare, filter_state_of(to_bytes(filter.state())));
+  Filter copy({}, {kSquare}, filter_state_of(to_bytes(filter.state())));
   EXPECT_EQ(copy.state(), filter.state());
   step(filter);
   step(copy);
@@ -216,7 +214,7 @@ TEST(FilterState, ComesBackFromItsBytesAndGoesOnTheSame) {
 }
 
 TEST(FilterState, RefusesBytesThatAreCutOrDamaged) {
-  Filter filter({}, kSquare, 5);
+  Filter filter({}, {kSquare}, 5);
   filter.start_uniformly(kSquare);
   const std::vector<std::byte> whole = to_bytes(filter.state());
   for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{60}, whole.size() - 1}) {

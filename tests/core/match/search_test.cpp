@@ -35,7 +35,7 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
   const RoadGrid map = street_map(1, town(2000, 1600));
   std::mt19937_64 random(2);
   const GridReader read = reader_of(map);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   for (int round = 0; round < 2; ++round) {
     const GridPose truth = pose_within(region.box, 250.0, random);
@@ -51,7 +51,7 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
 TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
   const RoadGrid map = street_map(12, {4.0, {75'000, -1'000'000}, 1500, 1400});
   std::mt19937_64 random(13);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   ASSERT_GT(region.area_km2(), 30.0);
   const GridPose truth = pose_within(region.box, 400.0, random);
@@ -65,7 +65,7 @@ TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
 TEST(Search, ProvesWhereItIsAskedToThatNoOtherPoseIsBetter) {
   const RoadGrid map = street_map(14, town(1000, 900));
   std::mt19937_64 random(15);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const GridPose truth = pose_within(region.box, 200.0, random);
   const FeatureMap seen = observed_at(map, truth, 150, 150, 2.0, {0.2, 0.2}, random);
@@ -85,7 +85,7 @@ TEST(Search, ProvesWhereItIsAskedToThatNoOtherPoseIsBetter) {
 TEST(Search, GivesEachPeakOneMode) {
   const RoadGrid map = street_map(9, town(900, 900));
   std::mt19937_64 random(10);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   for (int round = 0; round < 6; ++round) {
     const GridPose truth = pose_within(map.geometry.box(), 150.0, random);
@@ -104,7 +104,7 @@ TEST(Search, GivesEachPeakOneMode) {
 TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   const RoadGrid map = street_map(3, town(2000, 1600));
   std::mt19937_64 random(4);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   // A third of the footprint lies west of the map.
   const GridPose truth{{region.box.min.east_m + 60.0, region.box.min.north_m + 800.0}, Angle::degrees(211.0)};
@@ -122,7 +122,7 @@ TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
 TEST(Search, FindsAWindowWhoseSizeIsKnownRoughly) {
   const RoadGrid map = street_map(16, town(1600, 1400));
   std::mt19937_64 random(17);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   for (const double scale : {0.88, 1.12}) {
     const GridPose truth = pose_within(region.box, 350.0, random);
@@ -149,7 +149,7 @@ TEST(Search, FindsAWindowWhoseSizeIsKnownRoughly) {
 TEST(Search, ProvesOverAllScalesToo) {
   const RoadGrid map = street_map(18, town(700, 600));
   std::mt19937_64 random(19);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const GridPose truth = pose_within(region.box, 180.0, random);
   FeatureMap window = cut_out(map, truth, 130, 130, 2.1);
@@ -172,7 +172,7 @@ TEST(Search, StaysWithinItsRegionAndHeadingRange) {
   std::mt19937_64 random(6);
   const GridPose truth = pose_within(map.geometry.box(), 300.0, random);
   const FeatureMap window = cut_out(map, truth, 128, 128, 2.0);
-  SearchRegion region;
+  PoseRegion region;
   const GridPoint centre{truth.position.east_m + 30.0, truth.position.north_m};
   region.box = {{centre.east_m - 50.0, centre.north_m - 50.0}, {centre.east_m + 50.0, centre.north_m + 50.0}};
   region.circle = GridCircle{centre, 50.0};
@@ -194,7 +194,7 @@ TEST(Search, StaysWithinItsRegionAndHeadingRange) {
 TEST(Search, ManyThreadsGiveWhatOneGives) {
   const RoadGrid map = street_map(7, town(1200, 1200));
   std::mt19937_64 random(8);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const FeatureMap window = cut_out(map, pose_within(region.box, 250.0, random), 128, 128, 2.0);
   SearchOptions options;
@@ -209,7 +209,7 @@ TEST(Search, ManyThreadsGiveWhatOneGives) {
 TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
   const RoadGrid map = street_map(20, town(900, 800));
   std::mt19937_64 random(21);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 130, 130, 2.0);
   SearchOptions options;
@@ -230,7 +230,7 @@ TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
 TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const RoadGrid map = street_map(7, town(800, 800));
   std::mt19937_64 random(9);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 128, 128, 2.0);
   SearchOptions options;
@@ -249,7 +249,7 @@ TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
 TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {
   const RoadGrid map = RoadGrid::unobserved(town(800, 800));
   std::mt19937_64 random(9);
-  SearchRegion region;
+  PoseRegion region;
   region.box = map.geometry.box();
   const FeatureMap features = FeatureMap::centred(testing::smooth_cells(random, 64, 64), 2.0);
   EXPECT_TRUE(search(reader_of(map), 2.0, features, region, {}).modes.empty());
@@ -286,7 +286,7 @@ TEST(Search, FindsTheBestPoseOfBruteForceOnSmallMaps) {
     for (int hole = below(4); hole > 0; --hole) {
       paste(CellArray(8, 8), map.cells, below(map.geometry.cols), below(map.geometry.rows));
     }
-    SearchRegion region;
+    PoseRegion region;
     region.box = map.geometry.box();
     const bool unrelated = round % 3 == 0;
     const FeatureMap features = unrelated ? FeatureMap::centred(testing::smooth_cells(random, 15, 13), 2.0)

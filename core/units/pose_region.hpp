@@ -1,23 +1,23 @@
-// Where a search looks: positions and headings.
+// Where on the plane a vehicle may be, and where it may be heading.
 #pragma once
 
 #include <optional>
 
-#include "core/grid/geometry.hpp"
+#include "core/units/planar.hpp"
 
 namespace roadfix {
 
-/// Grid positions of the nadir and grid headings to consider.
-struct SearchRegion {
+struct PoseRegion {
   GridBox box;
   std::optional<GridCircle> circle;  ///< intersects the box
-  Angle heading;                     ///< centre of the range
+  Angle heading;                     ///< centre of the range, from grid north
   Angle heading_half_width = Angle::degrees(180.0);
 
   bool contains(GridPoint point) const;
   bool contains(Angle grid_heading) const;
+  /// Of the box or of the circle, whichever is less.
   double area_km2() const;
-  SearchRegion grown(double by_m, Angle heading) const;
+  PoseRegion grown(double by_m, Angle by_heading) const;
 };
 
 }  // namespace roadfix

@@ -85,10 +85,7 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
 fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const Ground& ground,
                           const fly::FlightPlan& plan) {
   fly::Campaign campaign;
-  const Flights flights = flights_of(options, map, ground, plan);
-  campaign.flight = flights.source;
-  campaign.runs = flights.number;
-  campaign.steps = flights.steps;
+  campaign.flights = flights_of(options, map, ground, plan);
   campaign.stop = stop_on_signals();
   campaign.localizer = localizers_of(options, map, campaign.stop);
   campaign.filters = options.filters;

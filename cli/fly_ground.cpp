@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "cli/fly/area.hpp"
 #include "cli/fly/pilot.hpp"
@@ -100,8 +101,8 @@ std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options
   return [=] { return fly::make_waypoint_pilot(points, handling); };
 }
 
-Flights simulated_flights(const FlyOptions& options, const MapView& map, const Ground& ground,
-                          const fly::FlightPlan& plan, int number) {
+fly::Flights simulated_flights(const FlyOptions& options, const MapView& map, const Ground& ground,
+                               const fly::FlightPlan& plan, int number) {
   const GridBox box = flying_box(ground.footprint, map.extent, ground.box);
   const auto pilot = pilots_of(options, box, map.zone);
   return {[=, &ground](int, std::uint64_t seed, const std::function<void()>& seen) {
@@ -110,7 +111,7 @@ Flights simulated_flights(const FlyOptions& options, const MapView& map, const G
           number, static_cast<std::int64_t>(number) * plan.steps};
 }
 
-Flights recorded_flights(const Ground& ground, const fly::FlightPlan& plan, int number) {
+fly::Flights recorded_flights(const Ground& ground, const fly::FlightPlan& plan, int number) {
   const auto recording_of = [&ground](int flight) -> const fly::Recording& {
     return ground.recordings[static_cast<std::size_t>(flight) % ground.recordings.size()];
   };
@@ -168,7 +169,8 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
   return plan;
 }
 
-Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground, const fly::FlightPlan& plan) {
+fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground,
+                        const fly::FlightPlan& plan) {
   const int recordings = static_cast<int>(ground.recordings.size());
   const int number = options.vehicles > 0 ? options.vehicles : options.runs * std::max(1, recordings);
   return recordings > 0 ? recorded_flights(ground, plan, number)

@@ -1,7 +1,6 @@
 // What a vehicle of `roadfix fly` flies over, where, and how: simulated, or as it was recorded.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,16 +31,10 @@ struct Ground {
 Ground ground_of(const FlyOptions& options, const MapView& map);
 fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground);
 
-/// What a campaign flies, and how much of it.
-struct Flights {
-  fly::FlightSource source;
-  int number = 0;
-  std::int64_t steps = 0;  ///< of all, at most
-};
-
 /// `ground` must outlive them. Throws InvalidInput "no-place-to-fly" where the footprint does not fit on the map and on
 /// what is flown over, and what reading waypoints throws.
-Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground, const fly::FlightPlan& plan);
+fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground,
+                        const fly::FlightPlan& plan);
 
 VehicleNoise vehicle_of(const FlyOptions& options);
 

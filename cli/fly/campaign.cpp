@@ -12,7 +12,7 @@ namespace {
 class Counter {
  public:
   explicit Counter(const Campaign& campaign)
-      : campaign_(campaign), total_(campaign.steps * static_cast<std::int64_t>(1 + campaign.filters.size())) {}
+      : campaign_(campaign), total_(campaign.flights.steps * static_cast<std::int64_t>(1 + campaign.filters.size())) {}
 
   void step() {
     if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
@@ -30,13 +30,13 @@ class Counter {
 std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
   std::vector<FilterRuns> results;
   for (const std::string& filter : campaign.filters) {
-    results.push_back({filter, std::vector<Run>(static_cast<std::size_t>(campaign.runs))});
+    results.push_back({filter, std::vector<Run>(static_cast<std::size_t>(campaign.flights.number))});
   }
   Counter counter(campaign);
-  parallel_for(campaign.runs, campaign.jobs, [&](int flight_number) {
+  parallel_for(campaign.flights.number, campaign.jobs, [&](int flight_number) {
     const auto i = static_cast<std::size_t>(flight_number);
     const std::uint64_t seed = campaign.seed + i;
-    const Flight flight = campaign.flight(flight_number, seed, [&] { counter.step(); });
+    const Flight flight = campaign.flights.source(flight_number, seed, [&] { counter.step(); });
     for (FilterRuns& result : results) {
       const auto localizer = campaign.localizer(result.filter, seed);
       result.runs[i] = {seed, localize(flight, *localizer, zone, [&](const Record& record, const Localizer& at) {

@@ -24,12 +24,17 @@ using LocalizerFactory = std::function<std::unique_ptr<Localizer>(const std::str
 /// A flight, by its number and seed; `seen` is to be called after each step.
 using FlightSource = std::function<Flight(int number, std::uint64_t seed, const std::function<void()>& seen)>;
 
+/// What is flown, and how much of it.
+struct Flights {
+  FlightSource source;
+  int number = 1;
+  std::int64_t steps = 0;  ///< of all together, at most; for the progress
+};
+
 struct Campaign {
-  FlightSource flight;
-  std::int64_t steps = 0;  ///< of all flights together, for the progress
+  Flights flights;
   LocalizerFactory localizer;
   std::vector<std::string> filters;
-  int runs = 1;
   std::uint64_t seed = 1;  ///< of the first flight; the next ones count up
   int jobs = 1;            ///< flights at a time; results do not depend on it
   /// Of the first flight, from one thread, filter by filter.

@@ -23,13 +23,13 @@ class Campaigns : public ::testing::Test {
  protected:
   Campaigns() {
     plan.steps = 6;
-    campaign.flight = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
+    campaign.flights.source = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
       const GridBox box{{600'420.0, 6'399'720.0}, {600'580.0, 6'399'880.0}};
       return fly(plan, box, *make_random_pilot(box, plan.handling), *sensor, seed, seen);
     };
     campaign.localizer = library_localizers(map, 200, 1, {}, {});
     campaign.filters = {"default", "paper"};
-    campaign.runs = 2;
+    campaign.flights.number = 2;
     campaign.watch = [](const std::string&, const Record&, const Localizer&) {};
     campaign.progress = [](std::int64_t, std::int64_t) {};
   }
@@ -81,7 +81,7 @@ TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
   options.steps = {0, 3};
   options.longest_px = 200;
   Screening screening(map, nullptr, {300.0, 300.0}, options);
-  campaign.runs = 1;
+  campaign.flights.number = 1;
   campaign.watch = [&](const std::string& filter, const Record& record, const Localizer& localizer) {
     screening.show(filter, record, localizer);
   };

@@ -1,17 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
+#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/export/map_export.hpp"
@@ -27,27 +26,13 @@ struct Options {
   std::optional<double> cell_m;
 };
 
-/// The box in the zone of the map that holds a box of latitude and longitude.
-GridBox box_of(const UtmZone& zone, const std::vector<double>& bbox) {
-  const auto [west, south, east, north] = std::array{bbox[0], bbox[1], bbox[2], bbox[3]};
-  if (!(west < east) || !(south < north)) {
+GridBox box_of(const MapInfo& map, const std::vector<double>& bbox) {
+  const GeoBox box{{bbox[1], bbox[0]}, {bbox[3], bbox[2]}};
+  if (box.empty()) {
     throw InvalidInput("bbox-empty",
                        "--bbox: give WEST,SOUTH,EAST,NORTH in degrees, west below east, south below north");
   }
-  // Meridians and parallels are curves on the grid: look along the whole rim.
-  constexpr int kSteps = 16;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  GridBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
-  for (int i = 0; i <= kSteps; ++i) {
-    const double lon = west + (east - west) * i / kSteps;
-    const double lat = south + (north - south) * i / kSteps;
-    for (const LatLon rim : {LatLon{south, lon}, LatLon{north, lon}, LatLon{lat, west}, LatLon{lat, east}}) {
-      const GridPoint p = zone.project(rim);
-      box.min = {std::min(box.min.east_m, p.east_m), std::min(box.min.north_m, p.north_m)};
-      box.max = {std::max(box.max.east_m, p.east_m), std::max(box.max.north_m, p.north_m)};
-    }
-  }
-  return box;
+  return grid_box_around(map.settings.zone, box, map.extent);
 }
 
 /// That of the name of the target, where none was asked for.
@@ -74,7 +59,7 @@ void run_export(const Options& options) {
     throw InvalidInput("target-is-source", fmt::format("{} is the map itself: name another file", options.target));
   }
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
-  if (!options.bbox.empty()) what.box = box_of(map.info().settings.zone, options.bbox);
+  if (!options.bbox.empty()) what.box = box_of(map.info(), options.bbox);
   Progress progress("export", "%", 0.1);
   export_map(
       map, options.target, what, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "server/api/geo_bounds.hpp"
+#include "core/geodesy/geo_box.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
@@ -38,7 +38,7 @@ json source_json(const SourceStatus& source) {
 
 json bbox_of(const MapInfo& info) {
   if (info.extent.empty()) return nullptr;
-  const auto [south_west, north_east] = api::bounds_of(info.settings.zone, info.extent);
+  const auto [south_west, north_east] = geo_box_around(info.settings.zone, info.extent);
   return {south_west.lon_deg, south_west.lat_deg, north_east.lon_deg, north_east.lat_deg};
 }
 
@@ -68,7 +68,7 @@ void print_extent(const MapInfo& info) {
     fmt::print("extent    nothing observed yet\n");
     return;
   }
-  const auto [sw, ne] = api::bounds_of(info.settings.zone, info.extent);
+  const auto [sw, ne] = geo_box_around(info.settings.zone, info.extent);
   fmt::print("extent    {:.1f} x {:.1f} km, latitude {:.6f} to {:.6f}, longitude {:.6f} to {:.6f}\n",
              info.extent.width_m() / 1000.0, info.extent.height_m() / 1000.0, sw.lat_deg, ne.lat_deg, sw.lon_deg,
              ne.lon_deg);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/grid/feature_map.hpp"
 #include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
@@ -32,11 +33,6 @@ GeoPose on_earth(const GridPose& pose, const UtmZone& zone);
 struct GeoCircle {
   LatLon centre;
   double radius_m = 0.0;
-};
-
-struct GeoBox {
-  LatLon south_west;
-  LatLon north_east;
 };
 
 /// True headings within +- half_width of centre.

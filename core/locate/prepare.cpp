@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
@@ -46,56 +45,15 @@ GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
   return {zone.project(circle.centre), circle.radius_m};
 }
 
-/// Central meridian of the zone.
-double meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 183.0; }
-
-/// Degrees; longitudes are counted from the central meridian of the map's zone.
-struct NearBox {
-  double south, north, west, east;
-};
-
-/// What of the box lies within some kilometres of the map: UTM is not defined everywhere.
-NearBox near_map(const MapView& map, const GeoBox& box) {
-  constexpr double kMarginDeg = 0.1;  // more than the sides of a map curve between its corners
-  const double meridian = meridian_deg(map.zone);
-  NearBox bounds{90.0, -90.0, 360.0, -360.0};
-  for (const double east_m : {map.extent.min.east_m, map.extent.max.east_m}) {
-    for (const double north_m : {map.extent.min.north_m, map.extent.max.north_m}) {
-      const LatLon at = map.zone.unproject({east_m, north_m});
-      const double lon = std::remainder(at.lon_deg - meridian, 360.0);
-      bounds = {std::min(bounds.south, at.lat_deg), std::max(bounds.north, at.lat_deg), std::min(bounds.west, lon),
-                std::max(bounds.east, lon)};
-    }
-  }
-  double west = std::remainder(box.south_west.lon_deg - meridian, 360.0);
-  if (west > bounds.east + kMarginDeg) west -= 360.0;  // it may reach the map around the Earth
-  const double east = west + box.north_east.lon_deg - box.south_west.lon_deg;
-  return {std::max(box.south_west.lat_deg, bounds.south - kMarginDeg),
-          std::min(box.north_east.lat_deg, bounds.north + kMarginDeg), std::max(west, bounds.west - kMarginDeg),
-          std::min(east, bounds.east + kMarginDeg)};
-}
-
-/// Smallest box of the grid around what of the geographic one lies near the map; empty where nothing does. Its sides
-/// are curves there: a parallel turns at the central meridian, a meridian at the equator.
 GridBox box_in(const MapView& map, const GeoBox& box) {
-  if (!(box.south_west.lat_deg < box.north_east.lat_deg) || !(box.south_west.lon_deg < box.north_east.lon_deg)) {
+  if (box.empty()) {
     throw InvalidInput(
         "prior-box-empty",
         fmt::format("the box of the prior runs from {}, {} to {}, {}: the first corner must lie south and "
                     "west of the second",
                     box.south_west.lat_deg, box.south_west.lon_deg, box.north_east.lat_deg, box.north_east.lon_deg));
   }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
-  const NearBox part = near_map(map, box);
-  if (!(part.south < part.north) || !(part.west < part.east)) return result;
-  for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
-    for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
-      const GridPoint p = map.zone.project({lat, meridian_deg(map.zone) + lon});
-      result = united(result, {p, p});
-    }
-  }
-  return result;
+  return grid_box_around(map.zone, box, map.extent);
 }
 
 }  // namespace

@@ -1,16 +1,15 @@
 #include "server/api/tile_ground.hpp"
+#include "core/geodesy/geo_box.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "server/api/geo_bounds.hpp"
 
 namespace roadfix::api {
 namespace {
 
 constexpr int kLongestStep = 16;
 
-PixelBox pixels_of(const GeoBounds& bounds, TileAddress tile, double turn_deg) {
+PixelBox pixels_of(const GeoBox& bounds, TileAddress tile, double turn_deg) {
   const MercatorPixel north_west =
       mercator_pixel({bounds.north_east.lat_deg, bounds.south_west.lon_deg + turn_deg}, tile.z);
   const MercatorPixel south_east =
@@ -25,7 +24,7 @@ PixelBox pixels_of(const GeoBounds& bounds, TileAddress tile, double turn_deg) {
 }  // namespace
 
 PixelBox touched_pixels(const MapView& map, TileAddress tile) {
-  const GeoBounds bounds = bounds_of(map.zone, map.extent);
+  const GeoBox bounds = geo_box_around(map.zone, map.extent);
   for (const double turn_deg : {0.0, 360.0, -360.0}) {
     const PixelBox box = pixels_of(bounds, tile, turn_deg);
     if (!box.empty()) return box;

@@ -5,12 +5,12 @@
 #include <array>
 #include <memory>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/locate/decision.hpp"
 #include "core/units/error.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
-#include "server/api/geo_bounds.hpp"
 #include "server/api/localizability_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -133,7 +133,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
                         {"tiles", {url}}};
   const GridBox& extent = layer.map->view.extent;
   if (!extent.empty()) {
-    const api::GeoBounds b = api::bounds_of(layer.map->view.zone, extent);
+    const GeoBox b = geo_box_around(layer.map->view.zone, extent);
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
     answer["bounds"] = {b.south_west.lon_deg, b.south_west.lat_deg, b.north_east.lon_deg, b.north_east.lat_deg};
     answer["minzoom"] = zooms.first;

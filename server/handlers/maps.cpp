@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
-#include "server/api/geo_bounds.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -37,7 +37,7 @@ json summary(const ServedMap& map) {
               {"bbox", nullptr},
               {"area_km2", 0.0}};
   if (info.extent.empty()) return answer;
-  const api::GeoBounds bounds = api::bounds_of(info.settings.zone, info.extent);
+  const GeoBox bounds = geo_box_around(info.settings.zone, info.extent);
   answer["bbox"] = {bounds.south_west.lon_deg, bounds.south_west.lat_deg, bounds.north_east.lon_deg,
                     bounds.north_east.lat_deg};
   answer["area_km2"] = info.extent.width_m() * info.extent.height_m() / 1e6;

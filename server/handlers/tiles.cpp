@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "core/geodesy/geo_box.hpp"
 #include "server/api/fields.hpp"
-#include "server/api/geo_bounds.hpp"
 #include "server/api/tile_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -60,7 +60,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
               {"scheme", "xyz"},     {"tiles", {url}},          {"attribution", attribution(info)},
               {"minzoom", 0},        {"maxzoom", api::kMaxZoom}};
   if (!info.extent.empty()) {
-    const api::GeoBounds b = api::bounds_of(info.settings.zone, info.extent);
+    const GeoBox b = geo_box_around(info.settings.zone, info.extent);
     const int native = api::native_zoom(map->view);
     answer["bounds"] = {b.south_west.lon_deg, b.south_west.lat_deg, b.north_east.lon_deg, b.north_east.lat_deg};
     answer["center"] = {0.5 * (b.south_west.lon_deg + b.north_east.lon_deg),

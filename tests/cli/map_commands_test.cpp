@@ -80,9 +80,12 @@ TEST_F(MapCommands, ExportWritesARegion) {
   const std::string arguments = path.string() + " " + target.string();
   EXPECT_EQ(roadfix("export " + arguments + " --bbox 38.248 37.765 38.25 37.767 --cell 4").code, 0);
   EXPECT_TRUE(std::filesystem::exists(target));
-  const ProgramResult elsewhere = roadfix("export " + arguments + " --bbox 39 37 39.1 37.1");
-  EXPECT_EQ(elsewhere.code, 1);
-  EXPECT_THAT(elsewhere.err, HasSubstr("[region-outside-map]"));
+  for (const char* elsewhere : {"39 37 39.1 37.1", "100 37 120 40"}) {
+    const ProgramResult result = roadfix("export " + arguments + " --bbox " + elsewhere);
+    EXPECT_EQ(result.code, 1);
+    EXPECT_THAT(result.err, HasSubstr("[region-outside-map]"));
+  }
+  EXPECT_EQ(roadfix("export " + arguments + " --bbox 0 0 90 80 --cell 4").code, 0) << "reaches beyond the UTM zone";
 }
 
 TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {

@@ -45,8 +45,10 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
   map.read({cell_m, {0, 0}, 0, 0});  // says so where the map has no such cells
   const GridGeometry whole = GridGeometry::covering(info.extent, cell_m);
   if (!options.box) return whole;
-  const auto region = whole.intersection(GridGeometry::covering(*options.box, cell_m));
-  if (region) return *region;
+  if (!options.box->empty()) {
+    const auto region = whole.intersection(GridGeometry::covering(*options.box, cell_m));
+    if (region) return *region;
+  }
   throw InvalidInput("region-outside-map",
                      "the region to export does not touch the observed part of the map. roadfix "
                      "info shows where that is");

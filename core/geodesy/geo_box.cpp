@@ -1,0 +1,76 @@
+#include "core/geodesy/geo_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace roadfix {
+namespace {
+
+double central_meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 183.0; }
+
+/// Degrees; longitudes are counted from the central meridian of the zone.
+struct NearBox {
+  double south, north, west, east;
+};
+
+NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
+  constexpr double kMarginDeg = 0.1;  // more than the sides of the place curve between its corners
+  const double meridian = central_meridian_deg(zone);
+  NearBox bounds{90.0, -90.0, 360.0, -360.0};
+  for (const double east_m : {place.min.east_m, place.max.east_m}) {
+    for (const double north_m : {place.min.north_m, place.max.north_m}) {
+      const LatLon at = zone.unproject({east_m, north_m});
+      const double lon = std::remainder(at.lon_deg - meridian, 360.0);
+      bounds = {std::min(bounds.south, at.lat_deg), std::max(bounds.north, at.lat_deg), std::min(bounds.west, lon),
+                std::max(bounds.east, lon)};
+    }
+  }
+  double west = std::remainder(box.south_west.lon_deg - meridian, 360.0);
+  if (west > bounds.east + kMarginDeg) west -= 360.0;  // it may reach the place around the Earth
+  const double east = west + box.north_east.lon_deg - box.south_west.lon_deg;
+  return {std::max(box.south_west.lat_deg, bounds.south - kMarginDeg),
+          std::min(box.north_east.lat_deg, bounds.north + kMarginDeg), std::max(west, bounds.west - kMarginDeg),
+          std::min(east, bounds.east + kMarginDeg)};
+}
+
+}  // namespace
+
+GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
+  // Along a side the extreme lies between samples by less than its curvature over one step: centimetres for a city.
+  constexpr int kSteps = 16;
+  const double somewhere_deg = zone.unproject(box.min).lon_deg;
+  GeoBox bounds{{90.0, 540.0}, {-90.0, -540.0}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double east = box.min.east_m + box.width_m() * i / kSteps;
+    const double north = box.min.north_m + box.height_m() * i / kSteps;
+    for (const GridPoint p : {GridPoint{east, box.min.north_m}, GridPoint{east, box.max.north_m},
+                              GridPoint{box.min.east_m, north}, GridPoint{box.max.east_m, north}}) {
+      LatLon at = zone.unproject(p);
+      at.lon_deg = somewhere_deg + std::remainder(at.lon_deg - somewhere_deg, 360.0);
+      bounds.south_west = {std::min(bounds.south_west.lat_deg, at.lat_deg),
+                           std::min(bounds.south_west.lon_deg, at.lon_deg)};
+      bounds.north_east = {std::max(bounds.north_east.lat_deg, at.lat_deg),
+                           std::max(bounds.north_east.lon_deg, at.lon_deg)};
+    }
+  }
+  return bounds;
+}
+
+GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  if (place.empty()) return result;
+  const NearBox part = near_place(zone, box, place);
+  if (!(part.south < part.north) || !(part.west < part.east)) return result;
+  // A parallel turns at the central meridian, a meridian at the equator.
+  for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
+    for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
+      const GridPoint p = zone.project({lat, central_meridian_deg(zone) + lon});
+      result = united(result, {p, p});
+    }
+  }
+  return result;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,27 @@
+// Boxes of latitude and longitude, and the boxes of a zone's plane around them. The sides of either are curves in the
+// other.
+#pragma once
+
+#include "core/geodesy/utm.hpp"
+
+namespace roadfix {
+
+/// Across the antimeridian one of the longitudes lies beyond 180 degrees: west is less than east.
+struct GeoBox {
+  LatLon south_west;
+  LatLon north_east;
+
+  /// Also where a number is NaN.
+  bool empty() const {
+    return !(south_west.lat_deg < north_east.lat_deg) || !(south_west.lon_deg < north_east.lon_deg);
+  }
+};
+
+/// The smallest one around a box of the plane, which is not empty, to centimetres for a city.
+GeoBox geo_box_around(const UtmZone& zone, const GridBox& box);
+
+/// The smallest box of the plane around what of the geographic one, which is not empty, lies within some kilometres of
+/// `place` (UTM is not defined everywhere); empty where nothing does.
+GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place);
+
+}  // namespace roadfix

@@ -1,0 +1,82 @@
+#include "core/geodesy/geo_box.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace roadfix {
+namespace {
+
+/// Around many points of the sides.
+GridBox walked(const UtmZone& zone, const GeoBox& box) {
+  constexpr int kSteps = 4000;
+  const GridPoint first = zone.project(box.south_west);
+  GridBox result{first, first};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double lat = box.south_west.lat_deg + (box.north_east.lat_deg - box.south_west.lat_deg) * i / double{kSteps};
+    const double lon = box.south_west.lon_deg + (box.north_east.lon_deg - box.south_west.lon_deg) * i / double{kSteps};
+    for (const LatLon at : {LatLon{lat, box.south_west.lon_deg}, LatLon{lat, box.north_east.lon_deg},
+                            LatLon{box.south_west.lat_deg, lon}, LatLon{box.north_east.lat_deg, lon}}) {
+      const GridPoint p = zone.project(at);
+      result = united(result, {p, p});
+    }
+  }
+  return result;
+}
+
+void expect_same(const GridBox& found, const GridBox& expected) {
+  constexpr double kWalkedTooShortM = 0.01;
+  EXPECT_NEAR(found.min.east_m, expected.min.east_m, kWalkedTooShortM);
+  EXPECT_NEAR(found.min.north_m, expected.min.north_m, kWalkedTooShortM);
+  EXPECT_NEAR(found.max.east_m, expected.max.east_m, kWalkedTooShortM);
+  EXPECT_NEAR(found.max.north_m, expected.max.north_m, kWalkedTooShortM);
+}
+
+UtmZone zone_of(int epsg) { return UtmZone::from_epsg(epsg).value(); }
+
+TEST(GridBoxAround, HoldsAllOfAWideBoxThoughItsSidesAreCurves) {
+  const GridBox north{{1'000.0, 3'000'000.0}, {999'000.0, 6'000'000.0}};
+  for (const GeoBox& box :
+       {GeoBox{{36.0, 36.0}, {42.0, 41.3}}, GeoBox{{40.0, 36.1}, {40.5, 38.0}}, GeoBox{{40.0, 40.0}, {50.0, 41.0}}}) {
+    expect_same(grid_box_around(zone_of(32637), box, north), walked(zone_of(32637), box));
+  }
+  const GridBox equator{{1'000.0, 9'500'000.0}, {999'000.0, 10'400'000.0}};
+  const GeoBox both_hemispheres{{-3.0, 36.0}, {2.0, 42.0}};
+  expect_same(grid_box_around(zone_of(32737), both_hemispheres, equator), walked(zone_of(32737), both_hemispheres));
+}
+
+TEST(GridBoxAround, IsEmptyWhereTheBoxIsFarFromThePlaceOrThereIsNone) {
+  const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
+  EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 100.0}, {42.0, 120.0}}, city).empty());
+  EXPECT_TRUE(grid_box_around(zone_of(32637), {{-40.0, 36.0}, {-30.0, 42.0}}, city).empty());
+  EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 36.0}, {42.0, 42.0}}, {{1.0, 1.0}, {0.0, 0.0}}).empty());
+}
+
+TEST(GeoBoxAround, AcrossTheAntimeridianIsNarrow) {
+  const UtmZone fiji = zone_of(32701);
+  const GridPoint middle = fiji.project({-16.9, 180.0});
+  const GeoBox box = geo_box_around(fiji, grown({middle, middle}, 1000.0));
+  EXPECT_NEAR(box.north_east.lon_deg - box.south_west.lon_deg, 2000.0 / 106'550.0, 5e-4);
+  EXPECT_GT(std::remainder(box.south_west.lon_deg, 360.0), 0.0) << "west of it lies the eastern hemisphere";
+}
+
+TEST(GeoBoxAround, AndTheGridBoxAroundThatHoldTheBox) {
+  const UtmZone zone = zone_of(32637);
+  const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
+  const GridBox back = grid_box_around(zone, geo_box_around(zone, city), city);
+  constexpr double kCentimetre = 0.01;
+  EXPECT_TRUE(grown(back, kCentimetre).contains(city.min));
+  EXPECT_TRUE(grown(back, kCentimetre).contains(city.max));
+  EXPECT_LT(back.width_m(), 1.01 * city.width_m() + 200.0) << "turned by the convergence, half a degree";
+}
+
+TEST(GeoBox, IsEmptyWhereACornerIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE((GeoBox{{0.0, 179.0}, {1.0, 181.0}}.empty()));
+  EXPECT_TRUE((GeoBox{{0.0, 0.0}, {1.0, 0.0}}.empty()));
+  EXPECT_TRUE((GeoBox{{nan, 0.0}, {1.0, 1.0}}.empty()));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <random>
 
+#include "core/units/draws.hpp"
+
 namespace roadfix::bench {
 
 using Random = std::mt19937_64;
@@ -11,11 +13,6 @@ using Random = std::mt19937_64;
 inline Random stream(std::uint64_t seed, std::uint64_t set, std::uint64_t query) {
   std::seed_seq sequence{seed, seed >> 32, set, query};
   return Random(sequence);
-}
-
-/// In [low, high).
-inline double uniform(Random& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1.0p-53;
 }
 
 }  // namespace roadfix::bench

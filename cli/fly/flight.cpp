@@ -12,7 +12,6 @@ namespace {
 
 using bench::Random;
 using bench::stream;
-using bench::uniform;
 
 constexpr int kTries = 10'000;
 

@@ -1,7 +1,6 @@
 #include "cli/fly/vehicle.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace roadfix::fly {
 namespace {
@@ -16,11 +15,6 @@ Odometry arc(double length_m, Angle turn) {
 }
 
 }  // namespace
-
-double normal(bench::Random& random) {
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - bench::uniform(random, 0.0, 1.0)));
-  return radius * std::cos(bench::uniform(random, 0.0, 2.0 * std::numbers::pi));
-}
 
 OdometrySensor::OdometrySensor(const OdometryErrors& errors, bench::Random& random)
     : errors_(errors), scale_(1.0 + errors.scale * normal(random)), turn_drift_(normal(random) * errors.turn_drift) {}

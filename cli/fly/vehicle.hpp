@@ -46,7 +46,4 @@ class Vehicle {
   OdometrySensor odometry_;
 };
 
-/// Standard normal, the same on every platform.
-double normal(bench::Random& random);
-
 }  // namespace roadfix::fly

@@ -1,8 +1,5 @@
 #include "core/filter/random.hpp"
 
-#include <cmath>
-#include <numbers>
-
 namespace roadfix {
 
 RandomStream::RandomStream(Draw purpose, const Address& address)
@@ -15,11 +12,11 @@ double RandomStream::normal() {
     has_spare_ = false;
     return spare_;
   }
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-  const double direction = 2.0 * std::numbers::pi * uniform();
-  spare_ = radius * std::sin(direction);
+  const double u = uniform();
+  const auto [number, spare] = normal_pair(u, uniform());
+  spare_ = spare;
   has_spare_ = true;
-  return radius * std::cos(direction);
+  return number;
 }
 
 }  // namespace roadfix

@@ -25,7 +25,7 @@ class RandomStream {
   double uniform() { return bits_.uniform(); }
   /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal by Box and Muller: std::normal_distribution differs between libraries.
+  /// Standard normal.
   double normal();
 
  private:

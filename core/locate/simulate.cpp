@@ -9,6 +9,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/grid/sampling.hpp"
+#include "core/units/draws.hpp"
 
 namespace roadfix {
 namespace {
@@ -19,18 +20,6 @@ constexpr double kStrokeWidthM = 8.0;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using CellPosition = GridGeometry::CellPosition;
-
-/// In [low, high).
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1.0p-53;
-}
-
-/// Two independent standard normal values by Box and Muller: std::normal_distribution differs between libraries.
-std::pair<double, double> normal_pair(std::mt19937_64& random) {
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(random, 0.0, 1.0)));
-  const double direction = uniform(random, 0.0, kTurn);
-  return {radius * std::cos(direction), radius * std::sin(direction)};
-}
 
 bool is_road(Cell cell) { return is_observed(cell) && cell > kRoad / 2; }
 

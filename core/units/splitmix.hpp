@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "core/units/draws.hpp"
+
 namespace roadfix {
 
 /// What its counter goes up by: 2^64 divided by the golden ratio, odd.
@@ -22,7 +24,7 @@ class SplitMix64 {
 
   constexpr std::uint64_t next() { return mix64(state_ += kGoldenGamma); }
   /// In [0, 1).
-  constexpr double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+  constexpr double uniform() { return unit_interval(next()); }
 
  private:
   std::uint64_t state_;

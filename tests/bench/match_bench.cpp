@@ -14,13 +14,12 @@
 #include "core/locate/particle_matches.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
+#include "core/units/draws.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
 namespace {
-
-using testing::uniform;
 
 constexpr int kMapCells = 512;  // fits the cache of a core
 constexpr int kPoses = 10'000;

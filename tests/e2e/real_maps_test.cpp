@@ -5,6 +5,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
+#include "core/units/draws.hpp"
 #include "tests/support/real_data.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -14,7 +15,6 @@ namespace roadfix {
 namespace {
 
 using testing::real_data;
-using testing::uniform;
 
 struct Outcome {
   int fixes = 0;

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/locate/tracker.hpp"
+#include "core/units/draws.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix::testing {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/grid/resample.hpp"
+#include "core/units/draws.hpp"
 
 namespace roadfix::testing {
 namespace {
@@ -49,10 +50,6 @@ class Brush {
 };
 
 }  // namespace
-
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1.0p-53;
-}
 
 RoadGrid street_map(std::uint64_t seed, const GridGeometry& geometry) {
   std::mt19937_64 random(seed);

@@ -27,7 +27,4 @@ FeatureMap observed_at(const RoadGrid& map, const GridPose& pose, int cols, int 
 /// Reads windows of the map and its overviews, as a map file would.
 std::function<RoadGrid(const GridGeometry&)> reader_of(const RoadGrid& map);
 
-/// Uniform in [low, high).
-double uniform(std::mt19937_64& random, double low, double high);
-
 }  // namespace roadfix::testing

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bench/random.hpp"
+#include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::bench {

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "core/units/draws.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -15,7 +16,6 @@ namespace roadfix {
 namespace {
 
 using testing::random_cells;
-using testing::uniform;
 
 CellArray one_by_one(const CellArray& source, const Placement& placement, int cols, int rows) {
   const SnappedPlacement snapped(placement);

@@ -5,6 +5,7 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/match_poses.hpp"
+#include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
@@ -16,7 +17,6 @@ namespace {
 using testing::code_of;
 using testing::observed_at;
 using testing::street_map;
-using testing::uniform;
 using testing::view_of;
 
 constexpr double kConvergenceMatters = 0.5;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "core/units/draws.hpp"
 #include "tests/support/match_sums.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -28,8 +29,8 @@ struct Cells {
 Cells seen(std::mt19937_64& random, double a, double b) {
   Cells cells;
   for (int i = 0; i < 2000; ++i) {
-    cells.m.push_back(testing::uniform(random, 0, 1) < 0.2);
-    cells.l.push_back(testing::uniform(random, 0, 1) < (cells.m.back() ? a : b));
+    cells.m.push_back(uniform(random, 0, 1) < 0.2);
+    cells.l.push_back(uniform(random, 0, 1) < (cells.m.back() ? a : b));
   }
   return cells;
 }

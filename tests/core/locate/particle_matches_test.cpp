@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/grid/resample.hpp"
+#include "core/units/draws.hpp"
 #include "tests/support/flight.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/match_sums.hpp"
@@ -22,9 +23,8 @@ TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
   Particles p;
   p.resize(300);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p.set(i, {middle.position.east_m + testing::uniform(random, -20, 20),
-              middle.position.north_m + testing::uniform(random, -20, 20),
-              middle.heading.radians() + testing::uniform(random, -0.1, 0.1)});
+    p.set(i, {middle.position.east_m + uniform(random, -20, 20), middle.position.north_m + uniform(random, -20, 20),
+              middle.heading.radians() + uniform(random, -0.1, 0.1)});
     p.weight[i] = i == 7 ? 0.0 : 1.0;
   }
   const auto sums = match_particles(testing::view_of(map), features, p);
@@ -75,9 +75,9 @@ TEST(ParticleMatches, AreTheSameToTheLastBitForManyAtOnceAndForEachAlone) {
   Particles all;
   all.resize(400);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    all.set(i, {testing::uniform(random, box.min.east_m - 20.0, box.max.east_m + 20.0),
-                testing::uniform(random, box.min.north_m - 20.0, box.max.north_m + 20.0),
-                testing::uniform(random, -std::numbers::pi, std::numbers::pi)});
+    all.set(i, {uniform(random, box.min.east_m - 20.0, box.max.east_m + 20.0),
+                uniform(random, box.min.north_m - 20.0, box.max.north_m + 20.0),
+                uniform(random, -std::numbers::pi, std::numbers::pi)});
     all.weight[i] = 1.0;
   }
   const MapView view = testing::view_of(map);

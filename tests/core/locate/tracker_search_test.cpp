@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/locate/tracker.hpp"
+#include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 
 namespace roadfix {
@@ -55,9 +56,9 @@ TEST_F(Track, ClaimsNoPlaceWhereOneBrightStrokeHidesFaintRoads) {
   // particles gather at one of them.
   const auto stroke = [](FeatureMap& features, std::mt19937_64& random) {
     for (Cell& cell : features.cells.cells()) cell = static_cast<Cell>(cell / 10);
-    const int row = static_cast<int>(testing::uniform(random, 10, 110));
-    const int col = static_cast<int>(testing::uniform(random, 10, 80));
-    const double slope = testing::uniform(random, -1.0, 1.0);
+    const int row = static_cast<int>(uniform(random, 10, 110));
+    const int col = static_cast<int>(uniform(random, 10, 80));
+    const double slope = uniform(random, -1.0, 1.0);
     for (int i = 0; i < 40; ++i) {
       for (int k = 0; k < 5; ++k) {
         features.cells.at(col + i, std::clamp(row + static_cast<int>(slope * i) + k, 0, 127)) = kRoad;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -96,7 +97,7 @@ TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
     if (i > 0) {
       const Angle turn = Angle::degrees(i >= 13 && i < 33 ? 9.0 : 0.0);
       pose = moved(pose, {20.0, 0.0, turn});
-      input.odometry = Odometry{20.0 * testing::uniform(random, 0.98, 1.02), 0.0, turn};
+      input.odometry = Odometry{20.0 * uniform(random, 0.98, 1.02), 0.0, turn};
     }
     input.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random);
     return advance(tracker, input);

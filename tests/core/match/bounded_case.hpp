@@ -11,6 +11,7 @@
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
+#include "core/units/draws.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/street_map.hpp"
 

@@ -9,6 +9,7 @@
 #include "core/match/heading_bins.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
+#include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/street_map.hpp"
@@ -19,7 +20,6 @@ namespace {
 using testing::observed_at;
 using testing::reader_of;
 using testing::street_map;
-using testing::uniform;
 
 GridGeometry town(double width_m, double height_m) {
   return {2.0, {150'000, -2'000'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <random>
-#include <set>
 
 #include "core/filter/particle_bytes.hpp"
 #include "core/units/error.hpp"
@@ -57,20 +56,6 @@ std::string text_of(const json& value) { return value.dump(-1, ' ', false, json:
 
 }  // namespace
 
-/// A track in memory. `turn` is told whenever a step is done.
-struct TrackRegistry::Live {
-  Live(std::shared_ptr<const ServedMap> map, const TrackSettings& settings)
-      : served(std::move(map)), tracker(served->view, settings) {}
-
-  const std::shared_ptr<const ServedMap> served;
-  const Tracker tracker;
-  std::mutex mutex;
-  std::condition_variable turn;
-  std::multiset<std::int64_t> waiting;  ///< sequence numbers of the steps that are here
-  TrackerState state;
-  bool doubtful = false;  ///< the store failed: it alone knows whether the last step was taken
-};
-
 TrackRegistry::TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
                              const api::Limits& request_limits, std::shared_ptr<const Calibration> calibration)
     : path_(std::move(store)),
@@ -110,7 +95,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   expire();
   const api::TrackRequest asked = parsed(request, request_limits_);
   const auto map = maps_.find(asked.map);
-  auto fresh = std::make_shared<Live>(map, calibrated(asked.settings));
+  auto fresh = std::make_shared<LiveTrack>(map, calibrated(asked.settings));
   const std::lock_guard lock(mutex_);
   const std::vector<StoredTrack> flying = store().flying();
   const auto own = std::ranges::count(flying, client, &StoredTrack::client);
@@ -163,16 +148,12 @@ std::vector<StoredStep> TrackRegistry::steps_after(const std::string& id, std::i
 }
 
 std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t count) {
-  const auto track = live(id);
-  const std::lock_guard lock(track->mutex);
-  return track->state.started ? track->tracker.particles(track->state, count) : std::vector<GeoPose>();
+  return live(id)->particles(count);
 }
 
-std::shared_ptr<TrackRegistry::Live> TrackRegistry::loaded(const StoredTrack& track) const {
+std::shared_ptr<LiveTrack> TrackRegistry::loaded(const StoredTrack& track) const {
   const auto map = maps_.find(track.map);
-  auto result = std::make_shared<Live>(map, calibrated(stored_settings(track, request_limits_)));
-  result->state = stored_state(track.id);
-  return result;
+  return std::make_shared<LiveTrack>(map, calibrated(stored_settings(track, request_limits_)), stored_state(track.id));
 }
 
 TrackerState TrackRegistry::stored_state(const std::string& id) const {
@@ -183,7 +164,7 @@ TrackerState TrackRegistry::stored_state(const std::string& id) const {
   return state;
 }
 
-std::shared_ptr<TrackRegistry::Live> TrackRegistry::live(const std::string& id) {
+std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   const StoredTrack track = find(id);
   const bool same_map = maps_.find(track.map)->view.version == track.map_version;
   const std::lock_guard lock(mutex_);
@@ -229,32 +210,21 @@ std::optional<std::string> TrackRegistry::answered(const std::string& id, std::i
 
 std::string TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
                                 const StepLimits& limits) {
-  const std::shared_ptr<Live> track = live(id);
-  std::unique_lock lock(track->mutex);
-  const auto place = track->waiting.insert(input.sequence);
-  const std::shared_ptr<void> leave(nullptr, [&](void*) {
-    track->waiting.erase(place);
-    track->turn.notify_all();
-  });
-  const auto is_first = [&] { return track->waiting.begin() == place; };
-  const auto follows = [&] { return !track->state.started || input.sequence <= track->state.sequence + 1; };
-  track->turn.wait_for(lock, limits_.order_wait, [&] { return is_first() && follows(); });
-  track->turn.wait(lock, is_first);
+  const std::shared_ptr<LiveTrack> track = live(id);
+  LiveTrack::Turn turn(*track, input.sequence, limits_.order_wait);
   if (const auto answer = answered(id, input.sequence, digest)) return *answer;
-  if (track->doubtful) track->state = stored_state(id);
-  track->doubtful = false;
-  StepResult result = track->tracker.advance(track->state, input, limits);
+  if (turn.is_doubtful()) turn.settle(stored_state(id));
+  StepResult result = track->tracker().advance(turn.state(), input, limits);
   json answer = api::to_json(result.estimate);
   answer["track"] = id;
   std::string text = text_of(answer);
-  track->doubtful = true;
   const StoredState state{text_of(api::counters_json(result.state)), to_bytes(result.state.filter),
                           result.state.recent.to_bytes()};
+  turn.doubt();
   if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {
     throw track_ended(id, "finished");
   }
-  track->doubtful = false;
-  track->state = std::move(result.state);
+  turn.settle(std::move(result.state));
   const std::lock_guard registry_lock(mutex_);
   heard_[id] = Clock::now();
   ++changes_;
@@ -269,36 +239,6 @@ std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string
     throw http::Busy(fmt::format("{} streams of events are open, as many as may", streams_), std::chrono::seconds(5));
   }
   return std::make_shared<Listener>(*this, id, after);
-}
-
-TrackRegistry::Listener::Listener(TrackRegistry& registry, std::string id, std::int64_t after)
-    : registry_(registry), id_(std::move(id)), after_(after) {
-  ++registry_.streams_;
-}
-
-TrackRegistry::Listener::~Listener() {
-  const std::lock_guard lock(registry_.mutex_);
-  --registry_.streams_;
-}
-
-std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
-  constexpr int kBatch = 64;
-  constexpr std::chrono::seconds kPatience{1};
-  std::unique_lock lock(registry_.mutex_);
-  const std::uint64_t seen = registry_.changes_;
-  lock.unlock();
-  News news{registry_.store().steps_after(id_, after_, kBatch), {}};
-  if (!news.steps.empty()) {
-    after_ = news.steps.back().sequence;
-    return news;
-  }
-  const auto track = registry_.store().find(id_);
-  news.ended = track ? registry_.ended(*track) : "finished";
-  if (!news.ended.empty()) return news;
-  lock.lock();
-  registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
-  if (registry_.stopping_) return std::nullopt;
-  return news;
 }
 
 }  // namespace roadfix::server

@@ -19,6 +19,7 @@
 #include "core/locate/tracker.hpp"
 #include "server/api/limits.hpp"
 #include "server/maps/map_registry.hpp"
+#include "server/tracks/live_track.hpp"
 #include "server/tracks/track_store.hpp"
 
 namespace roadfix::server {
@@ -72,11 +73,10 @@ class TrackRegistry {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Live;
   TrackStore& store() const;
   TrackSettings calibrated(TrackSettings settings) const;
-  std::shared_ptr<Live> live(const std::string& id);
-  std::shared_ptr<Live> loaded(const StoredTrack& track) const;
+  std::shared_ptr<LiveTrack> live(const std::string& id);
+  std::shared_ptr<LiveTrack> loaded(const StoredTrack& track) const;
   TrackerState stored_state(const std::string& id) const;
   std::string ended(const StoredTrack& track) const;
   void end(const std::string& id, const std::string& how);
@@ -92,7 +92,7 @@ class TrackRegistry {
   mutable std::unique_ptr<TrackStore> store_;
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
   std::condition_variable news_;
-  std::map<std::string, std::shared_ptr<Live>> live_;
+  std::map<std::string, std::shared_ptr<LiveTrack>> live_;
   std::map<std::string, Clock::time_point> heard_;  ///< of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
   int streams_ = 0;

@@ -1,0 +1,33 @@
+#include "server/tracks/live_track.hpp"
+
+#include <utility>
+
+namespace roadfix::server {
+
+LiveTrack::LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& settings, TrackerState state)
+    : map_(std::move(map)), tracker_(map_->view, settings), state_(std::move(state)) {}
+
+std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
+  const std::lock_guard lock(mutex_);
+  return state_.started ? tracker_.particles(state_, count) : std::vector<GeoPose>();
+}
+
+LiveTrack::Turn::Turn(LiveTrack& track, std::int64_t sequence, std::chrono::milliseconds patience)
+    : track_(track), lock_(track.mutex_), place_(track.waiting_.insert(sequence)) {
+  const auto is_first = [&] { return track_.waiting_.begin() == place_; };
+  const auto follows = [&] { return !state().started || sequence <= state().sequence + 1; };
+  track_.turn_ended_.wait_for(lock_, patience, [&] { return is_first() && follows(); });
+  track_.turn_ended_.wait(lock_, is_first);
+}
+
+LiveTrack::Turn::~Turn() {
+  track_.waiting_.erase(place_);
+  track_.turn_ended_.notify_all();
+}
+
+void LiveTrack::Turn::settle(TrackerState state) {
+  track_.state_ = std::move(state);
+  track_.doubtful_ = false;
+}
+
+}  // namespace roadfix::server

@@ -1,0 +1,59 @@
+// A track in memory: its tracker, and its state after the last step that is on disk.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <vector>
+
+#include "core/locate/tracker.hpp"
+#include "server/maps/map_registry.hpp"
+
+namespace roadfix::server {
+
+class LiveTrack {
+ public:
+  LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& settings, TrackerState state = {});
+
+  const Tracker& tracker() const { return tracker_; }
+  /// Thinned to at most `count`; none before the first step.
+  std::vector<GeoPose> particles(std::size_t count) const;
+
+  class Turn;
+
+ private:
+  const std::shared_ptr<const ServedMap> map_;
+  const Tracker tracker_;
+  mutable std::mutex mutex_;
+  std::condition_variable turn_ended_;
+  std::multiset<std::int64_t> waiting_;  ///< sequence numbers of the steps that are here
+  TrackerState state_;
+  bool doubtful_ = false;
+};
+
+/// Steps of a track take turns, the lowest sequence number first.
+class LiveTrack::Turn {
+ public:
+  /// Waits until it is this step's turn, and for so long at most for one before it that was overtaken on its way here.
+  Turn(LiveTrack& track, std::int64_t sequence, std::chrono::milliseconds patience);
+  ~Turn();
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  const TrackerState& state() const { return track_.state_; }
+  /// Whether the store alone knows if the last step was taken.
+  bool is_doubtful() const { return track_.doubtful_; }
+  /// Until settle(), should the store fail.
+  void doubt() { track_.doubtful_ = true; }
+  void settle(TrackerState state);
+
+ private:
+  LiveTrack& track_;
+  std::unique_lock<std::mutex> lock_;
+  std::multiset<std::int64_t>::iterator place_;
+};
+
+}  // namespace roadfix::server

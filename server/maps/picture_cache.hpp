@@ -1,36 +1,27 @@
 // Rendered tiles, least recently used first out, bounded in bytes. A key that holds the map's version never goes stale.
 #pragma once
 
-#include <list>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_map>
+
+#include "core/units/lru_cache.hpp"
 
 namespace roadfix::server {
 
 class PictureCache {
  public:
-  explicit PictureCache(std::size_t capacity_bytes) : capacity_(capacity_bytes) {}
+  explicit PictureCache(std::size_t capacity_bytes) : pictures_(capacity_bytes) {}
 
   /// Empty bytes stand for a tile that shows nothing; nullopt for one that is not kept.
-  std::optional<std::string> find(const std::string& key);
-  void keep(const std::string& key, const std::string& bytes);
-  std::size_t bytes() const;
+  std::optional<std::string> find(const std::string& key) { return pictures_.find(key); }
+  void keep(const std::string& key, const std::string& bytes) {
+    pictures_.keep(key, bytes, 2 * key.size() + bytes.size() + kEntryBytes);
+  }
+  std::size_t bytes() const { return pictures_.bytes(); }
 
  private:
-  struct Entry {
-    std::string key;
-    std::string bytes;
-  };
-  static std::size_t cost(const Entry& entry) { return 2 * entry.key.size() + entry.bytes.size() + 128; }
-
-  mutable std::mutex mutex_;
-  const std::size_t capacity_;
-  std::size_t bytes_ = 0;
-  std::list<Entry> entries_;  ///< most recently used first
-  std::unordered_map<std::string, std::list<Entry>::iterator> index_;
+  static constexpr std::size_t kEntryBytes = 128;
+  LruCache<std::string, std::string> pictures_;
 };
 
 }  // namespace roadfix::server

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <list>
 #include <memory>
-#include <mutex>
-#include <unordered_map>
+#include <utility>
 
 #include "core/grid/cell_array.hpp"
+#include "core/units/lru_cache.hpp"
 #include "tiles/store/map_records.hpp"
 
 namespace roadfix {
@@ -23,37 +22,26 @@ class TileCache {
   /// Null for a tile that the map does not have.
   using Tile = std::shared_ptr<const CellArray>;
 
-  explicit TileCache(std::size_t capacity_bytes) : capacity_(capacity_bytes) {}
+  explicit TileCache(std::size_t capacity_bytes) : tiles_(capacity_bytes) {}
 
   /// The kept tile, or what `load` returns. It runs without a lock: two threads may load the same tile at once.
   template <typename Load>
   Tile get(const Key& key, const Load& load) {
-    Tile tile;
-    if (find(key, tile)) return tile;
-    tile = load();
-    keep(key, tile);
+    if (auto kept = tiles_.find(key)) return *std::move(kept);
+    Tile tile = load();
+    tiles_.keep(key, tile, cost(tile));
     return tile;
   }
 
-  std::size_t bytes() const;
+  std::size_t bytes() const { return tiles_.bytes(); }
 
  private:
-  struct Entry {
-    Key key;
-    Tile tile;
-  };
   struct Hash {
     std::size_t operator()(const Key& key) const;
   };
-  bool find(const Key& key, Tile& tile);
-  void keep(const Key& key, const Tile& tile);
   static std::size_t cost(const Tile& tile);
 
-  mutable std::mutex mutex_;
-  const std::size_t capacity_;
-  std::size_t bytes_ = 0;
-  std::list<Entry> entries_;  ///< most recently used first
-  std::unordered_map<Key, std::list<Entry>::iterator, Hash> index_;
+  LruCache<Key, Tile, Hash> tiles_;
 };
 
 }  // namespace roadfix

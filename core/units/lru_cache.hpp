@@ -1,0 +1,60 @@
+// Values by key, the least recently used first out, bounded in bytes. Thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+namespace roadfix {
+
+template <typename Key, typename Value, typename Hash = std::hash<Key>>
+class LruCache {
+ public:
+  explicit LruCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  std::optional<Value> find(const Key& key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = places_.find(key);
+    if (found == places_.end()) return std::nullopt;
+    entries_.splice(entries_.begin(), entries_, found->second);
+    return found->second->value;
+  }
+
+  /// `bytes`: of all that it takes. A key that is kept already keeps its value.
+  void keep(const Key& key, Value value, std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    if (places_.contains(key)) return;
+    entries_.push_front({key, std::move(value), bytes});
+    places_.emplace(key, entries_.begin());
+    bytes_ += bytes;
+    while (bytes_ > most_bytes_) {
+      bytes_ -= entries_.back().bytes;
+      places_.erase(entries_.back().key);
+      entries_.pop_back();
+    }
+  }
+
+  std::size_t bytes() const {
+    const std::lock_guard lock(mutex_);
+    return bytes_;
+  }
+
+ private:
+  struct Entry {
+    Key key;
+    Value value;
+    std::size_t bytes = 0;
+  };
+
+  mutable std::mutex mutex_;
+  const std::size_t most_bytes_;
+  std::size_t bytes_ = 0;
+  std::list<Entry> entries_;  ///< most recently used first
+  std::unordered_map<Key, typename std::list<Entry>::iterator, Hash> places_;
+};
+
+}  // namespace roadfix

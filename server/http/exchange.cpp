@@ -1,11 +1,13 @@
 #include "server/http/exchange.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <ctime>
 #include <optional>
 #include <string_view>
 
@@ -182,6 +184,14 @@ void fill(httplib::Response& out, Response response) {
   }
   if (!response.content_type.empty()) out.set_header("Content-Type", response.content_type);
   out.body = std::move(response.body);
+}
+
+void correct_head(httplib::Response& out) {
+  if (out.status == 204) out.headers.erase("Content-Length");  // of a 304 it stays: clients of cpp-httplib wait for it
+  out.headers.erase("Accept-Ranges");
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  out.set_header("Date", fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(now)));  // RFC 9110 6.6.1
+  if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
 }
 
 }  // namespace roadfix::http

@@ -54,4 +54,8 @@ std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_byt
 
 void fill(httplib::Response& out, Response response);
 
+/// Of an answer that is about to be written. cpp-httplib adds a length of 0 to answers that have none (RFC 9110 8.6),
+/// byte ranges that are not served, and the time that a connection is kept which is closed; it gives no date.
+void correct_head(httplib::Response& out);
+
 }  // namespace roadfix::http

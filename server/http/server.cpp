@@ -1,12 +1,11 @@
 #include "server/http/server.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <httplib.h>
 #include <sys/socket.h>
 
 #include <atomic>
-#include <ctime>
+#include <chrono>
 #include <thread>
 
 #include "core/units/error.hpp"
@@ -64,7 +63,6 @@ class Server::Impl : public httplib::Server {
   Response answered(Exchange& exchange);
   void reply(Exchange& exchange, httplib::Response& out, Response response) const;
   HandlerResponse complete_error(httplib::Response& out);
-  static void correct_head(httplib::Response& out);
   void finished(const httplib::Request& head, const httplib::Response& out);
 
   const ServerSettings settings_;
@@ -271,16 +269,6 @@ HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   exchange.must_close = true;
   reply(exchange, out, failed(exchange, failure_of_head(exchange, settings_.head_bytes)));
   return HandlerResponse::Handled;
-}
-
-/// cpp-httplib adds a length of 0 to answers that have none (RFC 9110 8.6), byte ranges that are not served, and the
-/// time that a connection is kept which is closed; it gives no date.
-void Server::Impl::correct_head(httplib::Response& out) {
-  if (out.status == 204) out.headers.erase("Content-Length");  // of a 304 it stays: clients of cpp-httplib wait for it
-  out.headers.erase("Accept-Ranges");
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  out.set_header("Date", fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(now)));  // RFC 9110 6.6.1
-  if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
 }
 
 void Server::Impl::finished(const httplib::Request& head, const httplib::Response& out) {

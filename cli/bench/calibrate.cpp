@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "cli/bench/nees.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::bench {
@@ -17,8 +18,7 @@ using nlohmann::json;
 
 constexpr std::size_t kFigures = kCountedFigures.size();
 constexpr int kFewest = 50;
-constexpr double kWithin95OfPosition = 5.991;  // of chi^2 with two degrees
-constexpr double kWithin95OfHeading = 3.841;   // with one
+constexpr double kChiSquare95OfHeading = 3.841;  // with one degree of freedom
 
 struct Example {
   std::array<double, kFigures> figures{};
@@ -46,8 +46,8 @@ Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force)
     heading.push_back(std::pow(*outcome.heading_error_deg / outcome.answer.mode->heading_sigma.degrees(), 2));
   }
   if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
-  return {in_force.position_sigma_scale * scale_of(position, 2.0, kWithin95OfPosition),
-          in_force.heading_sigma_scale * scale_of(heading, 1.0, kWithin95OfHeading)};
+  return {in_force.position_sigma_scale * scale_of(position, 2.0, kChiSquare95),
+          in_force.heading_sigma_scale * scale_of(heading, 1.0, kChiSquare95OfHeading)};
 }
 
 /// Bias first.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/bench/nees.hpp"
+
 namespace roadfix::bench {
 namespace {
 
@@ -13,7 +15,6 @@ using nlohmann::json;
 
 constexpr std::array<double, 9> kBinEdges{0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.995};
 constexpr double kConfident = 0.9;
-constexpr double kWithin95 = 5.991;  // of chi^2 with two degrees
 
 bool false_fix(const Outcome& outcome) { return !outcome.error_m || *outcome.error_m > kFalseFixM; }
 
@@ -64,7 +65,7 @@ Honesty honesty_of(std::span<const Outcome> outcomes) {
     if (!outcome.position_nees || outcome.answer.probability < kConfident || false_fix(outcome)) continue;
     ++honesty.nees_n;
     honesty.mean_nees += *outcome.position_nees;
-    honesty.within_95 += *outcome.position_nees <= kWithin95 ? 1 : 0;
+    honesty.within_95 += *outcome.position_nees <= kChiSquare95 ? 1 : 0;
   }
   if (honesty.nees_n > 0) honesty.mean_nees /= honesty.nees_n;
   return honesty;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bench/honesty.hpp"
+#include "cli/bench/nees.hpp"
 #include "core/locate/calibration.hpp"
 #include "server/api/fix_json.hpp"
 
@@ -44,15 +45,9 @@ json outcome_json(const Outcome& outcome) {
           {"time_ms", answer.time_ms}};
 }
 
-/// Squared distance of `truth` from the mode in units of its ellipse.
-double nees(const FixMode& mode, GridPoint truth, const UtmZone& zone) {
+GridEllipse ellipse_of(const FixMode& mode, const UtmZone& zone) {
   const GridPoint at = zone.project(mode.pose.position);
-  const Angle major = zone.grid_from_true(mode.ellipse_heading, at);
-  const double east = truth.east_m - at.east_m;
-  const double north = truth.north_m - at.north_m;
-  const double along = (east * sin(major) + north * cos(major)) / mode.sigma_m[0];
-  const double across = (east * cos(major) - north * sin(major)) / mode.sigma_m[1];
-  return along * along + across * across;
+  return {at, zone.grid_from_true(mode.ellipse_heading, at), mode.sigma_m};
 }
 
 std::string cell(const std::optional<double>& value, int digits) {
@@ -71,7 +66,7 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
     outcome.heading_error_deg = angular_distance(best->heading, truth->heading).degrees();
   }
   if (const auto& mode = outcome.answer.mode) {
-    outcome.position_nees = truth ? nees(*mode, zone.project(truth->position), zone) : kNowhere;
+    outcome.position_nees = truth ? nees(ellipse_of(*mode, zone), zone.project(truth->position)) : kNowhere;
   }
   return outcome;
 }

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <ctime>
 #include <utility>
 
+#include "cli/bench/nees.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::fly {
@@ -42,13 +43,6 @@ class LibraryLocalizer : public Localizer {
   TrackerState state_;
 };
 
-double nees_of(const TrackCluster& cluster, GridPoint error, Angle grid_axis) {
-  const double along = error.east_m * sin(grid_axis) + error.north_m * cos(grid_axis);
-  const double across = error.east_m * cos(grid_axis) - error.north_m * sin(grid_axis);
-  const auto squared = [](double value, double sigma) { return value * value / std::max(sigma * sigma, 1e-6); };
-  return squared(along, cluster.sigma_m[0]) + squared(across, cluster.sigma_m[1]);
-}
-
 Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone) {
   Record record;
   record.sequence = moment.input.sequence;
@@ -61,8 +55,7 @@ Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone)
   const GridPoint at = record.best.position;
   record.error_m = distance_m(at, moment.truth.position);
   record.heading_error_deg = angular_distance(record.best.heading, moment.truth.heading).degrees();
-  record.nees = nees_of(best, {moment.truth.position.east_m - at.east_m, moment.truth.position.north_m - at.north_m},
-                        zone.grid_from_true(best.ellipse_heading, at));
+  record.nees = bench::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, moment.truth.position);
   return record;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/bench/nees.hpp"
 #include "cli/bench/report.hpp"
 
 namespace roadfix::fly {
@@ -83,7 +84,6 @@ std::optional<double> share_below(const std::vector<double>& values, double limi
 }
 
 void condense(const Samples& samples, Summary& summary) {
-  constexpr double kChiSquare95 = 5.991;  // of 2 degrees of freedom
   summary.updates_median = quantile(samples.updates, 0.5);
   summary.updates_p90 = quantile(samples.updates, 0.9);
   summary.error_median_m = quantile(samples.errors, 0.5);
@@ -92,7 +92,7 @@ void condense(const Samples& samples, Summary& summary) {
   summary.final_error_p90_m = quantile(samples.final_errors, 0.9);
   summary.claim_updates_median = quantile(samples.claim_updates, 0.5);
   summary.nees_mean = mean(samples.nees);
-  summary.within_95 = share_below(samples.nees, kChiSquare95);
+  summary.within_95 = share_below(samples.nees, bench::kChiSquare95);
   summary.step_ms_median = quantile(samples.step_ms, 0.5);
   summary.step_ms_p95 = quantile(samples.step_ms, 0.95);
   summary.particles_mean = mean(samples.particles);

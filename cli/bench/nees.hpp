@@ -1,0 +1,32 @@
+// Is a position as uncertain as its ellipse says? The normalised estimation error squared (NEES), which is distributed
+// as chi^2 with two degrees of freedom where it is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "core/units/planar.hpp"
+
+namespace roadfix::bench {
+
+/// 95 % of chi^2 with two degrees of freedom lie below.
+inline constexpr double kChiSquare95 = 5.991;
+
+struct GridEllipse {
+  GridPoint centre;
+  Angle major_axis;               ///< from grid north
+  std::array<double, 2> sigma_m;  ///< along the major and minor axis
+};
+
+inline double nees(const GridEllipse& ellipse, GridPoint truth) {
+  constexpr double kLeastSigmaM = 1e-3;
+  const double east = truth.east_m - ellipse.centre.east_m;
+  const double north = truth.north_m - ellipse.centre.north_m;
+  const double s = sin(ellipse.major_axis);
+  const double c = cos(ellipse.major_axis);
+  const double along = (east * s + north * c) / std::max(ellipse.sigma_m[0], kLeastSigmaM);
+  const double across = (east * c - north * s) / std::max(ellipse.sigma_m[1], kLeastSigmaM);
+  return along * along + across * across;
+}
+
+}  // namespace roadfix::bench

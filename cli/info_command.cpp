@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "core/geodesy/geo_box.hpp"
+#include "server/api/fix_json.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
@@ -38,8 +39,7 @@ json source_json(const SourceStatus& source) {
 
 json bbox_of(const MapInfo& info) {
   if (info.extent.empty()) return nullptr;
-  const auto [south_west, north_east] = geo_box_around(info.settings.zone, info.extent);
-  return {south_west.lon_deg, south_west.lat_deg, north_east.lon_deg, north_east.lat_deg};
+  return api::bbox_json(geo_box_around(info.settings.zone, info.extent));
 }
 
 void print_json(const std::string& path, const MapInfo& info) {

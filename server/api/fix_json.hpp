@@ -23,6 +23,9 @@ nlohmann::json pose_json(const GeoPose& pose);
 /// An object of `pose` and `geometry`, for more to be added.
 nlohmann::json placed_json(const GeoPose& pose);
 
+/// West, south, east and north, as GeoJSON has a bbox.
+nlohmann::json bbox_json(const GeoBox& box);
+
 /// `detect_time` where the fix began with a frame.
 nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time = {});
 

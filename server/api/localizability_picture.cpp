@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "server/api/tile_ground.hpp"
+#include "server/api/tile_painting.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -44,18 +44,15 @@ class Squares {
   std::map<Index, std::optional<double>> known_;
 };
 
-cv::Vec4b pixel_of(double probability, TileStyle style) {
-  const auto byte = [](double value) { return static_cast<unsigned char>(std::lround(value)); };
-  if (style == TileStyle::kGrey) {
-    const unsigned char grey = byte(255.0 * probability);
-    return {grey, grey, grey, 255};
-  }
+Pixel pixel_of(double probability, TileStyle style) {
+  if (style == TileStyle::kGrey) return grey_pixel(probability);
   // Blue, green, red of no fix, ambiguous, fix on the operator's page.
   constexpr std::array<std::array<double, 3>, 3> kColours{{{130, 139, 242}, {93, 201, 244}, {161, 224, 126}}};
   const std::size_t below = probability < 0.5 ? 0 : 1;
   const double share = 2.0 * probability - static_cast<double>(below);
   const auto blend = [&](std::size_t channel) {
-    return byte((1.0 - share) * kColours[below][channel] + share * kColours[below + 1][channel]);
+    return static_cast<unsigned char>(
+        std::lround((1.0 - share) * kColours[below][channel] + share * kColours[below + 1][channel]));
   };
   return {blend(0), blend(1), blend(2), 128};
 }
@@ -85,21 +82,10 @@ std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, 
   if (!side_m || box.empty()) return std::nullopt;
   const PixelToGrid ground(map.zone, tile, box);
   Squares squares(map, *side_m, promise_of);
-  cv::Mat picture(kTilePixels, kTilePixels, CV_8UC4, cv::Scalar::all(0));
-  bool any = false;
-  for (int y = box.top; y < box.bottom; ++y) {
-    auto* const row = picture.ptr<cv::Vec4b>(y);
-    for (int x = box.left; x < box.right; ++x) {
-      const auto probability = squares.at(ground.at(x, y));
-      if (!probability) continue;
-      row[x] = pixel_of(*probability, style);
-      any = true;
-    }
-  }
-  if (!any) return std::nullopt;
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
-  return png;
+  return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
+    const auto probability = squares.at(point);
+    return probability ? std::optional(pixel_of(*probability, style)) : std::nullopt;
+  });
 }
 
 }  // namespace roadfix::api

@@ -1,8 +1,9 @@
 #include "server/api/tile_ground.hpp"
-#include "core/geodesy/geo_box.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/geodesy/geo_box.hpp"
 
 namespace roadfix::api {
 namespace {

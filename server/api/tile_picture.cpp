@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 
 #include "server/api/tile_ground.hpp"
+#include "server/api/tile_painting.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -43,10 +43,11 @@ std::optional<double> sample(const RoadGrid& grid, GridPoint point) {
   return weight > 0.0 ? std::optional(sum / weight) : std::nullopt;
 }
 
-cv::Vec4b pixel_of(double p, TileStyle style) {
-  const auto byte = [](double value) { return static_cast<unsigned char>(std::lround(value)); };
-  if (style == TileStyle::kGrey) return {byte(255.0 * p), byte(255.0 * p), byte(255.0 * p), 255};
-  const auto between = [&](double open, double road) { return byte(open + p * (road - open)); };
+Pixel pixel_of(double p, TileStyle style) {
+  if (style == TileStyle::kGrey) return grey_pixel(p);
+  const auto between = [&](double open, double road) {
+    return static_cast<unsigned char>(std::lround(open + p * (road - open)));
+  };
   return {between(60, 0), between(44, 176), between(40, 255), between(50, 235)};  // blue, green, red, alpha
 }
 
@@ -65,21 +66,10 @@ std::optional<std::vector<std::uint8_t>> tile_png(const MapView& map, TileAddres
   const RoadGrid grid = map.read(GridGeometry::covering(needed, cell_m));
   if (grid.cells.observed_count() == 0) return std::nullopt;
 
-  cv::Mat picture(kTilePixels, kTilePixels, CV_8UC4, cv::Scalar::all(0));
-  bool any = false;
-  for (int y = box.top; y < box.bottom; ++y) {
-    auto* const row = picture.ptr<cv::Vec4b>(y);
-    for (int x = box.left; x < box.right; ++x) {
-      const auto p = sample(grid, ground.at(x, y));
-      if (!p) continue;
-      row[x] = pixel_of(*p, style);
-      any = true;
-    }
-  }
-  if (!any) return std::nullopt;
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
-  return png;
+  return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
+    const auto p = sample(grid, point);
+    return p ? std::optional(pixel_of(*p, style)) : std::nullopt;
+  });
 }
 
 int native_zoom(const MapView& map) {

@@ -133,9 +133,8 @@ http::Response get_tilejson(const Service& service, const http::Request& request
                         {"tiles", {url}}};
   const GridBox& extent = layer.map->view.extent;
   if (!extent.empty()) {
-    const GeoBox b = geo_box_around(layer.map->view.zone, extent);
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
-    answer["bounds"] = {b.south_west.lon_deg, b.south_west.lat_deg, b.north_east.lon_deg, b.north_east.lat_deg};
+    answer["bounds"] = api::bbox_json(geo_box_around(layer.map->view.zone, extent));
     answer["minzoom"] = zooms.first;
     answer["maxzoom"] = zooms.last;
   }

@@ -2,6 +2,7 @@
 
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -37,9 +38,7 @@ json summary(const ServedMap& map) {
               {"bbox", nullptr},
               {"area_km2", 0.0}};
   if (info.extent.empty()) return answer;
-  const GeoBox bounds = geo_box_around(info.settings.zone, info.extent);
-  answer["bbox"] = {bounds.south_west.lon_deg, bounds.south_west.lat_deg, bounds.north_east.lon_deg,
-                    bounds.north_east.lat_deg};
+  answer["bbox"] = api::bbox_json(geo_box_around(info.settings.zone, info.extent));
   answer["area_km2"] = info.extent.width_m() * info.extent.height_m() / 1e6;
   return answer;
 }

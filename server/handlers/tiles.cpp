@@ -4,6 +4,7 @@
 
 #include "core/geodesy/geo_box.hpp"
 #include "server/api/fields.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/api/tile_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -62,7 +63,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
   if (!info.extent.empty()) {
     const GeoBox b = geo_box_around(info.settings.zone, info.extent);
     const int native = api::native_zoom(map->view);
-    answer["bounds"] = {b.south_west.lon_deg, b.south_west.lat_deg, b.north_east.lon_deg, b.north_east.lat_deg};
+    answer["bounds"] = api::bbox_json(b);
     answer["center"] = {0.5 * (b.south_west.lon_deg + b.north_east.lon_deg),
                         0.5 * (b.south_west.lat_deg + b.north_east.lat_deg), std::max(0, native - kZoomsBeyondNative)};
     answer["maxzoom"] = std::min(api::kMaxZoom, native + kZoomsBeyondNative);

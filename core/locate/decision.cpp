@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace roadfix {
 namespace {
@@ -53,20 +54,41 @@ std::string time_was_over(const SearchResult& found) {
   return fmt::format("time was over before the places that fit were told apart in the cells of the map: {}", advice);
 }
 
+void explain(Decision& decision, const char* reason, std::string explanation) {
+  decision.reason = reason;
+  decision.explanation = std::move(explanation);
+}
+
+void call_ambiguous(Decision& decision, const std::vector<double>& posterior, double confidence) {
+  const auto alike =
+      std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
+  decision.status = FixStatus::kAmbiguous;
+  decision.weights.resize(static_cast<std::size_t>(alike));
+  if (alike > 1) {
+    explain(decision, "several-places-fit",
+            fmt::format("the roads fit at {} places about as well: narrow the prior, give a heading, or fly on "
+                        "and ask again",
+                        alike));
+  } else {
+    explain(decision, "below-confidence",
+            fmt::format("the roads fit best at one place, but less surely ({:.3f}) than asked ({}): use a "
+                        "larger footprint or a narrower prior, or fly on and ask again",
+                        decision.probability, confidence));
+  }
+}
+
 }  // namespace
 
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
   Decision decision;
-  if (found.modes.empty() && !found.complete()) {
-    decision.reason = kTimeLimitReason;
-    decision.explanation = time_was_over(found);
+  if (found.modes.empty() && found.complete()) {
+    explain(decision, "map-too-empty",
+            "nowhere in the searched region does the map hold enough observed ground with roads under the footprint: "
+            "widen the region or ingest more sources");
     return decision;
   }
   if (found.modes.empty()) {
-    decision.reason = "map-too-empty";
-    decision.explanation =
-        "nowhere in the searched region does the map hold enough observed ground with roads under the footprint: widen "
-        "the region or ingest more sources";
+    explain(decision, kTimeLimitReason, time_was_over(found));
     return decision;
   }
   const SearchFigures figures = figures_of(found);
@@ -74,34 +96,15 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   decision.probability = found.scanned_share * calibration.probability(figures);
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
-    decision.reason = kTimeLimitReason;
-    decision.explanation = time_was_over(found);
-    return decision;
-  }
-  if (decision.probability >= confidence) {
+    explain(decision, kTimeLimitReason, time_was_over(found));
+  } else if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
-    return decision;
-  }
-  const auto alike =
-      std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
-  if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
-    decision.status = FixStatus::kAmbiguous;
-    decision.weights.resize(static_cast<std::size_t>(alike));
-    decision.reason = alike > 1 ? "several-places-fit" : "below-confidence";
-    decision.explanation =
-        alike > 1 ? fmt::format(
-                        "the roads fit at {} places about as well: narrow the prior, give a heading, or fly on "
-                        "and ask again",
-                        alike)
-                  : fmt::format(
-                        "the roads fit best at one place, but less surely ({:.3f}) than asked ({}): use a "
-                        "larger footprint or a narrower prior, or fly on and ask again",
-                        decision.probability, confidence);
+  } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
+    call_ambiguous(decision, posterior, confidence);
   } else {
-    decision.reason = kNotAboveChanceReason;
-    decision.explanation =
-        "the best place fits no better than chance would have it among so many: use a larger footprint or a narrower "
-        "prior, or the UAV is not over this map";
+    explain(decision, kNotAboveChanceReason,
+            "the best place fits no better than chance would have it among so many: use a larger footprint or a "
+            "narrower prior, or the UAV is not over this map");
   }
   return decision;
 }

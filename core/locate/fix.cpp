@@ -101,6 +101,19 @@ void require_valid(const FixOptions& options, double area_km2) {
   }
 }
 
+SearchOptions search_options_of(const FixOptions& options, const MapView& map,
+                                std::chrono::steady_clock::time_point started) {
+  SearchOptions result;
+  result.max_modes = options.max_modes;
+  result.scale_range = options.scale_range;
+  result.cache = map.searches;
+  result.threads = options.threads;
+  result.stop = options.stop;
+  result.proof_time = options.proof_time;
+  if (options.time_limit.count() > 0) result.deadline = started + options.time_limit;
+  return result;
+}
+
 }  // namespace
 
 GridPose on_grid(const GeoPose& pose, const UtmZone& zone) {
@@ -123,15 +136,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const FeatureMap compared = compared_cells(cells);
   if (hopeless(cells, fix) || hopeless(compared, fix)) return fix;
 
-  SearchOptions search_options;
-  search_options.max_modes = options.max_modes;
-  search_options.scale_range = options.scale_range;
-  search_options.cache = map.searches;
-  search_options.threads = options.threads;
-  search_options.stop = options.stop;
-  search_options.proof_time = options.proof_time;
-  if (options.time_limit.count() > 0) search_options.deadline = started + options.time_limit;
-  const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region, search_options);
+  const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region,
+                                    search_options_of(options, map, started));
 
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   Decision decision = decide(found, calibration, options.confidence);

@@ -13,8 +13,7 @@ struct Ellipse {
   Angle heading;                  ///< of the major axis, clockwise from true north, within [0, 180) degrees
 };
 
-/// `covariance` is that of the match alone at `at`. The registration error of the
-/// map's sources is added to both axes.
+/// `covariance` is that of the match alone at `at`. The registration error of the map's sources is added to both axes.
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance);
 
 }  // namespace roadfix

@@ -27,7 +27,7 @@ double road_share(const CellArray& cells) {
   return observed > 0.0 ? roads / observed : 0.0;
 }
 
-/// Whether the mode's region holds the place, or is as near as the footprint's tenth that modes are apart at least.
+/// Within two standard deviations, or four cells where those are more.
 bool is_at(const FixMode& mode, GridPoint place, const MapView& map) {
   return distance_m(map.zone.project(mode.pose.position), place) <= std::max(4.0 * map.cell_m, 2.0 * mode.sigma_m[0]);
 }

@@ -39,9 +39,8 @@ struct ScanResult {
 };
 
 /// `map` covers the positions with its reach on every side (unobserved where nothing is known), which is at least the
-/// footprint's. Scores are
-/// accurate to some percent: means and spreads under the footprint come from a coarser grid. At the deadline it stops
-/// and says what it has; throws Interrupted if asked to stop.
+/// footprint's. Scores are accurate to some percent: means and spreads under the footprint come from a coarser grid. At
+/// the deadline it stops and says what it has; throws Interrupted if asked to stop.
 ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);
 

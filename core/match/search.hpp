@@ -80,7 +80,8 @@ struct ScoreBackground {
   /// normal and 1 / sd^2 the number of independent samples. kTemper says how far that is trusted, since the errors of
   /// neighbouring cells are not independent.
   double log_likelihood(double score) const;
-  /// Assumed, not yet learned from data.
+  /// Assumed. The calibration makes up for it in the ellipses of modes (core/locate/calibration.hpp), not in their
+  /// weights beside the best one.
   static constexpr double kTemper = 0.25;
 };
 

@@ -55,7 +55,7 @@ class Fields {
  private:
   double to_number(const std::string& name, const nlohmann::json& value) const;
 
-  /// Text of a query or form is kept as a JSON string with `text_` set.
+  /// Text of a query or form is kept as a JSON string with `from_text` set.
   struct Value {
     nlohmann::json json;
     bool from_text = false;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/grid/log_odds.hpp"
 #include "core/grid/sampling.hpp"
 #include "core/units/error.hpp"
 
@@ -59,12 +60,6 @@ struct LogOddsSums {
   std::vector<std::uint8_t> count;
 };
 
-float log_odds(Cell cell) {
-  constexpr double kLeast = 0.25 / kRoad;
-  const double p = std::clamp(probability(cell), kLeast, 1.0 - kLeast);
-  return static_cast<float>(std::log(p / (1.0 - p)));
-}
-
 void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, LogOddsSums& sums) {
   const double c = cos(part.offset.turn);
   const double s = sin(part.offset.turn);
@@ -80,7 +75,7 @@ void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Log
       const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
       if (!is_observed(cell)) continue;
       const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(col);
-      sums.sum[i] += log_odds(cell);
+      sums.sum[i] += static_cast<float>(log_odds(cell));
       ++sums.count[i];
     }
   }
@@ -114,7 +109,7 @@ FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (sums.count[i] == 0) continue;
     const double mean = static_cast<double>(sums.sum[i]) / sums.count[i];
-    cells[i] = cell_from_probability(1.0 / (1.0 + std::exp(-mean)));
+    cells[i] = cell_from_log_odds(mean);
   }
   return result;
 }

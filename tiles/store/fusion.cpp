@@ -1,11 +1,12 @@
 #include "tiles/store/fusion.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "core/grid/log_odds.hpp"
 
 namespace roadfix {
 namespace {
@@ -16,13 +17,10 @@ constexpr double kUnitsPerNat = 1 << 20;
 std::array<std::int64_t, kRoad + 1> make_log_odds() {
   std::array<std::int64_t, kRoad + 1> table{};
   for (std::size_t k = 0; k < table.size(); ++k) {
-    const double p = std::clamp(static_cast<double>(k) / kRoad, 0.25 / kRoad, 1.0 - 0.25 / kRoad);
-    table[k] = std::llround(std::log(p / (1.0 - p)) * kUnitsPerNat);
+    table[k] = std::llround(log_odds(static_cast<Cell>(k)) * kUnitsPerNat);
   }
   return table;
 }
-
-Cell cell_from_log_odds(double units) { return cell_from_probability(1.0 / (1.0 + std::exp(-units / kUnitsPerNat))); }
 
 }  // namespace
 
@@ -43,7 +41,8 @@ CellArray fused(std::span<const CellArray> sources) {
       ++count;
       only = cell;
     }
-    out[i] = count < 2 ? only : cell_from_log_odds(static_cast<double>(sum) / static_cast<double>(count));
+    out[i] =
+        count < 2 ? only : cell_from_log_odds(static_cast<double>(sum) / static_cast<double>(count) / kUnitsPerNat);
   }
   return result;
 }

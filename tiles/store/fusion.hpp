@@ -10,7 +10,7 @@
 namespace roadfix {
 
 /// All tiles must have one size. A cell that one source observed is copied, a cell that none observed is unobserved.
-/// Certainty is bounded at a quarter of a step of the cell scale (p = 1/1016), the mean of what rounds to 0.
+/// Certainty is bounded (core/grid/log_odds.hpp).
 CellArray fused(std::span<const CellArray> sources);
 
 }  // namespace roadfix

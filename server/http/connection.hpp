@@ -12,7 +12,6 @@
 namespace roadfix::http {
 
 struct ConnectionLimits {
-  std::chrono::milliseconds idle{15'000};  ///< between two requests
   std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its headers
   std::chrono::milliseconds body{60'000};  ///< for the whole body
   std::chrono::milliseconds write{30'000};

@@ -132,8 +132,7 @@ void Server::Impl::stop_and_join() {
 
 bool Server::Impl::process_and_close_socket(socket_t socket) {
   const Counted open(metrics_.connections);
-  ConnectionLimits limits{settings_.idle_time, settings_.head_time, settings_.body_time, settings_.write_time,
-                          settings_.head_bytes};
+  ConnectionLimits limits{settings_.head_time, settings_.body_time, settings_.write_time, settings_.head_bytes};
   limits.grace = settings_.crowded_time;
   limits.others_wait = [this] { return pool_.load()->waiting() > 0; };
   Connection connection(socket, limits);

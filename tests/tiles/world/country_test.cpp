@@ -106,7 +106,7 @@ TEST(Country, EndsTracksBeforeWaterAndRails) {
   }
 }
 
-TEST(Country, CrossesRailsAndWaterByPavedRoadsOnly) {
+TEST(Country, LaysNoRoadAlongItsRails) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const Plan plan = small_country(static_cast<std::uint64_t>(seed));
     if (plan.country.railway.empty()) continue;

@@ -89,7 +89,9 @@ TEST(Frames, LieInsideThePictureWhateverTheirHeading) {
   settings.footprint_m = 200.0;
   const Placement placement = place(settings, kDefaultCenter);
   Random random(1, 1);
-  for (const GridPose& pose : draw_poses(settings, placement, random)) {
+  const auto poses = draw_poses(settings, placement, random);
+  EXPECT_EQ(poses.size(), 500U);
+  for (const GridPose& pose : poses) {
     for (const double right : {-100.0, 100.0}) {
       for (const double forward : {-100.0, 100.0}) {
         const double east = pose.position.east_m + right * cos(pose.heading) + forward * sin(pose.heading);

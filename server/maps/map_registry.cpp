@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -26,6 +27,15 @@ std::map<std::string, fs::path> map_files(const fs::path& folder) {
       files[entry.path().stem()] = entry.path();
   }
   return files;
+}
+
+/// Of all that is served of a map. How many blocks of a source are done is not: an ingest under way shall not cost the
+/// decoded tiles again and again.
+bool says_the_same(const MapInfo& a, const MapInfo& b) {
+  const auto alike = [](const SourceStatus& x, const SourceStatus& y) {
+    return x.record == y.record && x.complete == y.complete && x.ingested_at == y.ingested_at;
+  };
+  return a.version == b.version && a.pending == b.pending && std::ranges::equal(a.sources, b.sources, alike);
 }
 
 }  // namespace
@@ -93,14 +103,12 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
   }
 }
 
-/// A touched file whose version is the same keeps its reader and with it the decoded tiles.
+/// A touched file that says the same keeps its reader and with it the decoded tiles.
 bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Stamp& stamp) const {
   if (entry.stamp == stamp) return true;
   if (entry.map == nullptr || entry.stamp.inode != stamp.inode) return false;
   try {
-    const MapInfo now = MapReader(path, 0).info();
-    const MapInfo& then = entry.map->reader->info();
-    return now.version == then.version && now.pending == then.pending && now.sources.size() == then.sources.size();
+    return says_the_same(MapReader(path, 0).info(), entry.map->reader->info());
   } catch (const Error&) {
     return false;  // opened() finds the same and reports it
   }

@@ -43,6 +43,8 @@ struct SourceRecord {
   std::string attribution;
   std::string method;  ///< detector or drawing rules with all parameters
   double registration_sigma_m = 0.0;
+
+  friend bool operator==(const SourceRecord&, const SourceRecord&) = default;
 };
 
 /// A name occurs twice while a source is being replaced: the complete one is in force until the other is complete.

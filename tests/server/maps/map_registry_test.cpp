@@ -52,6 +52,22 @@ TEST(MapRegistry, KeepsTheReaderOfAFileThatWasOnlyTouched) {
   EXPECT_EQ(registry.find("city"), before);
 }
 
+TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  ASSERT_EQ(registry.find("city")->view.registration_sigma_m, 2.5);
+  {
+    MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
+    SourceRecord record = registry.find("city")->reader->info().sources.front().record;
+    record.registration_sigma_m = 12.0;
+    const auto blocks = roadfix::testing::some_blocks(1);
+    ASSERT_TRUE(writer.begin_source(record, blocks, false).empty()) << "nothing is to be done but to describe it";
+  }
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->view.registration_sigma_m, 12.0) << "else ellipses stay too small";
+}
+
 TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   const TemporaryFolder folder;
   make_map(folder / "good.gpkg", 1);

@@ -25,11 +25,6 @@ constexpr double kFarthestGroundM = 3000.0;
 constexpr std::string_view kKinds[] = {"feature_map", "frame"};
 constexpr std::string_view kBorders[] = {"seen", "black"};
 
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 void require_picture(const Content& content) {
   if (content.image.empty()) {
     throw InvalidField("missing-parameter", "image",

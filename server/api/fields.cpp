@@ -103,17 +103,32 @@ double Fields::number(const std::string& name, const Range& range) const {
   return *value;
 }
 
-std::optional<int> Fields::optional_integer(const std::string& name, int min, int max) const {
-  const auto value = optional_number(name, {static_cast<double>(min), static_cast<double>(max)});
-  if (!value) return std::nullopt;
-  if (*value != std::floor(*value)) {
+std::optional<double> Fields::whole_number(const std::string& name, const Range& range) const {
+  const auto value = optional_number(name, range);
+  if (value && *value != std::floor(*value)) {
     throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a whole number, not {}", name, *value));
   }
-  return static_cast<int>(*value);
+  return value;
+}
+
+std::optional<int> Fields::optional_integer(const std::string& name, int min, int max) const {
+  const auto value = whole_number(name, {static_cast<double>(min), static_cast<double>(max)});
+  return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
 int Fields::integer(const std::string& name, int min, int max) const {
   const auto value = optional_integer(name, min, max);
+  if (!value) missing(name);
+  return *value;
+}
+
+std::optional<std::int64_t> Fields::optional_large_integer(const std::string& name, int min) const {
+  const auto value = whole_number(name, {static_cast<double>(min), kMostExact});
+  return value ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt;
+}
+
+std::int64_t Fields::large_integer(const std::string& name, int min) const {
+  const auto value = optional_large_integer(name, min);
   if (!value) missing(name);
   return *value;
 }
@@ -162,6 +177,11 @@ std::optional<std::vector<double>> Fields::optional_numbers(const std::string& n
 const json* Fields::member(const std::string& name) const {
   const Value* value = find(name);
   return value == nullptr || value->from_text ? nullptr : &value->json;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
 }
 
 }  // namespace roadfix::api

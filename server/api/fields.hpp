@@ -27,6 +27,8 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::max(), true};
 inline constexpr Range kLatitude{-90.0, 90.0};
 inline constexpr Range kLongitude{-180.0, 180.0};
 inline constexpr Range kDegrees{-360.0, 360.0};
+/// Integers up to here are exact as JSON numbers.
+inline constexpr double kMostExact = 9007199254740992.0;
 
 class Fields {
  public:
@@ -44,6 +46,9 @@ class Fields {
   std::optional<double> optional_number(const std::string& name, const Range& range) const;
   int integer(const std::string& name, int min, int max) const;
   std::optional<int> optional_integer(const std::string& name, int min, int max) const;
+  /// Up to kMostExact, as numbers of steps and times may be.
+  std::int64_t large_integer(const std::string& name, int min) const;
+  std::optional<std::int64_t> optional_large_integer(const std::string& name, int min) const;
   std::string text(const std::string& name) const;
   /// One of the words; the first where the field is absent.
   std::string word(const std::string& name, std::span<const std::string_view> words) const;
@@ -54,6 +59,7 @@ class Fields {
 
  private:
   double to_number(const std::string& name, const nlohmann::json& value) const;
+  std::optional<double> whole_number(const std::string& name, const Range& range) const;
 
   /// Text of a query or form is kept as a JSON string with `from_text` set.
   struct Value {
@@ -63,6 +69,9 @@ class Fields {
   const Value* find(const std::string& name) const;
   std::map<std::string, Value> values_;
 };
+
+/// The names that a request may have, of several lists of them.
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);
 
 /// The whole of `text` as a finite number; nullopt for anything else.
 std::optional<double> parse_number(std::string_view text);

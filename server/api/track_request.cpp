@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "core/units/error.hpp"
@@ -18,16 +17,6 @@ using http::InvalidField;
 
 constexpr std::array<std::string_view, 2> kFilters{"adaptive", "paper"};
 constexpr std::array<std::string_view, 2> kStarts{"search", "uniform"};
-/// Integers up to here are exact as JSON numbers.
-constexpr double kMostExact = 9007199254740992.0;
-
-std::int64_t whole(const Fields& fields, const std::string& name) {
-  const double value = fields.number(name, {0.0, kMostExact});
-  if (value != std::floor(value)) {
-    throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a whole number, not {}", name, value));
-  }
-  return static_cast<std::int64_t>(value);
-}
 
 VehicleNoise parse_vehicle(const Fields& fields) {
   VehicleNoise noise;
@@ -105,8 +94,8 @@ const std::vector<std::string>& step_fields() {
 
 StepInput parse_step(const Fields& fields) {
   StepInput step;
-  step.sequence = whole(fields, "sequence");
-  step.time_us = whole(fields, "time_us");
+  step.sequence = fields.large_integer("sequence", 0);
+  step.time_us = fields.large_integer("time_us", 0);
   if (fields.has("forward_m") || fields.has("right_m") || fields.has("turn_deg"))
     step.odometry = parse_odometry(fields);
   if (const auto values = fields.optional_numbers("covariance", 9)) {

@@ -34,9 +34,4 @@ std::chrono::microseconds time_spent(const http::Request& request) {
   return std::chrono::duration_cast<std::chrono::microseconds>(http::Clock::now() - request.received);
 }
 
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 }  // namespace roadfix::server

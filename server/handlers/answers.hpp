@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/api/fields.hpp"
 #include "server/http/message.hpp"
 #include "server/http/server.hpp"
 
@@ -24,7 +25,6 @@ bool is_known_to_client(const http::Request& request, const std::string& tag);
 /// Since the request was read.
 std::chrono::microseconds time_spent(const http::Request& request);
 
-/// The query and the JSON members that a route takes.
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);
+using api::joined;
 
 }  // namespace roadfix::server

@@ -14,9 +14,6 @@
 namespace roadfix::server {
 namespace {
 
-/// Integers up to here are exact as JSON numbers.
-constexpr double kMostExact = 9007199254740992.0;
-
 std::vector<std::string> query_fields() {
   return joined(joined(api::feature_fields(), api::prior_fields()), joined(api::position_fields(), {"time_us"}));
 }
@@ -34,7 +31,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::Content content =
       api::read_content(request, joined(query_fields(), api::picture_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
-  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, kMostExact});
+  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMostExact});
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::TimeLimit limit(request.deadline);

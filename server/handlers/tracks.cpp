@@ -129,7 +129,7 @@ http::Response get_track(const Service& service, const http::Request& request) {
 
 http::Response get_history(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
-  const int after = fields.optional_integer("after", -1, std::numeric_limits<int>::max()).value_or(-1);
+  const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMostHistory).value_or(kMostHistory);
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {

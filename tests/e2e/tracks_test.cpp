@@ -36,6 +36,8 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
   EXPECT_EQ(history["features"].size(), 9U) << "eight points and the line";
   EXPECT_EQ(history["features"][8]["geometry"]["type"], "LineString");
   EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=5").c_str()))["features"].size(), 3U);
+  EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=4294967296").c_str()))["features"],
+            json::array());
 }
 
 TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {

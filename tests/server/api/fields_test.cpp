@@ -42,6 +42,17 @@ TEST(Fields, RefuseWhatIsNoFiniteNumberInRange) {
   EXPECT_EQ(code_of([&] { fields.number("lon", kLongitude); }), "missing-parameter lon");
 }
 
+TEST(Fields, ReadWholeNumbersAsLargeAsJsonHoldsExactly) {
+  const Fields fields(http::Parameters{{"after", "4294967297"}, {"least", "-1"}, {"odd", "0.5"}, {"most", "1e16"}});
+  EXPECT_EQ(fields.large_integer("after", -1), 4294967297);
+  EXPECT_EQ(fields.optional_large_integer("least", -1), -1);
+  EXPECT_EQ(fields.optional_large_integer("none", -1), std::nullopt);
+  EXPECT_EQ(code_of([&] { fields.large_integer("least", 0); }), "parameter-out-of-range least");
+  EXPECT_EQ(code_of([&] { fields.large_integer("odd", 0); }), "bad-parameter odd");
+  EXPECT_EQ(code_of([&] { fields.large_integer("most", 0); }), "parameter-out-of-range most");
+  EXPECT_EQ(code_of([&] { fields.large_integer("none", 0); }), "missing-parameter none");
+}
+
 TEST(Fields, RefuseJsonMembersOfAnotherTypeUnknownOnesAndRepeatedOnes) {
   const std::vector<std::string> known{"lat", "image"};
   Fields fields(http::Parameters{{"lat", "1"}});

@@ -39,6 +39,15 @@ std::size_t unobserved_after(std::span<const Cell> row) {
   return row.size() - end;
 }
 
+/// Behind the last cell of a span from its first, observed cell on. It ends before a block that would begin with an
+/// unobserved cell, so that all spans of a row take the fewest blocks.
+std::size_t end_of_span(std::span<const Cell> row, std::size_t first) {
+  std::size_t end = first + Footprint::kAlignment;
+  while (end < row.size() && is_observed(row[end])) end += Footprint::kAlignment;
+  end = std::min(end, row.size());
+  return end - unobserved_after(row.subspan(first, end - first));
+}
+
 }  // namespace
 
 Footprint::Footprint(const FeatureMap& north_up) {
@@ -50,15 +59,17 @@ Footprint::Footprint(const FeatureMap& north_up) {
   values_.reserve(blocks_of_row * static_cast<std::size_t>(cells.rows()) + 1);
   for (int r = 0; r < cells.rows(); ++r) {
     const auto row = cells.row(r);
-    const std::size_t first = unobserved_before(row);
-    if (first == row.size()) continue;
-    const std::size_t last = row.size() - unobserved_after(row);
-    const int first_col = static_cast<int>(first) - nadir_col;
-    const int last_col = static_cast<int>(last) - 1 - nadir_col;
-    rows_.push_back({first_col, r - nadir_row, static_cast<int>(last - first), values_.size() * kAlignment});
-    values_.resize(values_.size() + (last - first + kAlignment - 1) / kAlignment);
-    std::memcpy(values_.data()->cells + rows_.back().offset, &row[first], last - first);
-    reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
+    const std::size_t end = row.size() - unobserved_after(row);
+    for (std::size_t first = 0; (first += unobserved_before(row.subspan(first))) < end;) {
+      const std::size_t last = end_of_span(row.first(end), first);
+      const int first_col = static_cast<int>(first) - nadir_col;
+      const int last_col = static_cast<int>(last) - 1 - nadir_col;
+      spans_.push_back({first_col, r - nadir_row, static_cast<int>(last - first), values_.size() * kAlignment});
+      values_.resize(values_.size() + (last - first + kAlignment - 1) / kAlignment);
+      std::memcpy(values_.data()->cells + spans_.back().offset, &row[first], last - first);
+      reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
+      first = last;
+    }
   }
   values_.resize((values_.size() + 1) / 2 * 2);
   mask_.resize(values_.size());

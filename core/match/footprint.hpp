@@ -12,14 +12,15 @@
 
 namespace roadfix {
 
-/// Observed cells only matter, so each row keeps just the span from its first to its last observed cell.
+/// Observed cells only matter: spans of a row begin and end with one, and a row has several where whole blocks of
+/// kAlignment cells are spared by it.
 class Footprint {
  public:
   static constexpr int kAlignment = 32;
   static constexpr int kMaxCols = 65536;
 
-  struct Row {
-    int first_col = 0;  ///< of the span, relative to the nadir cell
+  struct Span {
+    int first_col = 0;  ///< relative to the nadir cell
     int row = 0;        ///< relative to the nadir cell
     int cells = 0;
     std::size_t offset = 0;  ///< into values() and mask(), multiple of kAlignment
@@ -29,7 +30,7 @@ class Footprint {
   /// At most kMaxCols columns (the kernel's 32-bit sums).
   explicit Footprint(const FeatureMap& north_up);
 
-  std::span<const Row> rows() const { return rows_; }
+  std::span<const Span> spans() const { return spans_; }
   /// 0..254, 0 where unobserved or padding. Of an even number of blocks of kAlignment.
   const std::uint8_t* values() const { return values_.data()->cells; }
   /// 255 where observed, else 0.
@@ -50,7 +51,7 @@ class Footprint {
 
   void mask_and_count(Block& values, Block& mask);
 
-  std::vector<Row> rows_;
+  std::vector<Span> spans_;
   std::vector<Block> values_;
   std::vector<Block> mask_;
   int reach_ = 0;

@@ -16,12 +16,12 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR  // processors without the byte operations (SSE2 only)
 
 void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint, IntegerSums& sums) {
-  for (const Footprint::Row& row : footprint.rows()) {
-    const std::uint8_t* map = nadir + row.row * stride + row.first_col;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(row.cells); ++i) {
+  for (const Footprint::Span& span : footprint.spans()) {
+    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
       const std::int64_t m = map[i];
-      const std::int64_t l = footprint.values()[row.offset + i];
-      if (m == kUnobserved || footprint.mask()[row.offset + i] == 0) continue;
+      const std::int64_t l = footprint.values()[span.offset + i];
+      if (m == kUnobserved || footprint.mask()[span.offset + i] == 0) continue;
       ++sums.n;
       sums.m += m;
       sums.l += l;
@@ -32,11 +32,22 @@ void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Foo
   }
 }
 
+std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint) {
+  std::int64_t sum = 0;
+  for (const Footprint::Span& span : footprint.spans()) {
+    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
+      sum += std::int64_t{1} * map[i] * footprint.values()[span.offset + i];
+    }
+  }
+  return sum;
+}
+
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Footprint rows are padded to 64 bytes, so longer vectors are not used.
+// A footprint's spans are padded to blocks, so longer vectors are not used.
 constexpr hn::CappedTag<std::uint8_t, Footprint::kAlignment> kBytes;
 constexpr hn::Repartition<std::int16_t, decltype(kBytes)> kShorts;
 constexpr hn::Repartition<std::int32_t, decltype(kBytes)> kInts;
@@ -87,11 +98,11 @@ HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t str
   Ints ml1 = hn::Zero(kInts);
   std::size_t vectors = 0;
   sums = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
-  for (const Footprint::Row& row : footprint.rows()) {
-    const std::uint8_t* map = nadir + row.row * stride + row.first_col;
-    const std::uint8_t* values = footprint.values() + row.offset;
-    const std::uint8_t* mask = footprint.mask() + row.offset;
-    const auto cells = static_cast<std::size_t>(row.cells);
+  for (const Footprint::Span& span : footprint.spans()) {
+    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
+    const std::uint8_t* values = footprint.values() + span.offset;
+    const std::uint8_t* mask = footprint.mask() + span.offset;
+    const auto cells = static_cast<std::size_t>(span.cells);
     auto holes = hn::Zero(kBytes);
     if (vectors + cells / step + 1 > kVectorsPerFlush) {
       sums.mm += emptied(mm0, mm1);
@@ -129,11 +140,11 @@ HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stri
   Ints ml1 = hn::Zero(kInts);
   std::size_t vectors = 0;
   sums = {};
-  for (const Footprint::Row& row : footprint.rows()) {
-    const std::uint8_t* map = nadir + row.row * stride + row.first_col;
-    const std::uint8_t* values = footprint.values() + row.offset;
-    const std::uint8_t* mask = footprint.mask() + row.offset;
-    const auto cells = static_cast<std::size_t>(row.cells);
+  for (const Footprint::Span& span : footprint.spans()) {
+    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
+    const std::uint8_t* values = footprint.values() + span.offset;
+    const std::uint8_t* mask = footprint.mask() + span.offset;
+    const auto cells = static_cast<std::size_t>(span.cells);
     if (vectors + cells / step + 1 > kVectorsPerFlush) {
       sums.mm += emptied(mm0, mm1);
       sums.ll += emptied(ll0, ll1);
@@ -166,7 +177,37 @@ void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Foo
   if (!sums_on_observed_map(nadir, stride, footprint, sums)) sums_on_partial_map(nadir, stride, footprint, sums);
 }
 
+/// Unobserved cells of the footprint have the value 0.
+HWY_ATTR std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride,
+                                          const Footprint& footprint) {
+  const std::size_t step = hn::Lanes(kBytes);
+  Ints sum0 = hn::Zero(kInts);
+  Ints sum1 = hn::Zero(kInts);
+  std::int64_t sum = 0;
+  std::size_t vectors = 0;
+  for (const Footprint::Span& span : footprint.spans()) {
+    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
+    const std::uint8_t* values = footprint.values() + span.offset;
+    const auto cells = static_cast<std::size_t>(span.cells);
+    if (vectors + cells / step + 1 > kVectorsPerFlush) {
+      sum += emptied(sum0, sum1);
+      vectors = 0;
+    }
+    for (std::size_t i = 0; i < cells; i += step, ++vectors) {
+      add_products(hn::LoadU(kBytes, map + i), hn::Load(kBytes, values + i), sum0, sum1);
+    }
+  }
+  return sum + emptied(sum0, sum1);
+}
+
 #endif
+
+void products_at(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                 std::span<std::int64_t> sums) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    sums[i] = products_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint);
+  }
+}
 
 void sums_at(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
              std::span<IntegerSums> sums) {
@@ -191,6 +232,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace roadfix {
 
+HWY_EXPORT(products_at);
 HWY_EXPORT(sums_at);
 HWY_EXPORT(target_name);
 
@@ -205,6 +247,13 @@ MatchSums scaled(const IntegerSums& s) {
           static_cast<double>(s.mm) * kSquare,
           static_cast<double>(s.ll) * kSquare,
           static_cast<double>(s.ml) * kSquare};
+}
+
+/// How far beyond the plane's cells a footprint's nadir may lie.
+int room_of(const MapPlane& map, const Footprint& footprint) { return map.margin() - footprint.reach(); }
+
+bool within(const MapPlane& map, int room, PlaneCell place) {
+  return place.col >= -room && place.row >= -room && place.col < map.cols() + room && place.row < map.rows() + room;
 }
 
 /// All places within the plane and its margin.
@@ -224,17 +273,26 @@ void sums_within(const MapPlane& map, const Footprint& footprint, std::span<cons
 void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums) {
   assert(places.size() == sums.size());
-  const auto within = [&](PlaneCell place) {
-    const int room = map.margin() - footprint.reach();
-    return place.col >= -room && place.row >= -room && place.col < map.cols() + room && place.row < map.rows() + room;
-  };
+  const int room = room_of(map, footprint);
   std::size_t begin = 0;
   while (begin < places.size()) {
     std::size_t end = begin;
-    while (end < places.size() && within(places[end])) ++end;
+    while (end < places.size() && within(map, room, places[end])) ++end;
     sums_within(map, footprint, places.subspan(begin, end - begin), sums.subspan(begin, end - begin));
     if (end < places.size()) sums[end++] = MatchSums{};
     begin = end;
+  }
+}
+
+void product_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                  std::span<std::int64_t> sums) {
+  assert(places.size() == sums.size());
+  assert(std::ranges::all_of(
+      places, [&, room = room_of(map, footprint)](PlaneCell place) { return within(map, room, place); }));
+  if (has_byte_products()) {
+    products_by_byte_products(map, footprint, places, sums);
+  } else {
+    HWY_DYNAMIC_DISPATCH(products_at)(map, footprint, places, sums);
   }
 }
 

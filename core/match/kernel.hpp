@@ -1,6 +1,7 @@
 // The sums of equation (5) for many places of one footprint, vectorised for the processor that runs it.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "core/match/correlation.hpp"
@@ -21,6 +22,11 @@ struct PlaneCell {
 /// `sums` is as long as `places`.
 void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums);
+
+/// The sums of m l alone, in units of 1 / 254^2, where all of the plane is observed: there is no cell 255 below the
+/// footprint, which stays within the plane and its margin at each of the places. `sums` is as long as `places`.
+void product_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                  std::span<std::int64_t> sums);
 
 /// Name of the instruction set in use ("AVX3_VNNI", "AVX2", ...), for reports.
 const char* kernel_target();

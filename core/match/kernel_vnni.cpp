@@ -37,11 +37,11 @@ struct Offsets {
 
 std::vector<Offsets> offsets_of(const Footprint& footprint, std::ptrdiff_t stride) {
   std::vector<Offsets> offsets;
-  offsets.reserve(2 * footprint.rows().size());
+  offsets.reserve(2 * footprint.spans().size());
   bool low = true;
-  for (const Footprint::Row& row : footprint.rows()) {
-    for (int i = 0; i < row.cells; i += kHalf, low = !low) {
-      const std::ptrdiff_t offset = row.row * stride + row.first_col + i;
+  for (const Footprint::Span& span : footprint.spans()) {
+    for (int i = 0; i < span.cells; i += kHalf, low = !low) {
+      const std::ptrdiff_t offset = span.row * stride + span.first_col + i;
       if (low) offsets.push_back({offset, 0});
       offsets.back().high = offset;
     }
@@ -134,6 +134,30 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::s
   }
 }
 
+template <std::size_t kPlaces>
+ROADFIX_VNNI void add_products(const MapPlane& map, const Footprint& footprint, std::span<const Offsets> offsets,
+                               const PlaneCell* cells, std::int64_t* out) {
+  const __m512i high_bit = _mm512_set1_epi8(-128);
+  const std::uint8_t* nadir[kPlaces];
+  __m512i ml[kPlaces];
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    nadir[k] = map.at(cells[k].col, cells[k].row);
+    ml[k] = _mm512_setzero_si512();
+    out[k] = 128 * footprint.sum();
+  }
+  for (std::size_t first = 0; first < offsets.size(); first += kVectorsPerFlush) {
+    const std::size_t last = std::min(offsets.size(), first + kVectorsPerFlush);
+    for (std::size_t i = first; i < last; ++i) {
+      const __m512i l = _mm512_loadu_si512(footprint.values() + i * kStep);
+      for (std::size_t k = 0; k < kPlaces; ++k) {
+        const __m512i less_128 = _mm512_xor_si512(cells_below(nadir[k], offsets[i]), high_bit);
+        ml[k] = _mm512_dpbusd_epi32(ml[k], l, less_128);
+      }
+    }
+    for (std::size_t k = 0; k < kPlaces; ++k) out[k] += emptied(ml[k]);
+  }
+}
+
 std::atomic<bool> allowed{true};
 
 }  // namespace
@@ -154,6 +178,15 @@ void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std:
   for (; i < places.size(); ++i) add_up<1>(map, footprint, offsets, &places[i], &sums[i]);
 }
 
+void products_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                               std::span<std::int64_t> sums) {
+  assert(places.size() == sums.size());
+  const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
+  std::size_t i = 0;
+  for (; i + 8 <= places.size(); i += 8) add_products<8>(map, footprint, offsets, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_products<1>(map, footprint, offsets, &places[i], &sums[i]);
+}
+
 }  // namespace roadfix
 
 #else
@@ -166,6 +199,11 @@ void allow_byte_products_for_test(bool /*allow*/) {}
 
 void sums_by_byte_products(const MapPlane& /*map*/, const Footprint& /*footprint*/,
                            std::span<const PlaneCell> /*places*/, std::span<IntegerSums> /*sums*/) {
+  assert(false);
+}
+
+void products_by_byte_products(const MapPlane& /*map*/, const Footprint& /*footprint*/,
+                               std::span<const PlaneCell> /*places*/, std::span<std::int64_t> /*sums*/) {
   assert(false);
 }
 

@@ -18,4 +18,8 @@ void allow_byte_products_for_test(bool allow);
 void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums);
 
+/// As product_sums(). Needs has_byte_products().
+void products_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+                               std::span<std::int64_t> sums);
+
 }  // namespace roadfix

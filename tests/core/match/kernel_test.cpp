@@ -75,6 +75,29 @@ TEST_P(KernelOnEachTarget, AgreesWithTheDefinitionForRandomSizesPlacesAndHoles) 
   }
 }
 
+TEST_P(KernelOnEachTarget, SumsProductsAloneWhereAllOfTheMapIsObserved) {
+  std::mt19937_64 random(8);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  for (int round = 0; round < 100; ++round) {
+    const FeatureMap features =
+        FeatureMap::centred(random_cells(random, 1 + below(140), 1 + below(70), 0.3 * (round % 4)), 1.0);
+    const Footprint footprint(features);
+    const int reach = footprint.reach();
+    const CellArray map = random_cells(random, 2 * reach + 1 + below(50), 2 * reach + 1 + below(50), 0.0);
+    const MapPlane plane(map, 0);
+    std::vector<PlaneCell> places;
+    for (int i = 0; i < 11; ++i) {
+      places.push_back({reach + below(map.cols() - 2 * reach), reach + below(map.rows() - 2 * reach)});
+    }
+    std::vector<std::int64_t> products(places.size());
+    product_sums(plane, footprint, places, products);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_NEAR(static_cast<double>(products[i]), scalar_sums(map, features, places[i]).ml * (kRoad * kRoad), 1e-3);
+    }
+    if (HasFailure()) FAIL() << "round " << round << " on " << kernel_target();
+  }
+}
+
 TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
   const int cols = 4000;
   const int rows = 700;
@@ -93,6 +116,11 @@ TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
     EXPECT_NEAR(sums.mm, expected, 1e-3);
     EXPECT_NEAR(sums.ml, expected, 1e-3);
   }
+  const PlaneCell place{cols / 2, rows / 2};
+  std::int64_t products = 0;
+  product_sums(MapPlane(CellArray(cols, rows, kRoad), footprint.reach()), footprint, std::span(&place, 1),
+               std::span(&products, 1));
+  EXPECT_EQ(products, std::int64_t{cols} * rows * kRoad * kRoad);
 }
 
 INSTANTIATE_TEST_SUITE_P(Best, KernelOnEachTarget, ::testing::Values(kBest));

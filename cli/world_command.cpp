@@ -20,7 +20,7 @@ struct Options {
   world::WorldSettings settings;
   std::string folder;
   std::vector<double> size_km{2.0, 2.0};
-  std::vector<double> center;
+  std::vector<double> centre;
 };
 
 /// So that the frames can be asked about at once, by every method.
@@ -36,7 +36,7 @@ void render(const Options& options) {
   world::WorldSettings settings = options.settings;
   settings.width_m = options.size_km[0] * 1000.0;
   settings.height_m = options.size_km[1] * 1000.0;
-  if (!options.center.empty()) settings.center = LatLon{options.center[0], options.center[1]};
+  if (!options.centre.empty()) settings.centre = LatLon{options.centre[0], options.centre[1]};
   const std::stop_token stop = stop_on_signals();
   const world::WorldReport report = [&] {
     Progress progress("world", "MP", world::kTilePx * world::kTilePx / 1e6);
@@ -58,7 +58,7 @@ void add_world_command(CLI::App& app) {
       "world", "Renders a town or open country before and after an earthquake, with the truth about its roads");
   command->footer(
       "Examples: roadfix world town\n"
-      "          roadfix world goteborg --roads highways.geojson --center 57.70,11.97 --size-km 2x1.5\n"
+      "          roadfix world goteborg --roads highways.geojson --centre 57.70,11.97 --size-km 2x1.5\n"
       "          roadfix world country --land country --varied\n"
       "Writes pre.tif, post.tif, roads.geojson, world.json, frames/ with frames.csv, and bench.json for roadfix "
       "bench.");
@@ -83,7 +83,7 @@ void add_world_command(CLI::App& app) {
       ->expected(2)
       ->type_name("WxH");
   command->add_option("--gsd", settings.gsd_m, "Metres per pixel")->capture_default_str();
-  command->add_option("--center", options->center, "Middle of the pictures in degrees")
+  command->add_option("--centre,--center", options->centre, "Middle of the pictures in degrees")
       ->delimiter(',')
       ->expected(2)
       ->type_name("LAT,LON");

@@ -25,7 +25,7 @@ def arguments():
     parser.add_argument("--size-km", default="1x1")
     parser.add_argument("--gsd", default=0.5, type=float)
     parser.add_argument("--roads", default="", help="OpenStreetMap extract whose streets are rendered instead of invented ones")
-    parser.add_argument("--center", default="", metavar="LAT,LON")
+    parser.add_argument("--centre", default="", metavar="LAT,LON")
     return parser.parse_args()
 
 
@@ -34,7 +34,7 @@ def render(options, seed, folder):
     command = [options.roadfix, "world", str(folder), "--seed", str(seed), "--size-km", options.size_km, "--gsd", str(options.gsd),
                "--land", options.land, "--collapsed", f"{collapsed:.2f}", "--frames", "0", "--varied"]
     command += ["--roads", options.roads] if options.roads else []
-    command += ["--center", options.center] if options.center else []
+    command += ["--centre", options.centre] if options.centre else []
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
 

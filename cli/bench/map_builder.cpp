@@ -33,7 +33,7 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
   world::Random random(source.seed, 0);
   world::invent_streets(plan, random);
   const std::filesystem::path unfinished = cache / fmt::format("unfinished-{}.geojson", source.seed);
-  world::write_road_truth(unfinished.string(), plan.streets, world::place(settings, world::kDefaultCenter));
+  world::write_road_truth(unfinished.string(), plan.streets, world::place(settings, world::kDefaultCentre));
   std::filesystem::rename(unfinished, file);
   return file;
 }

@@ -24,9 +24,9 @@ Canvas::Canvas(cv::Rect pixels, double gsd_m)
       material_(pixels.size(), static_cast<std::uint8_t>(Material::kBare)),
       height_(pixels.size(), 0.0F) {}
 
-bool Canvas::sees(PlanPoint center, double radius_m) const {
-  return center.x + radius_m >= ground_.x && center.x - radius_m <= ground_.x + ground_.width &&
-         center.y + radius_m >= ground_.y && center.y - radius_m <= ground_.y + ground_.height;
+bool Canvas::sees(PlanPoint centre, double radius_m) const {
+  return centre.x + radius_m >= ground_.x && centre.x - radius_m <= ground_.x + ground_.width &&
+         centre.y + radius_m >= ground_.y && centre.y - radius_m <= ground_.y + ground_.height;
 }
 
 /// OpenCV's sub-pixel coordinates: a pixel's centre is at whole numbers.
@@ -51,8 +51,8 @@ void Canvas::fill(const Polyline& polygon, const Colour& colour, Material materi
   fill_shape(polygon, colour, material, &height_m);
 }
 
-void Canvas::disc(PlanPoint center, double radius_m, const Colour& colour, Material material, double height_m) {
-  const cv::Point at = on_tile(center);
+void Canvas::disc(PlanPoint centre, double radius_m, const Colour& colour, Material material, double height_m) {
+  const cv::Point at = on_tile(centre);
   const int radius = std::max(1, static_cast<int>(std::lround(radius_m / gsd_m_ * kUnit)));
   cv::circle(colour_, at, radius, scalar(colour), cv::FILLED, cv::LINE_AA, kFraction);
   cv::circle(material_, at, radius, static_cast<double>(material), cv::FILLED, cv::LINE_8, kFraction);

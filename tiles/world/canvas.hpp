@@ -17,12 +17,12 @@ class Canvas {
   Canvas(cv::Rect pixels, double gsd_m);
 
   /// Whether anything within the radius can be on this tile.
-  bool sees(PlanPoint center, double radius_m) const;
+  bool sees(PlanPoint centre, double radius_m) const;
 
   /// A polygon with smooth edges. Its height, where given, replaces that of the ground (metres).
   void fill(const Polyline& polygon, const Colour& colour, Material material);
   void fill(const Polyline& polygon, const Colour& colour, Material material, double height_m);
-  void disc(PlanPoint center, double radius_m, const Colour& colour, Material material, double height_m);
+  void disc(PlanPoint centre, double radius_m, const Colour& colour, Material material, double height_m);
   /// A band along the line, round at its bends and ends.
   void stroke(const Polyline& line, double width_m, const Colour& colour, Material material);
 

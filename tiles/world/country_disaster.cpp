@@ -19,18 +19,18 @@ void fell_trees(Plan& plan, double share, Random& random) {
   const cv::Mat1f to_street = streets.distances();
   std::vector<Tree> standing;
   for (const Tree& tree : plan.trees) {
-    const bool near = Corridor::at(to_street, tree.center) < 0.8 * tree.height_m;
+    const bool near = Corridor::at(to_street, tree.centre) < 0.8 * tree.height_m;
     if (tree.height_m < 6.0 || !random.chance(near ? share : 0.1 * share)) {
       standing.push_back(tree);
       continue;
     }
     const PlanPoint slope(
-        Corridor::at(to_street, tree.center + PlanPoint(2, 0)) - Corridor::at(to_street, tree.center - PlanPoint(2, 0)),
-        Corridor::at(to_street, tree.center + PlanPoint(0, 2)) -
-            Corridor::at(to_street, tree.center - PlanPoint(0, 2)));
+        Corridor::at(to_street, tree.centre + PlanPoint(2, 0)) - Corridor::at(to_street, tree.centre - PlanPoint(2, 0)),
+        Corridor::at(to_street, tree.centre + PlanPoint(0, 2)) -
+            Corridor::at(to_street, tree.centre - PlanPoint(0, 2)));
     const double angle = near ? std::atan2(-slope.y, -slope.x) + 0.5 * random.normal() : random.uniform(0.0, 6.28);
-    const PlanPoint top = tree.center + PlanPoint(std::cos(angle), std::sin(angle)) * tree.height_m;
-    plan.country.logs.push_back({tree.center, top, tree.radius_m, tree.leaf * tree.tone});
+    const PlanPoint top = tree.centre + PlanPoint(std::cos(angle), std::sin(angle)) * tree.height_m;
+    plan.country.logs.push_back({tree.centre, top, tree.radius_m, tree.leaf * tree.tone});
   }
   plan.trees = std::move(standing);
 }
@@ -42,7 +42,7 @@ void slide(Plan& plan, Random& random) {
               palette::varied(plan.country.soil, 0.15, random), random.bits()};
   const std::vector<cv::Point2f> outline(slide.outline.begin(), slide.outline.end());
   std::erase_if(plan.trees, [&](const Tree& tree) {
-    return cv::pointPolygonTest(outline, tree.center, false) > 0.0 && random.chance(0.9);
+    return cv::pointPolygonTest(outline, tree.centre, false) > 0.0 && random.chance(0.9);
   });
   plan.country.slides.push_back(std::move(slide));
 }

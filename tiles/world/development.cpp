@@ -120,8 +120,8 @@ class Builder {
     for (double t = offset * 0.5; t < length;) {
       const double front = random_.uniform(habit.front_min, habit.front_max);
       const double deep = depth * random_.uniform(0.88, 1.08);
-      const PlanPoint center = from + along * (t + front / 2.0) + inward * (offset + deep / 2.0);
-      const Footprint footprint{center, std::atan2(along.y, along.x), front, deep};
+      const PlanPoint centre = from + along * (t + front / 2.0) + inward * (offset + deep / 2.0);
+      const Footprint footprint{centre, std::atan2(along.y, along.x), front, deep};
       if (t + front > length || !site_.has_room(footprint, number)) {
         t += 2.0;
         continue;

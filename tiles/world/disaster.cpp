@@ -28,7 +28,7 @@ std::vector<bool> fallen(const std::vector<Building>& buildings, double share, R
   const Shaking shaking(random);
   std::vector<std::pair<double, std::size_t>> strength;
   for (std::size_t i = 0; i < buildings.size(); ++i) {
-    const double weakness = shaking(buildings[i].footprint.center) * (0.5 + buildings[i].height_m / 12.0);
+    const double weakness = shaking(buildings[i].footprint.centre) * (0.5 + buildings[i].height_m / 12.0);
     strength.emplace_back(-std::log(1.0 - random.unit()) / weakness, i);
   }
   std::ranges::sort(strength);
@@ -73,7 +73,7 @@ void collapse(Plan& plan, double share, Random& random) {
     const double spill = std::min(9.0, 0.35 * building.height_m) * random.uniform(0.5, 1.2);
     spread.length_m += spill;
     spread.width_m += spill;
-    spread.center += PlanPoint(random.normal(), random.normal()) * (spill * 0.25);
+    spread.centre += PlanPoint(random.normal(), random.normal()) * (spill * 0.25);
     spread.angle_rad += 0.1 * random.normal();
     plan.debris.push_back({spread, 1.0 + 0.16 * building.height_m, random.bits()});
   }

@@ -43,19 +43,19 @@ class Settler {
   bool is_free(const Footprint& footprint) const {
     Polyline rim = footprint.corners();
     rim.push_back(rim.front());
-    const bool seen = footprint.center.x > 0.0 && footprint.center.y > 0.0 && footprint.center.x < plan_.width_m &&
-                      footprint.center.y < plan_.height_m;
-    return seen && taken_.share_of(rim) == 0.0 && !taken_.contains(footprint.center);
+    const bool seen = footprint.centre.x > 0.0 && footprint.centre.y > 0.0 && footprint.centre.x < plan_.width_m &&
+                      footprint.centre.y < plan_.height_m;
+    return seen && taken_.share_of(rim) == 0.0 && !taken_.contains(footprint.centre);
   }
 
   void add_drive(PlanPoint gate, const Footprint& yard) {
     Street drive = unpaved(random_);
     drive.road_class = "service";
     if (random_.chance(0.3)) drive.surface = Surface::kAsphalt;
-    const PlanPoint bend = (gate + yard.center) / 2.0 + PlanPoint(random_.normal(), random_.normal()) * 3.0;
+    const PlanPoint bend = (gate + yard.centre) / 2.0 + PlanPoint(random_.normal(), random_.normal()) * 3.0;
     for (int i = 0; i <= 8; ++i) {
       const double t = i / 8.0;
-      drive.line.push_back(gate * ((1 - t) * (1 - t)) + bend * (2 * t * (1 - t)) + yard.center * (t * t));
+      drive.line.push_back(gate * ((1 - t) * (1 - t)) + bend * (2 * t * (1 - t)) + yard.centre * (t * t));
     }
     taken_.add(drive.line, drive.width_m + 1.0);
     plan_.streets.push_back(std::move(drive));

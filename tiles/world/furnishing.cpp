@@ -82,10 +82,10 @@ class Gardener {
   }
 
  private:
-  void clump(int number, PlanPoint center) {
+  void clump(int number, PlanPoint centre) {
     const int count = random_.integer(1, 5);
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at = center + PlanPoint(random_.normal(), random_.normal()) * 3.0;
+      const PlanPoint at = centre + PlanPoint(random_.normal(), random_.normal()) * 3.0;
       if (site_.is_free(at) && site_.block_at(at) == number) tree(at, random_.uniform(1.4, 3.4));
     }
   }

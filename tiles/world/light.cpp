@@ -37,14 +37,14 @@ cv::Mat1f air(cv::Rect pixels, double gsd_m, const Conditions& conditions, const
                         pixels.height * gsd_m + 2.0 * reach);
   std::vector<const Debris*> near;
   for (const Debris& d : debris) {
-    if (area.contains(d.footprint.center)) near.push_back(&d);
+    if (area.contains(d.footprint.centre)) near.push_back(&d);
   }
   for (int row = 0; row < coarse.rows; ++row) {
     for (int col = 0; col < coarse.cols; ++col) {
       const PlanPoint p = plan_of(col, row);
       double thickness = 0.0;
       for (const Debris* d : near) {
-        const double distance = cv::norm(d->footprint.center - p);
+        const double distance = cv::norm(d->footprint.centre - p);
         if (distance < reach) thickness += 0.05 * (1.0 - distance / reach);
       }
       const double uneven =

@@ -26,7 +26,7 @@ class BuildingPainter {
   BuildingPainter(Canvas& canvas, const Conditions& conditions, const Building& building)
       : canvas_(canvas), conditions_(conditions), building_(building), random_(building.detail_seed, 7) {
     roof_ = building.footprint;
-    roof_.center += conditions.lean * building.height_m;
+    roof_.centre += conditions.lean * building.height_m;
   }
 
   void paint() {
@@ -150,7 +150,7 @@ class BuildingPainter {
 void paint_buildings(Canvas& canvas, const Plan& plan, const Conditions& conditions) {
   for (const Building& building : plan.buildings) {
     const double reach = building.footprint.radius_m() + building.height_m;
-    if (canvas.sees(building.footprint.center, reach)) BuildingPainter(canvas, conditions, building).paint();
+    if (canvas.sees(building.footprint.centre, reach)) BuildingPainter(canvas, conditions, building).paint();
   }
 }
 

@@ -31,8 +31,8 @@ class Quirks {
 class CrownPainter {
  public:
   CrownPainter(Canvas& canvas, const Tree& tree, const Conditions& conditions)
-      : canvas_(canvas), tree_(tree), to_sun_(-conditions.shadow_direction()), quirks_(tree.center) {
-    top_ = tree.center + conditions.lean * (tree.height_m * 0.7);
+      : canvas_(canvas), tree_(tree), to_sun_(-conditions.shadow_direction()), quirks_(tree.centre) {
+    top_ = tree.centre + conditions.lean * (tree.height_m * 0.7);
     season_ = tree.deciduous ? std::clamp(conditions.winter + 0.16 * (quirks_.next() - 0.5), 0.0, 1.0) : 0.0;
   }
 

@@ -55,21 +55,21 @@ Ground surface_of(LandUse use, double winter, Random& random) {
 /// Parcels of different crops, each with its furrows. They may reach over the block's rim: streets are painted later.
 void paint_field(Canvas& canvas, const Block& block, double winter, Random& random) {
   const cv::Rect2d box = box_of(block.outline);
-  const PlanPoint center(box.x + box.width / 2.0, box.y + box.height / 2.0);
+  const PlanPoint centre(box.x + box.width / 2.0, box.y + box.height / 2.0);
   const double reach = std::hypot(box.width, box.height) / 2.0;
   const double angle = random.uniform(0.0, 1.57);
   for (double u = -reach; u < reach;) {
     const double width = random.uniform(35.0, 90.0);
     for (double v = -reach; v < reach;) {
       const double length = random.uniform(60.0, 220.0);
-      const Footprint grid{center, angle, 0.0, 0.0};
+      const Footprint grid{centre, angle, 0.0, 0.0};
       const Footprint parcel{grid.at(v + length / 2.0, u + width / 2.0), angle, length, width};
       const Ground surface = surface_of(LandUse::kField, winter, random);
       const Colour furrow = surface.colour * random.uniform(0.9, 0.96);
       const double spacing = random.uniform(3.0, 6.0);
       const bool inside = cv::pointPolygonTest(std::vector<cv::Point2f>(block.outline.begin(), block.outline.end()),
-                                               parcel.center, false) > 0;
-      if (inside && canvas.sees(parcel.center, parcel.radius_m())) {
+                                               parcel.centre, false) > 0;
+      if (inside && canvas.sees(parcel.centre, parcel.radius_m())) {
         canvas.fill(parcel.corners(-0.6), surface.colour, surface.material);
         for (double w = -width / 2.0 + 2.0; w < width / 2.0 - 2.0; w += spacing) {
           const Footprint line{parcel.at(0.0, w), angle, length - 4.0, 1.2};
@@ -88,17 +88,17 @@ void paint_park(Canvas& canvas, const Block& block, Random& random) {
   Polyline rim = block.outline;
   rim.push_back(rim.front());
   canvas.stroke(rim, 7.0, path, Material::kPaved);
-  const PlanPoint center(box.x + box.width / 2.0, box.y + box.height / 2.0);
+  const PlanPoint centre(box.x + box.width / 2.0, box.y + box.height / 2.0);
   const double angle = random.uniform(0.0, 3.1);
   const PlanPoint ray = PlanPoint(std::cos(angle), std::sin(angle)) * (std::min(box.width, box.height) * 0.45);
-  canvas.stroke({center - ray, center + ray}, 3.0, path, Material::kPaved);
-  canvas.disc(center, 6.0, path, Material::kPaved, 0.0);
+  canvas.stroke({centre - ray, centre + ray}, 3.0, path, Material::kPaved);
+  canvas.disc(centre, 6.0, path, Material::kPaved, 0.0);
 }
 
 /// What a lot around a building looks like; gardens of winter are brown.
 void paint_lots(Canvas& canvas, const Plan& plan, double winter) {
   for (const Building& building : plan.buildings) {
-    if (!canvas.sees(building.footprint.center, building.footprint.radius_m() + 6.0)) continue;
+    if (!canvas.sees(building.footprint.centre, building.footprint.radius_m() + 6.0)) continue;
     const bool green = building.lot_colour[1] > building.lot_colour[0];
     const Colour colour = green ? mixed(building.lot_colour, palette::kDryGrass, 0.5 * winter) : building.lot_colour;
     canvas.fill(building.footprint.corners(2.8), colour, green ? Material::kGrass : Material::kPaved);
@@ -137,12 +137,12 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
 void paint_trees(Canvas& canvas, const Plan& plan, const Conditions& conditions) {
   const PlanPoint to_sun = -conditions.shadow_direction();
   for (const Tree& tree : plan.trees) {
-    if (!canvas.sees(tree.center, tree.radius_m + 2.0)) continue;
+    if (!canvas.sees(tree.centre, tree.radius_m + 2.0)) continue;
     if (tree.crown != Crown::kGarden) {
       paint_crown(canvas, tree, conditions);
       continue;
     }
-    const PlanPoint crown = tree.center + conditions.lean * (tree.height_m * 0.6);
+    const PlanPoint crown = tree.centre + conditions.lean * (tree.height_m * 0.6);
     const bool bare = tree.deciduous && conditions.winter > 0.5;
     const Colour colour = (bare ? palette::kBareTree : palette::kTree) * tree.tone;
     const double radius = bare ? tree.radius_m * 0.75 : tree.radius_m;
@@ -156,7 +156,7 @@ void paint_debris(Canvas& canvas, const Plan& plan) {
   for (const Debris& debris : plan.debris) {
     const Footprint& heap = debris.footprint;
     Random random(debris.seed, 3);
-    if (!canvas.sees(heap.center, heap.radius_m() + 12.0)) continue;
+    if (!canvas.sees(heap.centre, heap.radius_m() + 12.0)) continue;
     const Colour tone = varied(palette::kRubble, 0.12, random);
     canvas.fill(heap.corners(-1.0), tone * 0.9, Material::kRubble, debris.height_m * 0.4);
     const int chunks = static_cast<int>(heap.length_m * heap.width_m / kChunkM2);

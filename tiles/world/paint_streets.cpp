@@ -73,7 +73,7 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
 void paint_boxes(Canvas& canvas, const Plan& plan) {
   for (const Box& box : plan.boxes) {
     const Footprint& body = box.footprint;
-    if (!canvas.sees(body.center, body.radius_m())) continue;
+    if (!canvas.sees(body.centre, body.radius_m())) continue;
     canvas.fill(body.corners(), box.colour, Material::kSmooth, box.height_m);
     const Footprint top{body.at(-0.1 * body.length_m, 0.0), body.angle_rad, body.length_m * 0.42, body.width_m * 0.82};
     canvas.fill(top.corners(), box.colour * 1.06, Material::kSmooth);

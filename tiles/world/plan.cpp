@@ -8,7 +8,7 @@ namespace roadfix::world {
 PlanPoint Footprint::at(double along_m, double across_m) const {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
-  return center + PlanPoint(c * along_m - s * across_m, s * along_m + c * across_m);
+  return centre + PlanPoint(c * along_m - s * across_m, s * along_m + c * across_m);
 }
 
 Polyline Footprint::corners(double margin_m) const {

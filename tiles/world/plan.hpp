@@ -40,7 +40,7 @@ struct Block {
 
 /// A rectangle on the ground: `length` along `angle_rad` (from x towards y), `width` across.
 struct Footprint {
-  PlanPoint center;
+  PlanPoint centre;
   double angle_rad = 0.0;
   double length_m = 0.0;
   double width_m = 0.0;
@@ -66,7 +66,7 @@ struct Building {
 enum class Crown { kGarden, kBroadleaf, kConifer, kShrub };
 
 struct Tree {
-  PlanPoint center;
+  PlanPoint centre;
   double radius_m = 2.0;
   double height_m = 5.0;
   double tone = 1.0;       ///< brightness, about 1

@@ -77,7 +77,7 @@ std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, 
   return result;
 }
 
-Polyline blob(PlanPoint center, double radius_m, Random& random) {
+Polyline blob(PlanPoint centre, double radius_m, Random& random) {
   constexpr int kCorners = 28;
   constexpr double kTau = 2.0 * std::numbers::pi;
   const double phase = random.uniform(0.0, kTau);
@@ -88,7 +88,7 @@ Polyline blob(PlanPoint center, double radius_m, Random& random) {
     const double angle = kTau * i / kCorners;
     const double radius =
         radius_m * (1.0 + oval * std::sin(2.0 * angle + phase) + uneven * std::sin(3.0 * angle + 2.0 * phase));
-    rim.push_back(center + PlanPoint(std::cos(angle), std::sin(angle)) * radius);
+    rim.push_back(centre + PlanPoint(std::cos(angle), std::sin(angle)) * radius);
   }
   return rim;
 }

@@ -30,6 +30,6 @@ Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along);
 std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, PlanPoint point, PlanPoint along);
 
 /// A round shape with an uneven rim.
-Polyline blob(PlanPoint center, double radius_m, Random& random);
+Polyline blob(PlanPoint centre, double radius_m, Random& random);
 
 }  // namespace roadfix::world

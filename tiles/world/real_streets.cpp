@@ -60,7 +60,7 @@ std::vector<Street> read_streets(const std::string& path, const Placement& place
     throw InvalidInput(
         "world-without-roads",
         fmt::format("{}: no road of it lies in the picture around the chosen centre; name a place inside "
-                    "the file's extent with --center",
+                    "the file's extent with --centre",
                     path));
   }
   sort_by_width(streets);

@@ -57,9 +57,9 @@ void check(const WorldSettings& s) {
   }
 }
 
-Placement place(const WorldSettings& settings, LatLon center) {
-  const UtmZone zone = UtmZone::containing(center);
-  const GridPoint middle = zone.project(center);
+Placement place(const WorldSettings& settings, LatLon centre) {
+  const UtmZone zone = UtmZone::containing(centre);
+  const GridPoint middle = zone.project(centre);
   const int cols = static_cast<int>(std::lround(settings.width_m / settings.gsd_m));
   const int rows = static_cast<int>(std::lround(settings.height_m / settings.gsd_m));
   const auto snapped = [&](double value) { return std::round(value / settings.gsd_m) * settings.gsd_m; };

@@ -19,7 +19,7 @@ struct WorldSettings {
   double height_m = 2000.0;
   double gsd_m = 0.5;
   /// Of the pictures; by default a town in south-eastern Anatolia, or the middle of `roads`.
-  std::optional<LatLon> center;
+  std::optional<LatLon> centre;
   /// File of road lines to render instead of invented ones; empty to invent them.
   std::string roads;
   double collapsed_share = 0.1;  ///< of the buildings
@@ -28,7 +28,7 @@ struct WorldSettings {
   double footprint_m = 400.0;  ///< side of the square that a frame shows
 };
 
-inline constexpr LatLon kDefaultCenter{37.7640, 38.2760};
+inline constexpr LatLon kDefaultCentre{37.7640, 38.2760};
 
 /// Throws InvalidInput ("world-size", "world-gsd", "world-land-roads", "world-share", "world-frames",
 /// "world-too-small-for-frames").
@@ -48,6 +48,6 @@ struct Placement {
 };
 
 /// The corner lies on a whole number of pixels of the zone's plane.
-Placement place(const WorldSettings& settings, LatLon center);
+Placement place(const WorldSettings& settings, LatLon centre);
 
 }  // namespace roadfix::world

@@ -52,8 +52,8 @@ bool Site::is_free(PlanPoint p) const {
 
 cv::Rect Site::cells_of(const Footprint& footprint) const {
   const double reach = footprint.radius_m() + 2.0;
-  const cv::Point corner(static_cast<int>(std::floor(footprint.center.x - reach)),
-                         static_cast<int>(std::floor(footprint.center.y - reach)));
+  const cv::Point corner(static_cast<int>(std::floor(footprint.centre.x - reach)),
+                         static_cast<int>(std::floor(footprint.centre.y - reach)));
   const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;
   return {corner, cv::Size(side, side)};
 }

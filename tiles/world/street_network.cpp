@@ -34,7 +34,7 @@ class Layout {
   Layout(Plan& plan, Random& random) : plan_(plan), random_(random), bend_(random, kWavesM, kBending) {}
 
   void build() {
-    center_ = {plan_.width_m * random_.uniform(0.4, 0.6), plan_.height_m * random_.uniform(0.4, 0.6)};
+    centre_ = {plan_.width_m * random_.uniform(0.4, 0.6), plan_.height_m * random_.uniform(0.4, 0.6)};
     lay_river();
     const double ring = std::min(plan_.width_m, plan_.height_m) * random_.uniform(0.2, 0.27);
     const double far = std::hypot(plan_.width_m, plan_.height_m) * 1.1;
@@ -45,8 +45,8 @@ class Layout {
     for (int i = 0; i < corners; ++i) {
       const double angle = turn + kTau * (i + random_.uniform(-0.22, 0.22)) / corners;
       const PlanPoint ray(std::cos(angle) * 1.15, std::sin(angle) * 0.9);
-      inner.push_back(center_ + ray * ring);
-      outer.push_back(center_ + ray * far);
+      inner.push_back(centre_ + ray * ring);
+      outer.push_back(centre_ + ray * far);
     }
     for (std::size_t i = 0; i < inner.size(); ++i) {
       const std::size_t j = (i + 1) % inner.size();
@@ -69,7 +69,7 @@ class Layout {
   /// Ground that is not split any further: small blocks in the middle, larger ones outwards, fields at the rim.
   double target_area(PlanPoint at) const {
     const double radius = kCityRadiusShare * std::hypot(plan_.width_m, plan_.height_m) / 2.0;
-    const double distance = cv::norm(at - center_) / radius;
+    const double distance = cv::norm(at - centre_) / radius;
     if (distance > 1.05) return 90'000.0;
     return 5'500.0 + 5'500.0 * distance;
   }
@@ -138,7 +138,7 @@ class Layout {
     const double angle = random_.uniform(0.0, kTau);
     const PlanPoint along(std::cos(angle), std::sin(angle));
     const double reach = std::hypot(plan_.width_m, plan_.height_m);
-    const PlanPoint through = center_ + perpendicular(along) * (reach * 0.2);
+    const PlanPoint through = centre_ + perpendicular(along) * (reach * 0.2);
     for (double t = -reach; t <= reach; t += kPointEveryM) {
       const double meander = 30.0 * std::sin(t / 140.0) + 45.0 * std::sin(t / 333.0 + 1.0);
       plan_.river.push_back(bend_(through + along * t + perpendicular(along) * meander));
@@ -153,7 +153,7 @@ class Layout {
   Plan& plan_;
   Random& random_;
   Distortion bend_;
-  PlanPoint center_;
+  PlanPoint centre_;
 };
 
 }  // namespace

@@ -27,9 +27,9 @@ namespace {
 /// Streams of random numbers, one for each part of a world.
 enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisaster, kFrames, kDays };
 
-LatLon center_of(const WorldSettings& settings) {
-  if (settings.center) return *settings.center;
-  return settings.roads.empty() ? kDefaultCenter : centre_of_roads({settings.roads}, {});
+LatLon centre_of(const WorldSettings& settings) {
+  if (settings.centre) return *settings.centre;
+  return settings.roads.empty() ? kDefaultCentre : centre_of_roads({settings.roads}, {});
 }
 
 Plan empty_plan(const Placement& placement) {
@@ -111,14 +111,14 @@ class Photographer {
 };
 
 void write_report(const WorldReport& report, const WorldSettings& settings, const std::string& path) {
-  const LatLon center = report.placement.zone.unproject(
+  const LatLon centre = report.placement.zone.unproject(
       report.placement.point_of(report.placement.cols / 2.0, report.placement.rows / 2.0));
   const nlohmann::ordered_json json{
       {"seed", settings.seed},
       {"land", settings.land == Land::kCountry ? "country" : "town"},
       {"size_m", {report.placement.cols * settings.gsd_m, report.placement.rows * settings.gsd_m}},
       {"gsd_m", settings.gsd_m},
-      {"center", {{"lat", center.lat_deg}, {"lon", center.lon_deg}}},
+      {"centre", {{"lat", centre.lat_deg}, {"lon", centre.lon_deg}}},
       {"epsg", report.placement.zone.epsg()},
       {"roads_from", settings.roads.empty() ? "invented" : std::filesystem::path(settings.roads).filename().string()},
       {"road_lines", report.road_lines},
@@ -163,7 +163,7 @@ void make_folder(const std::filesystem::path& folder) {
 WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
                          const WorldProgress& progress, std::stop_token stop) {
   check(settings);
-  const Placement placement = place(settings, center_of(settings));
+  const Placement placement = place(settings, centre_of(settings));
   const auto [before, after] = plans_of(settings, placement);
 
   make_folder(folder);

@@ -41,7 +41,7 @@ TEST(Country, IsTheSameForTheSameSeedOnly) {
   const Plan b = small_country(3);
   const Plan c = small_country(4);
   ASSERT_EQ(a.trees.size(), b.trees.size());
-  EXPECT_TRUE(std::ranges::equal(a.trees, b.trees, {}, &Tree::center, &Tree::center));
+  EXPECT_TRUE(std::ranges::equal(a.trees, b.trees, {}, &Tree::centre, &Tree::centre));
   EXPECT_TRUE(std::ranges::equal(a.streets, b.streets, {}, &Street::line, &Street::line));
   EXPECT_FALSE(std::ranges::equal(a.streets, c.streets, {}, &Street::line, &Street::line));
 }
@@ -125,10 +125,10 @@ TEST(Country, HasCrownsAboveSomeOfItsTracksButNoTrunkOnARoad) {
     Corridor roads(plan);
     for (const Street& street : plan.streets) roads.add(street.line, street.width_m);
     for (const Tree& tree : plan.trees) {
-      EXPECT_FALSE(roads.contains(tree.center)) << seed;
+      EXPECT_FALSE(roads.contains(tree.centre)) << seed;
       const double half = tree.radius_m * 0.7;
-      crowns.add_area({tree.center + PlanPoint(-half, -half), tree.center + PlanPoint(half, -half),
-                       tree.center + PlanPoint(half, half), tree.center + PlanPoint(-half, half)});
+      crowns.add_area({tree.centre + PlanPoint(-half, -half), tree.centre + PlanPoint(half, -half),
+                       tree.centre + PlanPoint(half, half), tree.centre + PlanPoint(-half, half)});
     }
     std::vector<Street> tracks;
     std::ranges::copy_if(plan.streets, std::back_inserter(tracks), unpaved_track);

@@ -54,7 +54,7 @@ cv::Vec3d sample(const cv::Mat& image, double col, double row) {
 TEST(Frames, ShowWhatThePictureShowsAtTheirPoseFromTrueNorth) {
   const TemporaryFolder folder;
   WorldSettings settings = small_settings();
-  settings.center = LatLon{57.70, 11.97};  // grid north is 2.5 degrees off true north there
+  settings.centre = LatLon{57.70, 11.97};  // grid north is 2.5 degrees off true north there
   const WorldReport report = render_world(settings, folder.path(), {}, {});
   const cv::Mat after = picture(folder / "post.tif");
   const auto truths = read_truth(folder / "frames" / "frames.csv");
@@ -63,16 +63,16 @@ TEST(Frames, ShowWhatThePictureShowsAtTheirPoseFromTrueNorth) {
     EXPECT_EQ(truth.gsd_m, 1.0);
     const cv::Mat frame = picture(folder / "frames" / truth.file);
     ASSERT_EQ(frame.size(), cv::Size(120, 120));
-    const GridPoint center = report.placement.zone.project(truth.at);
-    const Angle heading = report.placement.zone.grid_from_true(truth.heading, center);
+    const GridPoint centre = report.placement.zone.project(truth.at);
+    const Angle heading = report.placement.zone.grid_from_true(truth.heading, centre);
     double difference = 0.0;
     int count = 0;
     for (int row = 3; row < 120; row += 13) {
       for (int col = 2; col < 120; col += 11) {
         const double right = col + 0.5 - 60.0;
         const double forward = 60.0 - row - 0.5;
-        const double east = center.east_m + right * cos(heading) + forward * sin(heading);
-        const double north = center.north_m - right * sin(heading) + forward * cos(heading);
+        const double east = centre.east_m + right * cos(heading) + forward * sin(heading);
+        const double north = centre.north_m - right * sin(heading) + forward * cos(heading);
         const cv::Vec3d expected =
             sample(after, east - report.placement.north_west.east_m, report.placement.north_west.north_m - north);
         difference += cv::norm(expected - cv::Vec3d(frame.at<cv::Vec3b>(row, col)));
@@ -87,7 +87,7 @@ TEST(Frames, LieInsideThePictureWhateverTheirHeading) {
   WorldSettings settings = small_settings();
   settings.frames = 500;
   settings.footprint_m = 200.0;
-  const Placement placement = place(settings, kDefaultCenter);
+  const Placement placement = place(settings, kDefaultCentre);
   Random random(1, 1);
   const auto poses = draw_poses(settings, placement, random);
   EXPECT_EQ(poses.size(), 500U);

@@ -81,7 +81,7 @@ TEST(Painter, DrawsCountryRoadsWhereTheirLinesAre) {
 
 TEST(Painter, PaintsBareBranchesInWinterWhereLeavesWereInSummer) {
   Plan plan = testing::empty_country(128.0);
-  plan.trees.push_back({.center = {64, 64},
+  plan.trees.push_back({.centre = {64, 64},
                         .radius_m = 6.0,
                         .height_m = 0.3,
                         .deciduous = true,

@@ -128,7 +128,7 @@ TEST(World, OfOpenCountryComesWithTheTruthAboutItsRoads) {
 TEST(World, LiesWhereItWasAskedForInTheZoneOfItsCentre) {
   const TemporaryFolder folder;
   WorldSettings settings = small_settings();
-  settings.center = LatLon{-33.45, -70.66};
+  settings.centre = LatLon{-33.45, -70.66};
   const WorldReport report = render(settings, folder.path());
   EXPECT_EQ(report.placement.zone.epsg(), 32719);
   for (const char* name : {"pre.tif", "post.tif"}) {
@@ -141,9 +141,9 @@ TEST(World, LiesWhereItWasAskedForInTheZoneOfItsCentre) {
     ASSERT_EQ(dataset->GetGeoTransform(transform.data()), CE_None);
     EXPECT_EQ(transform[1], 1.0);
     EXPECT_EQ(transform[5], -1.0);
-    const GridPoint center = report.placement.zone.project(*settings.center);
-    EXPECT_NEAR(transform[0] + 180.0, center.east_m, 0.51);
-    EXPECT_NEAR(transform[3] - 150.0, center.north_m, 0.51);
+    const GridPoint centre = report.placement.zone.project(*settings.centre);
+    EXPECT_NEAR(transform[0] + 180.0, centre.east_m, 0.51);
+    EXPECT_NEAR(transform[3] - 150.0, centre.north_m, 0.51);
   }
 }
 
@@ -192,7 +192,7 @@ TEST(World, CanBeDrawnAroundRealRoads) {
   EXPECT_NEAR(report.road_km, 0.66, 0.02);
   EXPECT_THAT(bytes_of(folder / "world" / "roads.geojson"), ::testing::HasSubstr(R"("highway": "primary")"));
 
-  settings.center = LatLon{57.80, 11.965};
+  settings.centre = LatLon{57.80, 11.965};
   EXPECT_EQ(failure(settings, folder / "elsewhere"), "world-without-roads");
   EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere"));
 }

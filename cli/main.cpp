@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <opencv2/core/utils/logger.hpp>
 
 #include "cli/command.hpp"
 #include "core/units/error.hpp"
@@ -16,6 +17,8 @@ constexpr int kWrongUsage = 2;
 
 int main(int argc, char** argv) {
   roadfix::keep_freed_memory();
+  // What OpenCV has to say comes as an exception, and is said once.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   CLI::App app(
       "Localizes UAVs by roads: builds road maps from imagery and road data, serves them, answers where a frame was "
       "taken.",

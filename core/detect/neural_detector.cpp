@@ -8,6 +8,7 @@
 #include <mutex>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <vector>
 
 #include "core/detect/network_picture.hpp"
@@ -39,6 +40,12 @@ cv::Mat turned(const cv::Mat& picture, int quarters) {
   cv::Mat result;
   cv::rotate(picture, result, quarters - 1);
   return result;
+}
+
+/// OpenCV breaks the lines of its messages.
+std::string in_one_line(std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  return message;
 }
 
 /// The picture mirrored (k >= 4) and then turned by k % 4 quarters; `upright` takes it back.
@@ -114,7 +121,7 @@ NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const
   } catch (const cv::Exception& error) {
     throw InvalidInput("model-unreadable", fmt::format("{} is not an ONNX network that OpenCV {} runs (export with "
                                                        "opset 11): {}",
-                                                       model.string(), CV_VERSION, error.err));
+                                                       model.string(), CV_VERSION, in_one_line(error.err)));
   }
   check_shape(model);
 }
@@ -128,7 +135,7 @@ void NeuralRoadDetector::check_shape(const std::filesystem::path& model) const {
     if (size == expected) return;
     found = fmt::format("{} x {} cells", size.width, size.height);
   } catch (const cv::Exception& error) {
-    found = error.err;
+    found = in_one_line(error.err);
   }
   throw InvalidInput("model-shape",
                      fmt::format("{}: for an input of 1 x 3 x {} x {} the output must be 1 x 1 x {} x {} "

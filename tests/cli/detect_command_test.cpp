@@ -1,6 +1,7 @@
 // roadfix detect as a script meets it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -94,6 +95,20 @@ TEST_F(DetectCommand, NamesTheFileThatIsNoPicture) {
   const ProgramResult result = detect("--gsd 0.5");
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, AllOf(HasSubstr("frame.png: "), HasSubstr("gdal_translate"), HasSubstr("[image-format]")));
+}
+
+TEST_F(DetectCommand, SaysInOneLineThatANetworkCannotBeRun) {
+  std::string onnx = text_of(ROADFIX_TEST_NETWORKS "/tiny.onnx");
+  for (std::size_t at = onnx.find("Conv"); at != std::string::npos; at = onnx.find("Conv", at)) onnx[at] = 'X';
+  std::ofstream(folder / "net.onnx", std::ios::binary) << onnx;
+  std::ofstream(folder / "net.json") << R"({"name": "odd", "gsd_m": 1, "stride": 2, "multiple": 16, "tile_px": 512,
+    "overlap_px": 32, "channels": "rgb", "mean": [100, 110, 120], "std": [50, 60, 70], "output": "logits"})";
+  const ProgramResult result =
+      run_program(folder.path(), "detect " + (folder / "frame.png").string() + " " + (folder / "roads.png").string() +
+                                     " --gsd 1 --model " + (folder / "net.onnx").string());
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("[model-"));
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
 }
 
 TEST_F(DetectCommand, SaysWhatIsMissing) {

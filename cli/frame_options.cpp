@@ -46,8 +46,11 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
                   ->check(positive())
                   ->needs(fov);
   fov->needs(agl);
-  command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down")->needs(fov);
-  command.add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up")->needs(fov);
+  command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down, 0 = straight down")
+      ->needs(fov);
+  command
+      .add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
+      ->needs(fov);
   command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's rim were not seen")->needs(gsd);
   return {gsd, fov};
 }

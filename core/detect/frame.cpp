@@ -40,6 +40,19 @@ cv::Matx33d pixel_from_ground(const FrameCamera& camera, cv::Size size) {
   return intrinsics * level_from_camera(camera).t() * plane;
 }
 
+/// Gimbals and autopilots that call straight down -90 degrees would be taken at their word and look at the horizon.
+void require_looking_down(const FrameCamera& camera) {
+  const Angle flattest = Angle::degrees(80.0);
+  const double down = (level_from_camera(camera) * cv::Vec3d(0.0, 0.0, 1.0))[2];
+  if (down >= cos(flattest)) return;
+  throw InvalidInput(
+      "frame-sees-no-ground",
+      fmt::format(
+          "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the camera looks at the horizon or the sky; "
+          "both count from straight down, so that what a gimbal calls -90 is a pitch of 0",
+          camera.roll.degrees(), camera.pitch.degrees()));
+}
+
 /// Box of the seen ground within the range, in metres (x right, y back).
 cv::Rect2d seen_ground(const FrameCamera& camera, cv::Size size, double max_range_m) {
   constexpr int kSteps = 32;
@@ -93,6 +106,7 @@ std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Size size, c
 GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const FrameCamera& camera, double gsd_m,
                    double max_range_m, double max_pixels) {
   validate(camera);
+  require_looking_down(camera);
   require(gsd_m > 0.0 && gsd_m < 1e6, "gsd_m", "(0, 1e6) metres");
   const cv::Rect2d box = seen_ground(camera, frame.size(), max_range_m);
   const double cols = std::ceil(box.width / gsd_m);

@@ -1,11 +1,12 @@
 #include "core/detect/frame.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
@@ -109,6 +110,17 @@ TEST(Rectify, WithTheHorizonInViewOnlyTheRangeIsObserved) {
 TEST(Frame, WithPixelsWiderThanRoadsIsRefused) {
   EXPECT_NO_THROW(require_roads_visible(kCoarsestGsdM));
   EXPECT_THROW(require_roads_visible(1.01 * kCoarsestGsdM), InvalidInput);
+}
+
+TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
+  const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
+  for (const double pitch : {-90.0, -85.0, 90.0}) {
+    FrameCamera camera = level();
+    camera.pitch = Angle::degrees(pitch);
+    EXPECT_THAT(testing::message_of([&] { rectify(frame, {}, camera, 0.5, 500, 1e7); }),
+                ::testing::HasSubstr("count from straight down"))
+        << pitch;
+  }
 }
 
 TEST(Rectify, RefusesWhatCannotBe) {

@@ -80,8 +80,8 @@ std::optional<double> quantile(std::vector<double> values, double p) {
   return std::lerp(values[below], values[above], place - static_cast<double>(below));
 }
 
-Figures figures(const std::vector<Outcome>& outcomes) {
-  Figures result;
+Summary summary_of(const std::vector<Outcome>& outcomes) {
+  Summary result;
   result.n = static_cast<int>(outcomes.size());
   std::vector<double> errors;
   std::vector<double> heading_errors;
@@ -111,19 +111,19 @@ Figures figures(const std::vector<Outcome>& outcomes) {
 }
 
 json to_json(const SetResult& result) {
-  const Figures f = figures(result.outcomes);
+  const Summary s = summary_of(result.outcomes);
   json queries = json::array();
   for (const Outcome& outcome : result.outcomes) queries.push_back(outcome_json(outcome));
   return {{"method", result.method},
           {"map", result.map},
           {"query_set", result.query_set},
-          {"n", f.n},
-          {"answered", f.answered},
-          {"recall", {{"5", f.recall_5}, {"10", f.recall_10}, {"25", f.recall_25}, {"50", f.recall_50}}},
-          {"false_fixes", f.false_fixes},
-          {"median_error_m", number_or_null(f.median_error_m)},
-          {"median_heading_error_deg", number_or_null(f.median_heading_error_deg)},
-          {"time_ms", {{"p50", f.time_p50_ms}, {"p95", f.time_p95_ms}}},
+          {"n", s.n},
+          {"answered", s.answered},
+          {"recall", {{"5", s.recall_5}, {"10", s.recall_10}, {"25", s.recall_25}, {"50", s.recall_50}}},
+          {"false_fixes", s.false_fixes},
+          {"median_error_m", number_or_null(s.median_error_m)},
+          {"median_heading_error_deg", number_or_null(s.median_heading_error_deg)},
+          {"time_ms", {{"p50", s.time_p50_ms}, {"p95", s.time_p95_ms}}},
           {"honesty", to_json(honesty_of(result.outcomes))},
           {"queries", queries}};
 }
@@ -147,12 +147,12 @@ std::string to_table(const std::vector<SetResult>& results) {
                                   "method", "map", map_width, "queries", set_width, "n", "answered", "r@5", "r@10",
                                   "r@25", "r@50", "false", "med. m", "med. deg", "p50 ms", "p95 ms");
   for (const SetResult& result : results) {
-    const Figures f = figures(result.outcomes);
+    const Summary s = summary_of(result.outcomes);
     table +=
         fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
-                    result.method, result.map, map_width, result.query_set, set_width, f.n, f.answered, f.recall_5,
-                    f.recall_10, f.recall_25, f.recall_50, f.false_fixes, cell(f.median_error_m, 1),
-                    cell(f.median_heading_error_deg, 2), f.time_p50_ms, f.time_p95_ms);
+                    result.method, result.map, map_width, result.query_set, set_width, s.n, s.answered, s.recall_5,
+                    s.recall_10, s.recall_25, s.recall_50, s.false_fixes, cell(s.median_error_m, 1),
+                    cell(s.median_heading_error_deg, 2), s.time_p50_ms, s.time_p95_ms);
   }
   return table;
 }

@@ -1,4 +1,4 @@
-// Figures of one method over one set of queries, as text and as the JSON of docs/bench.md.
+// What the answers of one method to one set of queries come to, as text and as the JSON of docs/bench.md.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -26,7 +26,7 @@ struct Outcome {
 /// Errors of an answer, in the plane of the zone.
 Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone);
 
-struct Figures {
+struct Summary {
   int n = 0;
   int answered = 0;  ///< status `fix`
   double recall_5 = 0.0;
@@ -40,7 +40,7 @@ struct Figures {
   double time_p95_ms = 0.0;
 };
 
-Figures figures(const std::vector<Outcome>& outcomes);
+Summary summary_of(const std::vector<Outcome>& outcomes);
 
 /// p in [0, 1]; linear between order statistics; nullopt for no values.
 std::optional<double> quantile(std::vector<double> values, double p);

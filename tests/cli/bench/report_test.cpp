@@ -20,23 +20,23 @@ Outcome outcome(FixStatus status, double error_m, double heading_error_deg) {
   return judged("q", GeoPose{kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
 }
 
-TEST(Figures, CountRecallOverAllAndErrorsOverTheAnswered) {
+TEST(Summary, CountsRecallOverAllAndErrorsOverTheAnswered) {
   const std::vector<Outcome> outcomes = {outcome(FixStatus::kFix, 3.0, 1.0), outcome(FixStatus::kFix, 40.0, 15.0),
                                          outcome(FixStatus::kAmbiguous, 8.0, 2.0), judged("none", {}, Answer{}, kZone)};
-  const Figures f = figures(outcomes);
-  EXPECT_EQ(f.n, 4);
-  EXPECT_EQ(f.answered, 2);
-  EXPECT_EQ(f.false_fixes, 1);
-  EXPECT_EQ(f.recall_5, 0.25);
-  EXPECT_EQ(f.recall_10, 0.5);
-  EXPECT_EQ(f.recall_25, 0.5);
-  EXPECT_EQ(f.recall_50, 0.75);
-  EXPECT_NEAR(*f.median_error_m, 21.5, 1e-6);
-  EXPECT_NEAR(*f.median_heading_error_deg, 8.0, 1e-6);
+  const Summary s = summary_of(outcomes);
+  EXPECT_EQ(s.n, 4);
+  EXPECT_EQ(s.answered, 2);
+  EXPECT_EQ(s.false_fixes, 1);
+  EXPECT_EQ(s.recall_5, 0.25);
+  EXPECT_EQ(s.recall_10, 0.5);
+  EXPECT_EQ(s.recall_25, 0.5);
+  EXPECT_EQ(s.recall_50, 0.75);
+  EXPECT_NEAR(*s.median_error_m, 21.5, 1e-6);
+  EXPECT_NEAR(*s.median_heading_error_deg, 8.0, 1e-6);
 }
 
-TEST(Figures, OfNothingHaveNoMedian) {
-  EXPECT_FALSE(figures({}).median_error_m);
+TEST(Summary, OfNothingHasNoMedian) {
+  EXPECT_FALSE(summary_of({}).median_error_m);
   EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);
 }
 

@@ -90,10 +90,10 @@ constexpr const char* kImageQueries = R"({"map": "town", "image": "town.png", "c
 
 TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
   for (const SetResult& result : run(kImageQueries, R"("roads", "sift", "orb")")) {
-    const Figures f = figures(result.outcomes);
-    EXPECT_EQ(f.n, 3) << result.method;
-    EXPECT_EQ(f.recall_5, 1.0) << result.method;
-    EXPECT_EQ(f.false_fixes, 0) << result.method;
+    const Summary s = summary_of(result.outcomes);
+    EXPECT_EQ(s.n, 3) << result.method;
+    EXPECT_EQ(s.recall_5, 1.0) << result.method;
+    EXPECT_EQ(s.false_fixes, 0) << result.method;
     for (const Outcome& outcome : result.outcomes) {
       EXPECT_LT(outcome.heading_error_deg.value_or(360.0), 1.0) << result.method;
     }
@@ -125,7 +125,7 @@ TEST_F(BenchRun, PlacesSimulatedFeatureMapsAndRealFrames) {
                            R"("roads")");
   ASSERT_EQ(results.size(), 2u);
   EXPECT_EQ(results[0].outcomes.size(), 3u);
-  EXPECT_EQ(figures(results[0].outcomes).recall_5, 1.0);
+  EXPECT_EQ(summary_of(results[0].outcomes).recall_5, 1.0);
   EXPECT_EQ(results[1].outcomes.at(0).id, "frame.png");
   EXPECT_LT(*results[1].outcomes.at(0).error_m, 3.0);
   EXPECT_LT(*results[1].outcomes.at(0).heading_error_deg, 1.0);
@@ -167,10 +167,10 @@ TEST_F(BenchRun, CountsEveryFixOfGroundThatIsNotOnTheMapAsFalse) {
     EXPECT_FALSE(outcome.truth);
     EXPECT_TRUE(!outcome.error_m || std::isinf(*outcome.error_m));
   }
-  const Figures elsewhere = figures(results[0].outcomes);
+  const Summary elsewhere = summary_of(results[0].outcomes);
   EXPECT_EQ(elsewhere.recall_50, 0.0);
   EXPECT_EQ(elsewhere.false_fixes, elsewhere.answered);
-  EXPECT_EQ(figures(results[1].outcomes).recall_5, 1.0);
+  EXPECT_EQ(summary_of(results[1].outcomes).recall_5, 1.0);
 }
 
 TEST_F(BenchRun, RefusesToLookForAPlaceOfAnotherZone) {

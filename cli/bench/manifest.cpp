@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
@@ -61,6 +63,11 @@ class Field {
       refuse(fmt::format("is {}; it must lie within {} to {}", number, low, high));
     return number;
   }
+  std::int64_t whole_number(double low, double high) const {
+    const double value = number(low, high);
+    require(value == std::floor(value), "must be a whole number");
+    return static_cast<std::int64_t>(value);
+  }
   std::string one_of(std::initializer_list<std::string_view> words) const {
     std::string word = text();
     if (std::ranges::find(words, word) == words.end())
@@ -86,8 +93,10 @@ ManifestSource parse_source(const Field& field, const std::filesystem::path& dir
     return {directory / field.at("path").text(), as};
   }
   field.allow_only({"as", "seed", "side_m"});
-  return {
-      {}, as, static_cast<std::uint64_t>(field.at("seed").number(0.0, 1e9)), field.at("side_m").number(500.0, 8000.0)};
+  return {{},
+          as,
+          static_cast<std::uint64_t>(field.at("seed").whole_number(0.0, 1e9)),
+          field.at("side_m").number(500.0, 8000.0)};
 }
 
 ManifestMap parse_map(const Field& field, const std::filesystem::path& directory) {
@@ -140,7 +149,7 @@ void parse_footprint_and_count(const Field& field, QuerySet& set) {
   const auto sides = footprint.elements();
   if (sides.size() != 2) footprint.refuse("must be [width, height] in metres");
   set.footprint = {sides[0].number(1.0, kMaxFootprintM), sides[1].number(1.0, kMaxFootprintM)};
-  set.count = static_cast<int>(field.at("count").number(1.0, kMaxCount));
+  set.count = static_cast<int>(field.at("count").whole_number(1.0, kMaxCount));
 }
 
 QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
@@ -172,7 +181,7 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
   if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
   if (field.has("together")) {
     if (set.kind != QuerySet::Kind::kFrames) field.at("together").refuse("needs 'frames'");
-    set.together = static_cast<int>(field.at("together").number(1.0, 64.0));
+    set.together = static_cast<int>(field.at("together").whole_number(1.0, 64.0));
   }
   if (field.has("prior") && field.at("prior").is_object()) {
     field.at("prior").allow_only({"radius_m"});

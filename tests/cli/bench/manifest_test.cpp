@@ -72,6 +72,7 @@ void expect_complaint(const std::string& text, const std::string& part) {
 
 TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("\"count\": 5", "\"count\": -5"), "queries[0].count");
+  expect_complaint(with("\"count\": 5", "\"count\": 2.5"), "queries[0].count must be a whole number");
   expect_complaint(with("\"count\": 5", "\"counts\": 5"), "'counts'");
   expect_complaint(with("[400, 300]", "[400]"), "queries[0].footprint_m");
   expect_complaint(with("\"map\": \"town\", \"frames\"", "\"map\": \"city\", \"frames\""), "'city'");

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::cli {
 
@@ -15,9 +13,9 @@ void add_calibration_option(CLI::App& command, std::string& file) {
 }
 
 std::shared_ptr<const Calibration> read_calibration(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw NotFound("calibration-missing", fmt::format("calibration file {} cannot be opened", file));
-  return std::make_shared<const Calibration>(parse_calibration(std::string{std::istreambuf_iterator<char>(in), {}}));
+  const auto text = read_file(file);
+  if (!text) throw NotFound("calibration-missing", fmt::format("calibration file {} cannot be opened", file));
+  return std::make_shared<const Calibration>(parse_calibration(*text));
 }
 
 }  // namespace roadfix::cli

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "cli/number_checks.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -19,9 +18,9 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) {
     throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
-  return {std::istreambuf_iterator<char>(in), {}};
+  const auto bytes = read_file(path);
+  if (!bytes) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
+  return {bytes->begin(), bytes->end()};
 }
 
 auto decoded(const std::string& path, const auto& decode) {

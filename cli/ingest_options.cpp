@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <thread>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -18,9 +17,9 @@ namespace {
 RoadRules rules_of(const IngestArguments& arguments) {
   RoadRules rules;
   if (!arguments.rules_file.empty()) {
-    std::ifstream file(arguments.rules_file);
-    if (!file) throw NotFound("rules-not-found", fmt::format("{}: cannot be read", arguments.rules_file));
-    rules = RoadRules::parse(std::string(std::istreambuf_iterator<char>(file), {}));
+    const auto text = read_file(arguments.rules_file);
+    if (!text) throw NotFound("rules-not-found", fmt::format("{}: cannot be read", arguments.rules_file));
+    rules = RoadRules::parse(*text);
   }
   if (!arguments.classes.empty()) rules.select(arguments.classes);
   if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);

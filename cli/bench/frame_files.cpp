@@ -2,20 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::bench {
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
-  std::ifstream in(csv, std::ios::binary);
-  if (!in) throw NotFound("frames-missing", fmt::format("{} cannot be opened", csv.string()));
-  return parse_frames_csv(std::string{std::istreambuf_iterator<char>(in), {}});
+  const auto text = read_file(csv);
+  if (!text) throw NotFound("frames-missing", fmt::format("{} cannot be opened", csv.string()));
+  return parse_frames_csv(*text);
 }
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
@@ -23,9 +22,9 @@ GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& fr
   const auto refuse = [&](const char* why) {
     throw InvalidInput("image-unreadable", fmt::format("{}: {}", frame.file.string(), why));
   };
-  std::ifstream in(folder / frame.file, std::ios::binary);
-  if (!in) refuse("cannot be opened");
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+  const auto file = read_file(folder / frame.file);
+  if (!file) refuse("cannot be opened");
+  const std::vector<std::uint8_t> bytes(file->begin(), file->end());
   cv::Mat decoded;
   try {
     decoded = decode_image(bytes, kMostPixels);

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -223,10 +222,9 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
 }
 
 Manifest read_manifest(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw NotFound("manifest-missing", fmt::format("bench manifest {} cannot be opened", file.string()));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  return parse_manifest(text, file.parent_path());
+  const auto text = read_file(file);
+  if (!text) throw NotFound("manifest-missing", fmt::format("bench manifest {} cannot be opened", file.string()));
+  return parse_manifest(*text, file.parent_path());
 }
 
 }  // namespace roadfix::bench

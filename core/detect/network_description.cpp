@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix {
 namespace {
@@ -103,10 +102,9 @@ NetworkDescription parse_network_description(std::string_view text) {
 
 NetworkDescription read_network_description(const std::filesystem::path& model) {
   const auto path = std::filesystem::path(model).replace_extension(".json");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) refuse(fmt::format("{} cannot be read; it must lie beside {}", path.string(), model.filename().string()));
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return parse_network_description(text);
+  const auto text = read_file(path);
+  if (!text) refuse(fmt::format("{} cannot be read; it must lie beside {}", path.string(), model.filename().string()));
+  return parse_network_description(*text);
 }
 
 }  // namespace roadfix

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
@@ -14,19 +12,20 @@
 #include "core/detect/network_picture.hpp"
 #include "core/detect/tiling.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "core/units/fnv.hpp"
 
 namespace roadfix {
 namespace {
 
 std::vector<unsigned char> read_model(const std::filesystem::path& model) {
-  std::ifstream in(model, std::ios::binary);
-  if (!in || std::filesystem::is_directory(model)) {
+  const auto bytes = read_file(model);
+  if (!bytes) {
     throw InvalidInput("model-missing", fmt::format("{} cannot be read. Name an ONNX file with --model, or use "
                                                     "--detector tree, which needs none.",
                                                     model.string()));
   }
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  return {bytes->begin(), bytes->end()};
 }
 
 cv::Mat mirrored(const cv::Mat& picture) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
 
 #include "core/geodesy/geo_box.hpp"
@@ -14,13 +13,12 @@
 #include "server/api/localizability_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/handlers/tile_answers.hpp"
 #include "server/http/admission.hpp"
 
 namespace roadfix::server {
 namespace {
 
-constexpr std::array<std::string_view, 2> kStyles{"colour", "grey"};
-constexpr const char* kCacheControl = "public, max-age=60";
 constexpr api::Range kFootprint{20.0, 5000.0};
 constexpr double kUsualFootprintM = 400.0;
 /// Less of a footprint on the map says nothing about the place.
@@ -63,7 +61,8 @@ struct Layer {
 Layer layer_of(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   return {service.maps.find(request.path_parameters.at("map")),
-          fields.optional_number("footprint_m", kFootprint).value_or(kUsualFootprintM), fields.word("style", kStyles)};
+          fields.optional_number("footprint_m", kFootprint).value_or(kUsualFootprintM),
+          fields.word("style", kTileStyles)};
 }
 
 /// Of a place, searched for once and kept beside the tiles that show it: a tile that runs out of time goes on where it
@@ -90,14 +89,11 @@ std::optional<double> promise(const Service& service, const http::Request& reque
 std::string drawn(const Service& service, const http::Request& request, const Layer& layer, api::TileAddress tile,
                   http::Admission& turns) {
   const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
-  if (auto kept = service.pictures.find(key)) return *kept;
-  const http::Admission::Ticket turn = turns.enter(request.deadline);
-  const auto png = api::localizability_png(layer.map->view, tile, layer.footprint_m,
-                                           layer.style == "grey" ? api::TileStyle::kGrey : api::TileStyle::kColour,
-                                           [&](GridPoint place) { return promise(service, request, layer, place); });
-  std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
-  service.pictures.keep(key, bytes);
-  return bytes;
+  return kept_or_drawn(service.pictures, key, [&] {
+    const http::Admission::Ticket turn = turns.enter(request.deadline);
+    return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
+                                   [&](GridPoint place) { return promise(service, request, layer, place); });
+  });
 }
 
 /// A service that is started with another calibration draws other tiles.
@@ -113,24 +109,14 @@ http::Response get_tile(const Service& service, const http::Request& request, ht
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const Layer layer = layer_of(service, request);
   const std::string tag = entity_tag(layer.map->view.version, variation(service, layer, request.path));
-  http::Response response{304, {}, {}, {{"ETag", tag}, {"Cache-Control", kCacheControl}}};
-  if (is_known_to_client(request, tag)) return response;
-  response.body = drawn(service, request, layer, tile, turns);
-  response.status = response.body.empty() ? 204 : 200;
-  if (response.status == 200) response.content_type = "image/png";
-  return response;
+  return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, turns); });
 }
 
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const Layer layer = layer_of(service, request);
-  const std::string url = base_url(request) + request.path.substr(0, request.path.rfind('/')) +
-                          fmt::format("/tiles/{{z}}/{{x}}/{{y}}.png?footprint_m={}", layer.footprint_m) +
-                          (layer.style == kStyles[0] ? "" : "&style=" + layer.style);
-  nlohmann::json answer{{"tilejson", "3.0.0"},
-                        {"name", layer.map->name + ", localizability"},
-                        {"version", "1.0.0"},
-                        {"scheme", "xyz"},
-                        {"tiles", {url}}};
+  const std::string query = fmt::format("?footprint_m={}", layer.footprint_m) +
+                            (layer.style == kTileStyles[0] ? "" : "&style=" + layer.style);
+  nlohmann::json answer = tilejson(request, layer.map->name + ", localizability", query);
   const GridBox& extent = layer.map->view.extent;
   if (!extent.empty()) {
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
@@ -138,9 +124,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
     answer["minzoom"] = zooms.first;
     answer["maxzoom"] = zooms.last;
   }
-  http::Response response = json_response(answer);
-  response.headers.emplace_back("Cache-Control", kCacheControl);
-  return response;
+  return tilejson_response(answer);
 }
 
 }  // namespace

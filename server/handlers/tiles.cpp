@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <string>
 
 #include "core/geodesy/geo_box.hpp"
 #include "server/api/fields.hpp"
@@ -8,37 +9,25 @@
 #include "server/api/tile_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/handlers/tile_answers.hpp"
 
 namespace roadfix::server {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 2> kStyles{"colour", "grey"};
-constexpr const char* kCacheControl = "public, max-age=60";
 constexpr int kZoomsBeyondNative = 3;
-
-std::string rendered(const Service& service, const ServedMap& map, api::TileAddress tile, const std::string& style) {
-  const std::string key = fmt::format("{}/{}/{}/{}/{}/{}", map.name, map.view.version, style, tile.z, tile.x, tile.y);
-  if (auto kept = service.pictures.find(key)) return *kept;
-  const auto png = api::tile_png(map.view, tile, style == "grey" ? api::TileStyle::kGrey : api::TileStyle::kColour);
-  std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
-  service.pictures.keep(key, bytes);
-  return bytes;
-}
 
 http::Response get_tile(const Service& service, const http::Request& request) {
   const auto& at = request.path_parameters;
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
-  const std::string style = api::Fields(request.query).word("style", kStyles);
+  const std::string style = api::Fields(request.query).word("style", kTileStyles);
   const auto map = service.maps.find(at.at("map"));
-  const std::string tag = entity_tag(map->view.version, style + request.path);
-  http::Response response{304, {}, {}, {{"ETag", tag}, {"Cache-Control", kCacheControl}}};
-  if (is_known_to_client(request, tag)) return response;
-  response.body = rendered(service, *map, tile, style);
-  response.status = response.body.empty() ? 204 : 200;
-  if (response.status == 200) response.content_type = "image/png";
-  return response;
+  return tile_response(request, entity_tag(map->view.version, style + request.path), [&] {
+    const std::string key =
+        fmt::format("{}/{}/{}/{}/{}/{}", map->name, map->view.version, style, tile.z, tile.x, tile.y);
+    return kept_or_drawn(service.pictures, key, [&] { return api::tile_png(map->view, tile, tile_style(style)); });
+  });
 }
 
 std::string attribution(const MapInfo& info) {
@@ -54,12 +43,9 @@ std::string attribution(const MapInfo& info) {
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const MapInfo& info = map->reader->info();
-  const std::string style = api::Fields(request.query).word("style", kStyles);
-  const std::string url = base_url(request) + request.path.substr(0, request.path.rfind('/')) +
-                          "/tiles/{z}/{x}/{y}.png" + (style == kStyles[0] ? "" : "?style=" + style);
-  json answer{{"tilejson", "3.0.0"}, {"name", map->name},       {"version", "1.0.0"},
-              {"scheme", "xyz"},     {"tiles", {url}},          {"attribution", attribution(info)},
-              {"minzoom", 0},        {"maxzoom", api::kMaxZoom}};
+  const std::string style = api::Fields(request.query).word("style", kTileStyles);
+  json answer = tilejson(request, map->name, style == kTileStyles[0] ? "" : "?style=" + style);
+  answer.update({{"attribution", attribution(info)}, {"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
   if (!info.extent.empty()) {
     const GeoBox b = geo_box_around(info.settings.zone, info.extent);
     const int native = api::native_zoom(map->view);
@@ -68,9 +54,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
                         0.5 * (b.south_west.lat_deg + b.north_east.lat_deg), std::max(0, native - kZoomsBeyondNative)};
     answer["maxzoom"] = std::min(api::kMaxZoom, native + kZoomsBeyondNative);
   }
-  http::Response response = json_response(answer);
-  response.headers.emplace_back("Cache-Control", kCacheControl);
-  return response;
+  return tilejson_response(answer);
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// What tiles answer, whatever they show.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/api/tile_picture.hpp"
+#include "server/http/message.hpp"
+#include "server/maps/picture_cache.hpp"
+
+namespace roadfix::server {
+
+/// Words of the parameter "style", the usual one first.
+inline constexpr std::array<std::string_view, 2> kTileStyles{"colour", "grey"};
+api::TileStyle tile_style(std::string_view word);
+
+/// The picture, or nothing where there is nothing to see.
+using DrawTile = std::function<std::optional<std::vector<std::uint8_t>>()>;
+/// From the cache, or drawn now and kept; empty where there is nothing to see.
+std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const DrawTile& draw);
+
+/// 304 to a client that has the picture of this tag, else what `picture` gives: 200, or 204 where it is empty.
+http::Response tile_response(const http::Request& request, const std::string& tag,
+                             const std::function<std::string()>& picture);
+
+/// Of the tiles whose folder lies beside this document; `query` stands behind their addresses ("?style=grey").
+nlohmann::json tilejson(const http::Request& request, const std::string& name, const std::string& query);
+http::Response tilejson_response(const nlohmann::json& tilejson);
+
+}  // namespace roadfix::server

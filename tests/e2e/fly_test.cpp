@@ -27,12 +27,12 @@ class Vehicles : public ::testing::Test {
     testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0);
     flight_plan_.steps = kSteps;
     flight_plan_.missing_share = 0.2;
-    campaign_.flight = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
+    campaign_.flights.source = [this](int, std::uint64_t seed, const std::function<void()>& seen) {
       const GridBox box{{600'500.0, 6'399'500.0}, {600'800.0, 6'399'800.0}};
       return fly(flight_plan_, box, *make_random_pilot(box, flight_plan_.handling), *sensor_, seed, seen);
     };
     campaign_.filters = {"default"};
-    campaign_.runs = kVehicles;
+    campaign_.flights.number = kVehicles;
     campaign_.jobs = kVehicles;
     campaign_.watch = [](const std::string&, const Record&, const Localizer&) {};
     campaign_.progress = [](std::int64_t, std::int64_t) {};

@@ -237,17 +237,23 @@ cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   return valid;
 }
 
-std::vector<float> RasterFile::sample_values() {
+std::vector<cv::Rect> RasterFile::sample_windows() const {
   constexpr int kWindows = 16;
   constexpr int kWindowPx = 64;
   const auto window_px = [=](int length) { return std::min(kWindowPx, (length + kWindows - 1) / kWindows); };
-  const int width = window_px(size().width);
-  const int height = window_px(size().height);
-  std::vector<float> values;
+  const cv::Size window(window_px(size().width), window_px(size().height));
+  std::vector<cv::Rect> windows;
   for (int i = 0; i < kWindows * kWindows; ++i) {
-    const auto x = static_cast<int>(std::int64_t{size().width - width} * (i % kWindows) / (kWindows - 1));
-    const auto y = static_cast<int>(std::int64_t{size().height - height} * (i / kWindows) / (kWindows - 1));
-    const cv::Rect window(x, y, width, height);
+    const auto x = static_cast<int>(std::int64_t{size().width - window.width} * (i % kWindows) / (kWindows - 1));
+    const auto y = static_cast<int>(std::int64_t{size().height - window.height} * (i / kWindows) / (kWindows - 1));
+    windows.emplace_back(cv::Point(x, y), window);
+  }
+  return windows;
+}
+
+std::vector<float> RasterFile::sample_values() {
+  std::vector<float> values;
+  for (const cv::Rect& window : sample_windows()) {
     const cv::Mat raw = read_bands(window, CV_32F, GDT_Float32);
     const cv::Mat valid = read_validity(window, raw);
     for (int row = 0; row < raw.rows; ++row) {

@@ -61,7 +61,9 @@ class RasterFile {
 
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
   RasterPixels read(cv::Rect window, const ValueRange& range);
-  /// Values of valid pixels in windows spread evenly over the image, the same at every call.
+  /// Small windows spread evenly over the image, the same at every call.
+  std::vector<cv::Rect> sample_windows() const;
+  /// Values of valid pixels in these windows as the file stores them: of a palette the indices.
   std::vector<float> sample_values();
 
  private:

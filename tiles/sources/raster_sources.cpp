@@ -128,7 +128,7 @@ class RoadRaster final : public CellSource {
     summary_.chosen_gsd_m = gsd_m_;
     summary_.registration_sigma_m = kRasterSigmaM;
     summary_.notes = notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
-    std::optional<std::string> note = note_on_likely_picture(paths.front(), options);
+    std::optional<std::string> note = note_on_likely_picture(paths.front(), options, mosaic_.range());
     if (note) summary_.notes.push_back(std::move(*note));
   }
 

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
+#include <array>
+#include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
 
@@ -37,22 +38,41 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Val
   return notes;
 }
 
-std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options) {
+std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options,
+                                                  const ValueRange& range) {
+  constexpr double kStray = 0.01;
+  constexpr double kStillGrey = 12.0;
   RasterFile file(path, options);
-  if (file.channels() != 3) return std::nullopt;
-  const std::vector<float> values = file.sample_values();
-  if (values.empty()) return std::nullopt;
-  const float most = *std::ranges::max_element(values);
-  std::size_t coloured = 0;
-  for (std::size_t i = 0; i < values.size(); i += 3) {
-    const auto [least, largest] = std::ranges::minmax(std::span(values).subspan(i, 3));
-    coloured += largest - least > 0.05F * most ? 1 : 0;
+  int seen = 0;
+  int coloured = 0;
+  int bright = 0;
+  for (const cv::Rect& window : file.sample_windows()) {
+    const RasterPixels pixels = file.read(window, range);
+    cv::Mat grey = pixels.values;
+    if (grey.channels() == 3) {
+      std::array<cv::Mat, 3> bands;
+      cv::split(pixels.values, bands.data());
+      const cv::Mat most = cv::max(cv::max(bands[0], bands[1]), bands[2]);
+      const cv::Mat least = cv::min(cv::min(bands[0], bands[1]), bands[2]);
+      coloured += cv::countNonZero((most - least > kStillGrey) & pixels.valid);
+      cv::cvtColor(pixels.values, grey, cv::COLOR_BGR2GRAY);
+    }
+    seen += cv::countNonZero(pixels.valid);
+    bright += cv::countNonZero((grey > 127) & pixels.valid);
   }
-  if (10 * coloured < values.size() / 3) return std::nullopt;
+  if (coloured > kStray * seen) {
+    return fmt::format(
+        "{}: it is in colour, and its brightness is taken for the probability of road. If it shows the ground rather "
+        "than roads, ingest it without --as roads (and --replace this source); if colours stand for roads, make a mask "
+        "of 0 and 255 of it",
+        path);
+  }
+  if (2 * bright <= seen || bright == seen) return std::nullopt;
+  const double most = file.channels() == 3 ? 255.0 : range.high;
   return fmt::format(
-      "{}: it is in colour, and its brightness is taken for the probability of road. If it shows the ground rather "
-      "than roads, ingest it without --as roads (and --replace this source)",
-      path);
+      "{}: {:.0f} % of it is road. If dark stands for roads here, turn its values round (gdal_translate -scale 0 {:g} "
+      "{:g} 0, with -expand gray where it has a palette) and use --replace",
+      path, 100.0 * bright / seen, most, most);
 }
 
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {

@@ -16,8 +16,10 @@ namespace roadfix {
 std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
                                               const ValueRange& range, bool integers);
 
-/// For rasters of roads: a note where the file is in colour, as pictures of the ground are.
-std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options);
+/// For rasters of roads, as they are read with `range`: a note where the file is in colour, as pictures of the ground
+/// are, or else where most of it is road, as if dark stood for roads.
+std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options,
+                                                  const ValueRange& range);
 
 /// For imagery: a note where the file has one band of floats within 0..1, or of two values alone.
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options);

@@ -145,13 +145,31 @@ TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
 TEST(RoadRasterNote, IsGivenForPicturesInColourAndNotForDrawingsInGrey) {
   const testing::TemporaryFolder folder;
   const auto note = [&](int bands, const testing::PixelFunction& value) {
-    return note_on_likely_picture(write_raster(folder / "a.tif", {.bands = bands}, value), {});
+    return note_on_likely_picture(write_raster(folder / "a.tif", {.bands = bands}, value), {}, {});
   };
   const auto ground = [](int band, int col, int row) { return 60 + (col + row) % 64 + 30 * band; };
   const auto drawing = [](int, int col, int) { return col < 31 ? 255.0 : 0.0; };
   EXPECT_THAT(note(3, ground), ::testing::Optional(::testing::HasSubstr("without --as roads")));
   EXPECT_EQ(note(3, drawing), std::nullopt);
   EXPECT_EQ(note(1, ground), std::nullopt);
+}
+
+TEST(RoadRasterNote, IsGivenForColouredLinesAndForDarkOnesOnLightGround) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](const testing::RasterSpec& spec, double line, double ground) {
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [=](int, int col, int) { return col % 16 == 3 ? line : ground; });
+    return open_road_raster({path}, {}, kZone, 2.0)->summary().notes;
+  };
+  using ::testing::ElementsAre;
+  using ::testing::HasSubstr;
+  const testing::RasterSpec red_on_black{.palette = {{0, 0, 0, 255}, {255, 0, 0, 255}}};
+  EXPECT_THAT(note(red_on_black, 1.0, 0.0), ElementsAre(HasSubstr("if colours stand for roads")));
+  const testing::RasterSpec black_and_white{.palette = {{0, 0, 0, 255}, {255, 255, 255, 255}}};
+  EXPECT_THAT(note(black_and_white, 1.0, 0.0), ::testing::IsEmpty());
+  EXPECT_THAT(note(black_and_white, 0.0, 1.0), ElementsAre(HasSubstr("-scale 0 255 255 0")));
+  EXPECT_THAT(note({}, 0.0, 1.0), ElementsAre(AllOf(HasSubstr("94 % of it is road"), HasSubstr("-scale 0 1 1 0"))));
+  EXPECT_THAT(note({}, 1.0, 0.0), ::testing::IsEmpty());
 }
 
 class RoadRaster : public ::testing::Test {

@@ -127,7 +127,7 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
     throw LimitExceeded(
         "source-too-large",
         fmt::format("'{}' covers {:.0f} x {:.0f} km, more than a million blocks of {:.0f} m: choose larger cells with "
-                    "--cell, or split it",
+                    "--cell, or split it. If a stray road far away makes it so large, name the ground with --extent",
                     name, box.width_m() / 1e3, box.height_m() / 1e3, tile_m));
   }
   std::vector<TileIndex> blocks = tiles_covering(GridGeometry::covering(box, settings.cell_m));

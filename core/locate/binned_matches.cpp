@@ -8,7 +8,6 @@
 
 #include "core/grid/resample.hpp"
 #include "core/grid/turnable_map.hpp"
-#include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/work.hpp"

@@ -8,7 +8,6 @@
 #include "core/geodesy/local_projection.hpp"
 #include "core/locate/binned_matches.hpp"
 #include "core/locate/prepare.hpp"
-#include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/work.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/locate/binned_matches.hpp"
-#include "core/match/coarse_scan.hpp"
+#include "core/match/footprint.hpp"
 
 namespace roadfix {
 

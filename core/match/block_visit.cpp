@@ -1,43 +1,19 @@
 #include "core/match/block_visit.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <map>
 
-#include "core/match/coverage.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
-namespace {
-
-/// Of the map's cells above its base, as in BlockSums.
-struct MapSums {
-  double value = 0.0;
-  double square = 0.0;
-};
-
-/// Whole numbers, as the cells are stored.
-MapSums map_sums(const MatchSums& sums, double base) {
-  const auto n = static_cast<double>(sums.n);
-  const double value = std::round(sums.m * kRoad);
-  const double square = std::round(sums.mm * kRoad * kRoad);
-  return {value - base * n, square - 2.0 * base * value + base * base * n};
-}
-
-Interval narrower(const Interval& a, const Interval& b) {
-  return {std::max(a.least, b.least), std::min(a.most, b.most)};
-}
-
-}  // namespace
 
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
   const FeatureMap turned = problem_.turnable.at(problem_.heading(heading));
   const Footprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(heading, nodes);
-  parts = narrowed(surviving(std::move(parts), above, kBlockCells), turned, kBlockCells);
-  parts = narrowed(surviving(halves(parts), above, kBlockCells / 2), turned, kBlockCells / 2);
+  parts = surviving(std::move(parts), above, kBlockCells);
+  parts = surviving(halves(parts), above, kBlockCells / 2);
   return best_of(heading, Footprint(turned), parts);
 }
 
@@ -71,40 +47,9 @@ std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, con
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     part.sums.cross_most = static_cast<double>(products[i]);
-    if (can_be_better(part)) result.push_back(part);
+    if (score_bound(part.sums, problem_.full_cells, problem_.search.least_cells) > best_) result.push_back(part);
   }
   return result;
-}
-
-bool BlockVisit::can_be_better(const Part& part) const {
-  return score_bound(part.sums, problem_.full_cells, problem_.search.least_cells) > best_;
-}
-
-std::vector<BlockVisit::Part> BlockVisit::narrowed(std::vector<Part> parts, const FeatureMap& turned, int side) const {
-  // Measured: where the sums are known better, the closer look costs more than the parts that it spares.
-  constexpr double kWide = 0.3;
-  const auto wide = [](const Part& part) {
-    return part.sums.map.most - part.sums.map.least > kWide * part.sums.map.most;
-  };
-  const auto first = std::ranges::partition(parts, std::not_fn(wide)).begin();
-  if (first == parts.end()) return parts;
-  std::vector<PlaneCell> places;
-  for (auto part = first; part != parts.end(); ++part) places.push_back({part->col, part->row});
-  const Coverage coverage = Coverage::of(turned, side);
-  std::vector<MatchSums> always(places.size());
-  std::vector<MatchSums> sometimes(places.size());
-  match_sums(problem_.map.exact(), coverage.always, places, always);
-  match_sums(problem_.map.exact(), coverage.sometimes, places, sometimes);
-  const double base = problem_.map.base();
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const MapSums least = map_sums(always[i], base);
-    const MapSums more = map_sums(sometimes[i], base);
-    BlockSums& sums = first[static_cast<std::ptrdiff_t>(i)].sums;
-    sums.map = narrower(sums.map, {least.value, least.value + more.value});
-    sums.map_square = narrower(sums.map_square, {least.square, least.square + more.square});
-  }
-  std::erase_if(parts, [&](const Part& part) { return !can_be_better(part); });
-  return parts;
 }
 
 /// What is known of a block without its cross sum.

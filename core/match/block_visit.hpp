@@ -31,9 +31,6 @@ class BlockVisit {
   std::vector<Part> parts_of(std::size_t heading, std::span<const BoundNode> nodes) const;
   static std::vector<Part> halves(std::span<const Part> parts);
   std::vector<Part> surviving(std::vector<Part> parts, const Footprint& above, int side) const;
-  /// Less those that cannot be better once the map's sums under them are known more closely.
-  std::vector<Part> narrowed(std::vector<Part> parts, const FeatureMap& turned, int side) const;
-  bool can_be_better(const Part& part) const;
   BlockSums sums_at(std::size_t heading, const BoundNode& node) const;
   std::vector<LatticePose> best_of(std::size_t heading, const Footprint& footprint, std::span<const Part> parts) const;
 

@@ -10,6 +10,7 @@
 
 #include "core/grid/turnable_map.hpp"
 #include "core/match/correlator.hpp"
+#include "core/match/footprint.hpp"
 #include "core/match/scan_kernel.hpp"
 #include "core/match/scan_means.hpp"
 #include "core/match/scan_planes.hpp"
@@ -275,16 +276,6 @@ class Scan {
 };
 
 }  // namespace
-
-int footprint_reach(const FeatureMap& features) {
-  double reach = 0.0;
-  for (const double col : {0.0, static_cast<double>(features.cells.cols())}) {
-    for (const double row : {0.0, static_cast<double>(features.cells.rows())}) {
-      reach = std::max(reach, std::hypot(col - features.nadir.col, row - features.nadir.row));
-    }
-  }
-  return static_cast<int>(std::ceil(reach)) + 1;
-}
 
 ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline) {

@@ -44,7 +44,4 @@ struct ScanResult {
 ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);
 
-/// Cells that a footprint reaches from its nadir at any heading.
-int footprint_reach(const FeatureMap& features);
-
 }  // namespace roadfix

@@ -95,6 +95,16 @@ void Footprint::mask_and_count(Block& values, Block& mask) {
   sum_of_squares_ += squares;
 }
 
+int footprint_reach(const FeatureMap& features) {
+  double reach = 0.0;
+  for (const double col : {0.0, static_cast<double>(features.cells.cols())}) {
+    for (const double row : {0.0, static_cast<double>(features.cells.rows())}) {
+      reach = std::max(reach, std::hypot(col - features.nadir.col, row - features.nadir.row));
+    }
+  }
+  return static_cast<int>(std::ceil(reach)) + 1;
+}
+
 Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset) {
   // A nadir that lies off the cell centre is a feature map whose centre lies off its nadir the other way, in the body
   // frame.

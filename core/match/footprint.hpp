@@ -60,6 +60,9 @@ class Footprint {
   std::int64_t sum_of_squares_ = 0;
 };
 
+/// Cells that a footprint reaches from its nadir at any heading.
+int footprint_reach(const FeatureMap& features);
+
 /// The footprint of a feature map at a grid heading, with its nadir `offset` from the centre of a cell (cells, each
 /// component within +-0.5): exact to sub-cell by resampling.
 Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/grid/resample.hpp"
-#include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"

@@ -7,7 +7,6 @@
 
 #include "core/grid/resample.hpp"
 #include "core/match/branch_and_bound.hpp"
-#include "core/match/coarse_scan.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"

@@ -35,9 +35,10 @@ struct Reader {
   std::longjmp(reader.before, 1);
 }
 
-/// Where libjpeg only warns (`level` < 0), it goes on with invented pixels.
+/// Where libjpeg only warns (`level` < 0), it goes on with invented pixels, but for what some cameras write.
 void on_message(j_common_ptr jpeg, int level) {
-  if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) on_error(jpeg);
+  const int code = jpeg->err->msg_code;
+  if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR) on_error(jpeg);
 }
 
 void print_nothing(j_common_ptr) {}

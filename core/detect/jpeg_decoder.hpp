@@ -8,9 +8,9 @@
 
 namespace roadfix {
 
-/// Grey or BGR of 8 bits. Bytes to no purpose between the parts of a file, which some cameras write, are passed over.
-/// The caller has looked at the size in the header. Throws InvalidInput "image-damaged", and "image-format" for colours
-/// of printers (CMYK).
+/// Grey or BGR of 8 bits. Bytes to no purpose between the parts of a file and unknown versions of JFIF, which some
+/// cameras write, are passed over. The caller has looked at the size in the header. Throws InvalidInput
+/// "image-damaged", and "image-format" for colours of printers (CMYK).
 cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes);
 
 }  // namespace roadfix

@@ -145,6 +145,15 @@ TEST(DecodeImage, TakesAJpegWithBytesToNoPurposeBeforeItsEnd) {
   EXPECT_EQ(cv::norm(decode_image(padded, kMany), decode_image(jpeg, kMany), cv::NORM_INF), 0.0);
 }
 
+TEST(DecodeImage, TakesAJpegOfAnUnknownVersionOfJfif) {
+  const auto jpeg = encoded(".jpg", cv::Mat(16, 16, CV_8UC1, cv::Scalar(90)));
+  constexpr std::size_t kMajorVersion = 11;
+  auto other = jpeg;
+  ASSERT_EQ(other[kMajorVersion], 1);
+  other[kMajorVersion] = 3;
+  EXPECT_EQ(cv::norm(decode_image(other, kMany), decode_image(jpeg, kMany), cv::NORM_INF), 0.0);
+}
+
 TEST(DecodeImage, PrintsNothingWhateverItIsGiven) {
   cv::Mat noise(64, 64, CV_8UC3);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);

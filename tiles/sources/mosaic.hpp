@@ -25,8 +25,7 @@ enum class ValueRule {
   /// sampled evenly over all such images of the source: one range for all their bands, images and blocks.
   kPicture,
   /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
-  /// Masks
-  /// of 0 and 1 beside masks of 0 and 255 keep their own range.
+  /// Masks of 0 and 1 beside masks of 0 and 255 keep their own range.
   kShare,
 };
 

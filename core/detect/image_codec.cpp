@@ -89,7 +89,7 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
                         fmt::format("the image has {} x {} pixels; at most {} pixels are allowed: send it smaller",
                                     header->cols, header->rows, max_pixels));
   }
-  const cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes);
+  cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes);
   if (image.cols != header->cols || image.rows != header->rows) {
     throw InvalidInput("image-damaged", "the image is damaged: it has two sizes");
   }

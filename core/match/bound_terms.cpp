@@ -231,7 +231,7 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
     if (!is_observed(cell)) continue;
     ++observed;
     total += cell;
-    squares += cell * cell;
+    squares += std::int64_t{1} * cell * cell;
   }
   cells = static_cast<double>(observed);
   sum = static_cast<double>(total);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kStep = 64;
 constexpr int kHalf = Footprint::kAlignment;
-static_assert(2 * kHalf == kStep);
+static_assert(2 * kHalf == int{kStep});
 // A vector adds at most 4 * 254 * 128 to a 32-bit lane: after so many vectors the lanes are emptied.
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 128 < (std::size_t{1} << 31));

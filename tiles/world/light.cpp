@@ -48,7 +48,7 @@ cv::Mat1f air(cv::Rect pixels, double gsd_m, const Conditions& conditions, const
         if (distance < reach) thickness += 0.05 * (1.0 - distance / reach);
       }
       const double uneven =
-          1.0 + 0.35 * double{texture.patches(static_cast<int>(p.x / 5.0), static_cast<int>(p.y / 5.0))};
+          1.0 + 0.35 * static_cast<double>(texture.patches(static_cast<int>(p.x / 5.0), static_cast<int>(p.y / 5.0)));
       coarse(row, col) = static_cast<float>(
           std::clamp(conditions.haze * uneven + std::min(thickness * uneven, 0.22) * conditions.winter, 0.0, 0.5));
     }
@@ -75,7 +75,7 @@ cv::Mat1b cast_shadows(const cv::Mat1f& height, double gsd_m, const Conditions& 
     sweep_row(field[row], edge[before], shift, drop, field.cols, edge[row]);
   }
   cv::Mat1b shadow;
-  cv::compare(edge, field + kTallerM, shadow, cv::CMP_GT);
+  cv::compare(edge, field + static_cast<double>(kTallerM), shadow, cv::CMP_GT);
   if (by_columns) cv::transpose(shadow.clone(), shadow);
   cv::GaussianBlur(shadow, shadow, {}, 0.6);
   return shadow;
@@ -101,7 +101,7 @@ void expose(cv::Mat3b& colour, cv::Rect pixels, double gsd_m, const Conditions& 
   cv::GaussianBlur(colour, colour, {}, conditions.blur_px);
   for (int row = 0; row < colour.rows; ++row) {
     for (int col = 0; col < colour.cols; ++col) {
-      const double scattered = thickness(row, col);
+      const auto scattered = static_cast<double>(thickness(row, col));
       const double noise = conditions.noise *
                            static_cast<double>(texture.grain(pixels.x + col, pixels.y + row, conditions.noise_stream));
       for (int i = 0; i < 3; ++i) {

@@ -61,14 +61,19 @@ class FeatureMethod : public Method {
   }
 
   Answer answer(const Query& query) const override {
-    const auto start = std::chrono::steady_clock::now();
     Answer result;
-    if (query.picture) {
-      place(*query.picture, result);
-    } else {
+    if (!query.picture) {
       result.reason = "no-picture";
+      return result;
     }
+    const auto start = std::chrono::steady_clock::now();
+    const PointMatches matches = matches_of(*query.picture);
+    place(*query.picture, matches, result);
     result.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (query.truth) {
+      const auto right = right_matches(matches, origin_, *query.picture, on_grid(*query.truth, zone_), kRightMatchM);
+      result.keypoints = {static_cast<int>(right.size()), static_cast<int>(std::ranges::count(right, true))};
+    }
     return result;
   }
 
@@ -118,8 +123,8 @@ class FeatureMethod : public Method {
     return good;
   }
 
-  void place(const GroundImage& picture, Answer& result) const {
-    const auto& [from, to] = matches_of(picture);
+  void place(const GroundImage& picture, const PointMatches& matches, Answer& result) const {
+    const auto& [from, to] = matches;
     result.reason = "too-few-matches";
     if (from.size() < 3) return;
     cv::Mat inliers;

@@ -11,7 +11,6 @@
 namespace roadfix::bench {
 namespace {
 
-constexpr double kToleranceM = 10.0;
 constexpr int kHeightPx = 700;
 const cv::Scalar kRight(60, 200, 60);
 const cv::Scalar kWrong(60, 60, 230);
@@ -72,7 +71,7 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundImage& fr
   cv::resize(coloured(frame.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
   cv::resize(before, before, {before.cols, after.rows});
   std::vector<bool> right(matches.map_m.size(), false);
-  if (truth) right = right_matches(matches, origin, frame, *truth, kToleranceM);
+  if (truth) right = right_matches(matches, origin, frame, *truth, kRightMatchM);
 
   cv::Mat both;
   cv::hconcat(before, after, both);
@@ -85,7 +84,7 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundImage& fr
     cv::line(both, from, to, right[i] ? kRight : kWrong, 1, cv::LINE_AA);
   }
   return side_by_side({{fmt::format("{} matches, {} of them right within {} m", right.size(),
-                                    std::ranges::count(right, true), kToleranceM),
+                                    std::ranges::count(right, true), kRightMatchM),
                         both}},
                       both.rows);
 }

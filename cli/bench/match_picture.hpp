@@ -17,6 +17,9 @@ struct PointMatches {
   std::vector<cv::Point2f> map_m;
 };
 
+/// A match further off than this is a wrong one.
+inline constexpr double kRightMatchM = 10.0;
+
 /// For each match whether the map's point lies within `tolerance_m` of where the frame's point really is.
 /// `origin`: corner that `map_m` is measured from; `truth`: pose of the frame's centre.
 std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, const GroundImage& frame,

@@ -28,6 +28,13 @@ struct Query {
   std::vector<EarlierFrame> earlier;  ///< to be laid together with `picture`
 };
 
+/// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's
+/// figure 1.
+struct KeypointCounts {
+  int matches = 0;
+  int right = 0;  ///< see kRightMatchM
+};
+
 struct Answer {
   FixStatus status = FixStatus::kNoFix;
   std::string reason;
@@ -36,6 +43,9 @@ struct Answer {
   std::optional<SearchFigures> figures;
   double probability = 0.0;
   double time_ms = 0.0;
+  // Of the true place, where it is known; the time does not count.
+  std::optional<KeypointCounts> keypoints;  ///< of keypoint methods
+  std::optional<double> rho_at_truth;       ///< equation (5) of the roads there: the paper's figure 2
 };
 
 /// What a method knows at the start; `answer` may be called from several threads.

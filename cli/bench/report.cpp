@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "cli/bench/honesty.hpp"
 #include "cli/bench/nees.hpp"
@@ -30,6 +31,11 @@ json figures_json(const std::optional<SearchFigures>& figures) {
   return result;
 }
 
+json keypoints_json(const std::optional<KeypointCounts>& counts) {
+  if (!counts) return nullptr;
+  return {{"matches", counts->matches}, {"right", counts->right}};
+}
+
 json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
@@ -42,6 +48,8 @@ json outcome_json(const Outcome& outcome) {
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
           {"position_nees", number_or_null(outcome.position_nees)},
+          {"keypoints", keypoints_json(answer.keypoints)},
+          {"rho_at_truth", number_or_null(answer.rho_at_truth)},
           {"time_ms", answer.time_ms}};
 }
 
@@ -52,6 +60,17 @@ GridEllipse ellipse_of(const FixMode& mode, const UtmZone& zone) {
 
 std::string cell(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
+}
+
+/// What of the true place was seen again.
+std::string at_truth(const Summary& s) {
+  if (s.mean_matches) return fmt::format("{:.1f} of {:.0f} matches right", *s.mean_right_matches, *s.mean_matches);
+  return s.median_rho_at_truth ? fmt::format("rho {:.2f}", *s.median_rho_at_truth) : std::string("-");
+}
+
+std::optional<double> mean(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
 }
 
 }  // namespace
@@ -86,8 +105,16 @@ Summary summary_of(const std::vector<Outcome>& outcomes) {
   std::vector<double> errors;
   std::vector<double> heading_errors;
   std::vector<double> times;
+  std::vector<double> matches;
+  std::vector<double> right_matches;
+  std::vector<double> rhos;
   for (const Outcome& outcome : outcomes) {
     times.push_back(outcome.answer.time_ms);
+    if (const auto& counts = outcome.answer.keypoints) {
+      matches.push_back(counts->matches);
+      right_matches.push_back(counts->right);
+    }
+    if (outcome.answer.rho_at_truth) rhos.push_back(*outcome.answer.rho_at_truth);
     if (outcome.answer.status != FixStatus::kFix) continue;
     ++result.answered;
     errors.push_back(outcome.error_m.value());
@@ -107,6 +134,9 @@ Summary summary_of(const std::vector<Outcome>& outcomes) {
   result.median_heading_error_deg = quantile(heading_errors, 0.5);
   result.time_p50_ms = quantile(times, 0.5).value_or(0.0);
   result.time_p95_ms = quantile(times, 0.95).value_or(0.0);
+  result.mean_matches = mean(matches);
+  result.mean_right_matches = mean(right_matches);
+  result.median_rho_at_truth = quantile(rhos, 0.5);
   return result;
 }
 
@@ -124,6 +154,9 @@ json to_json(const SetResult& result) {
           {"median_error_m", number_or_null(s.median_error_m)},
           {"median_heading_error_deg", number_or_null(s.median_heading_error_deg)},
           {"time_ms", {{"p50", s.time_p50_ms}, {"p95", s.time_p95_ms}}},
+          {"mean_matches", number_or_null(s.mean_matches)},
+          {"mean_right_matches", number_or_null(s.mean_right_matches)},
+          {"median_rho_at_truth", number_or_null(s.median_rho_at_truth)},
           {"honesty", to_json(honesty_of(result.outcomes))},
           {"queries", queries}};
 }
@@ -143,16 +176,17 @@ std::string to_table(const std::vector<SetResult>& results) {
     map_width = std::max(map_width, result.map.size());
     set_width = std::max(set_width, result.query_set.size());
   }
-  std::string table = fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}\n",
-                                  "method", "map", map_width, "queries", set_width, "n", "answered", "r@5", "r@10",
-                                  "r@25", "r@50", "false", "med. m", "med. deg", "p50 ms", "p95 ms");
+  std::string table =
+      fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}{:>9}{:>9}{:>9}{:>9}  {}\n", "method", "map",
+                  map_width, "queries", set_width, "n", "answered", "r@5", "r@10", "r@25", "r@50", "false", "med. m",
+                  "med. deg", "p50 ms", "p95 ms", "at the true place");
   for (const SetResult& result : results) {
     const Summary s = summary_of(result.outcomes);
-    table +=
-        fmt::format("{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}\n",
-                    result.method, result.map, map_width, result.query_set, set_width, s.n, s.answered, s.recall_5,
-                    s.recall_10, s.recall_25, s.recall_50, s.false_fixes, cell(s.median_error_m, 1),
-                    cell(s.median_heading_error_deg, 2), s.time_p50_ms, s.time_p95_ms);
+    table += fmt::format(
+        "{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}  {}\n",
+        result.method, result.map, map_width, result.query_set, set_width, s.n, s.answered, s.recall_5, s.recall_10,
+        s.recall_25, s.recall_50, s.false_fixes, cell(s.median_error_m, 1), cell(s.median_heading_error_deg, 2),
+        s.time_p50_ms, s.time_p95_ms, at_truth(s));
   }
   return table;
 }

@@ -38,6 +38,9 @@ struct Summary {
   std::optional<double> median_heading_error_deg;  ///< of the answered
   double time_p50_ms = 0.0;
   double time_p95_ms = 0.0;
+  std::optional<double> mean_matches;         ///< of keypoints, in a frame
+  std::optional<double> mean_right_matches;   ///< of those
+  std::optional<double> median_rho_at_truth;  ///< of roads
 };
 
 Summary summary_of(const std::vector<Outcome>& outcomes);

@@ -4,6 +4,7 @@
 
 #include "cli/bench/agreement_picture.hpp"
 #include "core/detect/frame.hpp"
+#include "core/locate/match_poses.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -15,7 +16,8 @@ class RoadsMethod : public Method {
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
-    const Fix fix = locate(map_, features_of(query), query.prior, options_.fix);
+    const FeatureMap features = features_of(query);
+    const Fix fix = locate(map_, features, query.prior, options_.fix);
     Answer answer;
     answer.status = fix.status;
     answer.reason = fix.reason;
@@ -26,6 +28,7 @@ class RoadsMethod : public Method {
       answer.best = answer.mode->pose;
     }
     answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (query.truth) answer.rho_at_truth = match(map_, features, std::span(&*query.truth, 1)).front().rho;
     return answer;
   }
 

@@ -28,10 +28,13 @@ TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
   const GridPose truth{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(37)};
   Query query;
   query.picture = cut_out(ortho, truth, {150, 150}, 0.5);
+  query.truth = GeoPose{kZone.unproject(truth.position), kZone.true_from_grid(truth.heading, truth.position)};
   const Answer answer = method->answer(query);
   ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
   EXPECT_LT(distance_m(kZone.project(answer.best->position), truth.position), 0.5);
   EXPECT_LT(angular_distance(answer.best->heading, kZone.true_from_grid(truth.heading, truth.position)).degrees(), 0.3);
+  ASSERT_TRUE(answer.keypoints);
+  EXPECT_GT(answer.keypoints->right, 0.8 * answer.keypoints->matches);
 }
 
 TEST_P(FeatureMethods, GiveNoFixOnOtherImagery) {

@@ -35,6 +35,24 @@ TEST(Summary, CountsRecallOverAllAndErrorsOverTheAnswered) {
   EXPECT_NEAR(*s.median_heading_error_deg, 8.0, 1e-6);
 }
 
+TEST(Summary, TellsWhatOfTheTruePlaceWasSeenAgain) {
+  Answer a;
+  a.keypoints = {100, 3};
+  Answer b;
+  b.keypoints = {50, 0};
+  const std::vector<Outcome> keypoints = {judged("a", {}, a, kZone), judged("b", {}, b, kZone)};
+  EXPECT_EQ(summary_of(keypoints).mean_matches, 75.0);
+  EXPECT_EQ(summary_of(keypoints).mean_right_matches, 1.5);
+  EXPECT_NE(to_table({{"sift", "m", "q", keypoints}}).find("1.5 of 75 matches right"), std::string::npos);
+
+  Answer roads;
+  roads.rho_at_truth = 0.4;
+  const std::vector<Outcome> outcomes = {judged("a", {}, roads, kZone), judged("b", {}, Answer{}, kZone)};
+  EXPECT_EQ(summary_of(outcomes).median_rho_at_truth, 0.4);
+  EXPECT_FALSE(summary_of(outcomes).mean_matches);
+  EXPECT_NE(to_table({{"roads", "m", "q", outcomes}}).find("rho 0.40"), std::string::npos);
+}
+
 TEST(Summary, OfNothingHasNoMedian) {
   EXPECT_FALSE(summary_of({}).median_error_m);
   EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);

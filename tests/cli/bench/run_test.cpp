@@ -94,6 +94,11 @@ TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
     EXPECT_EQ(s.n, 3) << result.method;
     EXPECT_EQ(s.recall_5, 1.0) << result.method;
     EXPECT_EQ(s.false_fixes, 0) << result.method;
+    if (result.method == "roads") {
+      EXPECT_GT(s.median_rho_at_truth.value_or(0.0), 0.8);
+    } else {
+      EXPECT_GT(s.mean_right_matches.value_or(0.0), 0.8 * s.mean_matches.value_or(1e9)) << result.method;
+    }
     for (const Outcome& outcome : result.outcomes) {
       EXPECT_LT(outcome.heading_error_deg.value_or(360.0), 1.0) << result.method;
     }

@@ -167,19 +167,18 @@ Weighted block_terms(int cols, int rows, int nadir_col, int nadir_row, int plane
   const int first_row = floor_div(-nadir_row, kBlockCells);
   const int block_cols = floor_div(cols - 1 - nadir_col, kBlockCells) - first_col + 1;
   const int block_rows = floor_div(rows - 1 - nadir_row, kBlockCells) - first_row + 1;
-  std::vector<std::int64_t> sums(static_cast<std::size_t>(block_cols) * static_cast<std::size_t>(block_rows), 0);
-  const int lead = first_col * kBlockCells + nadir_col;  // of the first block, at most 0
+  std::vector<double> sums(static_cast<std::size_t>(block_cols) * static_cast<std::size_t>(block_rows), 0.0);
   for (int row = 0; row < rows; ++row) {
     const int block_row = floor_div(row - nadir_row, kBlockCells) - first_row;
-    std::int64_t* sum = &sums[static_cast<std::size_t>(block_row) * static_cast<std::size_t>(block_cols)];
-    for (int block = lead; block < cols; block += kBlockCells, ++sum) {
-      for (int col = std::max(0, block); col < std::min(block + kBlockCells, cols); ++col) *sum += value(col, row);
+    for (int col = 0; col < cols; ++col) {
+      const int block_col = floor_div(col - nadir_col, kBlockCells) - first_col;
+      sums[static_cast<std::size_t>(block_row * block_cols + block_col)] += value(col, row);
     }
   }
   Weighted terms;
   for (int row = 0; row < block_rows; ++row) {
     for (int col = 0; col < block_cols; ++col) {
-      const auto sum = static_cast<double>(sums[static_cast<std::size_t>(row * block_cols + col)]);
+      const double sum = sums[static_cast<std::size_t>(row * block_cols + col)];
       if (sum <= 0.0) continue;
       terms.emplace_back(
           sum * factor, BoundTerms::Term{static_cast<std::int16_t>(first_col + col),
@@ -224,18 +223,12 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
   const CellArray& array = turned.cells;
   const int nadir_col = static_cast<int>(std::floor(turned.nadir.col));
   const int nadir_row = static_cast<int>(std::floor(turned.nadir.row));
-  std::int64_t observed = 0;
-  std::int64_t total = 0;
-  std::int64_t squares = 0;
   for (const Cell cell : array.cells()) {
     if (!is_observed(cell)) continue;
-    ++observed;
-    total += cell;
-    squares += std::int64_t{1} * cell * cell;
+    cells += 1.0;
+    sum += cell;
+    square += double{1} * cell * cell;
   }
-  cells = static_cast<double>(observed);
-  sum = static_cast<double>(total);
-  square = static_cast<double>(squares);
 
   Remainder rest(array, base);
   Weighted pieces;
@@ -246,7 +239,7 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
   const Weighted single = blocks(BoundMap::kCellPlane, span, [&](int c, int r) { return rest.at(c, r); });
   pieces.insert(pieces.end(), single.begin(), single.end());
   cross = classified(std::move(pieces), Rounding::kUp);
-  const auto value = [&](int c, int r) { return is_observed(array.at(c, r)) ? int{array.at(c, r)} : 0; };
+  const auto value = [&](int c, int r) { return is_observed(array.at(c, r)) ? double{1} * array.at(c, r) : 0.0; };
   if (whole_map) {
     cover(array, nadir_col, nadir_row);
     return;

@@ -68,11 +68,6 @@ std::string at_truth(const Summary& s) {
   return s.median_rho_at_truth ? fmt::format("rho {:.2f}", *s.median_rho_at_truth) : std::string("-");
 }
 
-std::optional<double> mean(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone) {
@@ -88,6 +83,11 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
     outcome.position_nees = truth ? nees(ellipse_of(*mode, zone), zone.project(truth->position)) : kNowhere;
   }
   return outcome;
+}
+
+std::optional<double> mean(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 std::optional<double> quantile(std::vector<double> values, double p) {

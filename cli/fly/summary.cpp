@@ -11,6 +11,7 @@
 namespace roadfix::fly {
 namespace {
 
+using bench::mean;
 using bench::quantile;
 
 constexpr double kMostWeight = 0.5;
@@ -68,13 +69,6 @@ void add_event(std::span<const Record> records, const Events& events, Summary& s
   const auto withdrawn =
       std::ranges::find_if(records.subspan(first), [](const Record& r) { return !r.estimate.converged; });
   if (withdrawn != records.end()) samples.withdrawal_s.push_back(withdrawn->time_s - at_s);
-}
-
-std::optional<double> mean(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
 }
 
 std::optional<double> share_below(const std::vector<double>& values, double limit) {

@@ -92,6 +92,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
     return decision;
   }
   const SearchFigures figures = figures_of(found);
+  decision.figures = figures;
   const std::vector<double> posterior = shares(found);
   decision.probability = found.scanned_share * calibration.probability(figures);
   decision.weights = weights_of(posterior, decision.probability);

@@ -5,6 +5,7 @@
 // probability leaves room for them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Decision {
   std::string reason;
   std::string explanation;
   double probability = 0.0;
+  std::optional<SearchFigures> figures;  ///< of the best mode, where there is one
   /// Of the modes of the search that count, best first: all of a fix or a refusal, of an ambiguous answer those with at
   /// least kModeShare of the best one's posterior. The first is the probability, and all sum to at most 1.
   std::vector<double> weights;

@@ -153,7 +153,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
-  if (!found.modes.empty()) fix.figures = figures_of(found);
+  fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();
   fix.searched_share = found.scanned_share;
   fix.complete = found.complete();

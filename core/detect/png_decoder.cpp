@@ -68,6 +68,7 @@ void make_room(Reader& reader) {
 bool read(Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_read_fn(reader.png, &reader, on_read);
+  png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // texts, colour profiles: see header
   png_read_info(reader.png, reader.info);
   choose_channels(reader.png, reader.info);
   make_room(reader);

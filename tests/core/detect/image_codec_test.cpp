@@ -1,6 +1,8 @@
 #include "core/detect/image_codec.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -152,6 +154,42 @@ TEST(DecodeImage, TakesAJpegOfAnUnknownVersionOfJfif) {
   ASSERT_EQ(other[kMajorVersion], 1);
   other[kMajorVersion] = 3;
   EXPECT_EQ(cv::norm(decode_image(other, kMany), decode_image(jpeg, kMany), cv::NORM_INF), 0.0);
+}
+
+/// A zTXt chunk (W3C PNG 11.3.3.3) of so many spaces.
+std::vector<std::uint8_t> text_chunk(std::size_t characters) {
+  const std::vector<std::uint8_t> spaces(characters, ' ');
+  std::vector<std::uint8_t> packed(compressBound(characters));
+  uLongf size = packed.size();
+  EXPECT_EQ(compress(packed.data(), &size, spaces.data(), characters), Z_OK);
+  std::vector<std::uint8_t> chunk{0, 0, 0, 0, 'z', 'T', 'X', 't', 'a', 0, 0};
+  chunk.insert(chunk.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
+  const auto put = [](std::uint8_t* at, std::size_t number) {
+    for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(number >> (24 - 8 * i));
+  };
+  put(chunk.data(), chunk.size() - 8);
+  const std::size_t checksum = crc32(0, &chunk[4], static_cast<uInt>(chunk.size() - 4));
+  chunk.resize(chunk.size() + 4);
+  put(&chunk[chunk.size() - 4], checksum);
+  return chunk;
+}
+
+long most_memory_kib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(DecodeImage, TextsBesideThePixelsOfAPngCostNoMemory) {
+  const auto png = encoded(".png", cv::Mat(16, 16, CV_8UC1, cv::Scalar(90)));
+  const auto text = text_chunk(7'000'000);
+  constexpr int kTexts = 60;
+  constexpr std::ptrdiff_t kHeaderEnd = 33;
+  auto padded = png;
+  for (int i = 0; i < kTexts; ++i) padded.insert(padded.begin() + kHeaderEnd, text.begin(), text.end());
+  const long before = most_memory_kib();
+  EXPECT_EQ(cv::norm(decode_image(padded, kMany), decode_image(png, kMany), cv::NORM_INF), 0.0);
+  EXPECT_LT(most_memory_kib() - before, 50'000);
 }
 
 TEST(DecodeImage, PrintsNothingWhateverItIsGiven) {

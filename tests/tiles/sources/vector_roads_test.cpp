@@ -16,7 +16,6 @@ namespace roadfix {
 namespace {
 
 using testing::at;
-using testing::code_of;
 using testing::degrees;
 using testing::extent_around_centre;
 using testing::feature;

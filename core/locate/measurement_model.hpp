@@ -25,9 +25,11 @@ struct MeasurementModel {
   double expected_correlation = 0.25;  ///< at the true pose
   double detection_rate = 0.6;         ///< a
   double false_rate = 0.1;             ///< b
-  double independent_m2 = 900.0;       ///< ground that counts as one sample: errors of near cells go together
-  double temper = 0.5;                 ///< exponent, since consecutive frames see the same ground
-  double useless_share = 0.1;          ///< of frames that say nothing even at the true pose
+  /// Ground that counts as one sample, since errors of near cells go together: four times the kSampleM2 of a search,
+  /// for a sample that is counted twice makes a track sure too early.
+  double independent_m2 = 900.0;
+  double temper = 0.5;         ///< exponent, since consecutive frames see the same ground
+  double useless_share = 0.1;  ///< of frames that say nothing even at the true pose
 
   /// Log of the likelihood ratio to chance (of P for equation 7; -inf where it is 0).
   ///

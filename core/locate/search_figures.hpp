@@ -6,7 +6,9 @@
 
 namespace roadfix {
 
-/// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample.
+/// Cells within about 15 m of each other err together (a road is as wide): so much ground counts as one sample. A unit
+/// for the thresholds that were set in it. The filter of tracks multiplies the evidence of its samples, where too many
+/// make it sure too early, and counts more ground as one (MeasurementModel::independent_m2).
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
 struct SearchFigures {

@@ -35,6 +35,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"unsupported-content-encoding", 415},
       {"too-many-tracks", 429},
       {"head-too-large", 431},
+      {"client-gone", 499},  // nginx's number for it
       // Requests that cannot be read as HTTP, or were not sent whole.
       {"bad-request", 400},
       {"bad-header", 400},
@@ -84,6 +85,8 @@ const char* title_of(int status) {
       return "Too many requests";
     case 431:
       return "Request header fields too large";
+    case 499:
+      return "Client closed request";
     case 503:
       return "Service unavailable";
     default:
@@ -95,7 +98,10 @@ http::Response rendered(int status, json members) {
   members["type"] = fmt::format("urn:roadfix:problem:{}", members["code"].get<std::string>());
   members["title"] = title_of(status);
   members["status"] = status;
-  return {status, "application/problem+json", members.dump(-1, ' ', false, json::error_handler_t::replace)};
+  http::Response response{status, "application/problem+json",
+                          members.dump(-1, ' ', false, json::error_handler_t::replace)};
+  response.problem = members["code"];
+  return response;
 }
 
 http::Response of_error(const Error& error) {

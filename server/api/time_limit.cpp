@@ -1,12 +1,27 @@
 #include "server/api/time_limit.hpp"
 
-namespace roadfix::api {
+#include <algorithm>
+#include <utility>
 
-TimeLimit::TimeLimit(http::Clock::time_point deadline)
-    : timer_([this, deadline](std::stop_token ended) {
+namespace roadfix::api {
+namespace {
+
+constexpr std::chrono::milliseconds kLookPause{100};
+
+}  // namespace
+
+TimeLimit::TimeLimit(http::Clock::time_point deadline, std::function<bool()> abandoned)
+    : timer_([this, deadline, abandoned = std::move(abandoned)](std::stop_token ended) {
         std::unique_lock lock(mutex_);
-        wake_.wait_until(lock, ended, deadline, [&] { return ended.stop_requested(); });
-        if (!ended.stop_requested()) source_.request_stop();
+        while (!ended.stop_requested()) {
+          const auto now = http::Clock::now();
+          if (now >= deadline || (abandoned && abandoned())) {
+            source_.request_stop();
+            return;
+          }
+          const auto look = abandoned ? std::min(deadline, now + kLookPause) : deadline;
+          wake_.wait_until(lock, ended, look, [&] { return ended.stop_requested(); });
+        }
       }) {}
 
 }  // namespace roadfix::api

@@ -1,7 +1,8 @@
-// A stop token that is requested at a deadline, for work that knows tokens and no clock.
+// A stop token that is requested at a deadline, or when the client hangs up, for work that knows tokens and no clock.
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -12,7 +13,8 @@ namespace roadfix::api {
 
 class TimeLimit {
  public:
-  explicit TimeLimit(http::Clock::time_point deadline);
+  /// `abandoned` is asked ten times a second.
+  explicit TimeLimit(http::Clock::time_point deadline, std::function<bool()> abandoned = {});
   std::stop_token token() const { return source_.get_token(); }
 
  private:

@@ -24,7 +24,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
   const std::string format = content.fields.has("format")
                                  ? content.fields.word("format", kNames)
                                  : std::string(api::negotiated(request.header("accept"), kFormats).name);
-  const api::TimeLimit limit(request.deadline);
+  const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits, limit.token());
   http::Response response;
   if (format == "json") {
@@ -46,7 +46,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
 }  // namespace
 
 void add_detect_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/detect", query_fields(), http::Load::kHeavy,
+  router.add({"POST", "/v1/detect", query_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_detect(service, request); }});
 }
 

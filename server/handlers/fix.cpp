@@ -34,12 +34,14 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMostExact});
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
-  const api::TimeLimit limit(request.deadline);
+  const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.calibration = service.calibration;
   options.threads = service.search_threads;
   api::shorten(options, request.deadline);
+  const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
+  options.stop = watch.token();
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));
   if (format.is_json()) return json_response(answer);
@@ -49,7 +51,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
 }  // namespace
 
 void add_fix_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/fix", query_fields(), http::Load::kHeavy,
+  router.add({"POST", "/v1/maps/{map}/fix", query_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_fix(service, request); }});
 }
 

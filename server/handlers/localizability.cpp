@@ -11,10 +11,12 @@
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/localizability_picture.hpp"
+#include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 #include "server/handlers/tile_answers.hpp"
 #include "server/http/admission.hpp"
+#include "server/http/errors.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -44,6 +46,8 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
   query.fix = fix_options(service, request);
   query.fix.threads = service.search_threads;
+  const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
+  query.fix.stop = watch.token();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = {{"name", map->name}, {"version", map->view.version}};
   return json_response(answer);
@@ -72,6 +76,7 @@ std::optional<double> promise(const Service& service, const http::Request& reque
   const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
   std::optional<std::string> kept = service.pictures.find(key);
   if (!kept) {
+    if (request.abandoned()) throw http::ClientGone();
     LocalizabilityQuery query;
     query.position = layer.map->view.zone.unproject(place);
     query.footprint_m = layer.footprint_m;
@@ -90,7 +95,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
                   http::Admission& turns) {
   const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
   return kept_or_drawn(service.pictures, key, [&] {
-    const http::Admission::Ticket turn = turns.enter(request.deadline);
+    const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
     return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
                                    [&](GridPoint place) { return promise(service, request, layer, place); });
   });
@@ -133,7 +138,7 @@ void add_localizability_routes(http::Router& router, const Service& service) {
   router.add({"GET",
               "/v1/maps/{map}/localizability",
               {"lat", "lon", "footprint_m", "radius_m"},
-              http::Load::kHeavy,
+              http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return get_localizability(service, request); }});
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto turns = std::make_shared<http::Admission>(kTilesDrawn, service.http.threads / kThreadsPerWaitingTile);

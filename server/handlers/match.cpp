@@ -21,7 +21,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
   options.threads = service.search_threads;
-  const api::TimeLimit limit(request.deadline);
+  const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.stop = limit.token();
@@ -33,7 +33,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_match_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/match", query_fields(), http::Load::kHeavy,
+  router.add({"POST", "/v1/maps/{map}/match", query_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_match(service, request); }});
 }
 

@@ -53,10 +53,10 @@ std::string json_line(const AccessRecord& r) {
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(r.time.time_since_epoch());
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_epoch);
   return fmt::format(
-      R"({{"time":"{:%Y-%m-%dT%H:%M:%S}.{:03}Z","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}}})",
+      R"({{"time":"{:%Y-%m-%dT%H:%M:%S}.{:03}Z","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}}})",
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::time_point(whole))),
       (since_epoch - whole).count(), quoted(r.id), quoted(r.client), quoted(r.method), quoted(r.target),
-      quoted(r.route), r.status, r.bytes, r.ms);
+      quoted(r.route), r.status, r.bytes, r.ms, r.problem.empty() ? "" : ",\"problem\":" + quoted(r.problem));
 }
 
 AccessLog::AccessLog(const std::string& target) : logger_(open(target)) {}

@@ -22,6 +22,7 @@ struct AccessRecord {
   int status = 0;
   std::size_t bytes = 0;
   double ms = 0.0;
+  std::string problem = {};  ///< code of the error that was answered, empty where it was none
 };
 
 std::string json_line(const AccessRecord& record);

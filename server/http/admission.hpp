@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <list>
 #include <mutex>
 
@@ -23,8 +24,9 @@ class Admission {
     Admission* admission_;
   };
 
-  /// First come, first served. Throws Busy when too many wait already or the deadline comes first.
-  Ticket enter(std::chrono::steady_clock::time_point deadline);
+  /// First come, first served. Throws Busy when too many wait already or the deadline comes first, ClientGone when it
+  /// was abandoned, which is asked now and then.
+  Ticket enter(std::chrono::steady_clock::time_point deadline, const std::function<bool()>& abandoned = {});
 
   int running() const;
   int waiting() const;

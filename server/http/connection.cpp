@@ -55,6 +55,12 @@ bool Connection::wait(milliseconds time) {
   return fill();
 }
 
+bool Connection::peer_has_left() const {
+  char next = 0;
+  const ssize_t n = ::recv(socket_, &next, 1, MSG_PEEK | MSG_DONTWAIT);
+  return n == 0 || (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
+}
+
 void Connection::begin_head() {
   in_head_ = true;
   head_bytes_ = 0;

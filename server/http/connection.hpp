@@ -34,6 +34,8 @@ class Connection : public httplib::Stream {
   /// Waits at most `time` for the first byte of a request.
   bool wait(std::chrono::milliseconds time);
   bool at_end() const { return at_end_; }
+  /// Whether the peer has closed its side or the connection broke. Half closed looks no different from here.
+  bool peer_has_left() const;
 
   void begin_head();
   void begin_body();

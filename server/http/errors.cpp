@@ -14,6 +14,8 @@ InvalidField::InvalidField(std::string code, std::string field, const std::strin
                            std::optional<std::size_t> byte)
     : InvalidInput(std::move(code), message), field_(std::move(field)), byte_(byte) {}
 
+ClientGone::ClientGone() : Interrupted("client-gone", "the client hung up before its answer was ready") {}
+
 Busy::Busy(const std::string& message, std::chrono::seconds retry_after)
     : Interrupted("server-busy", message), retry_after_(retry_after) {}
 

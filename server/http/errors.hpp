@@ -33,6 +33,12 @@ class InvalidField : public InvalidInput {
   std::optional<std::size_t> byte_;
 };
 
+/// Work for a client that has hung up was given up ("client-gone"). Nobody reads this but the logs.
+class ClientGone : public Interrupted {
+ public:
+  ClientGone();
+};
+
 /// More work waits than the service takes on; worth trying again.
 class Busy : public Interrupted {
  public:

@@ -22,6 +22,7 @@ struct Exchange {
   Target target;
   RouteMatch match;
   std::string content_type;
+  std::string problem;  ///< code of the error that is answered
   Clock::time_point started = Clock::now();
   bool head_read = false;
   bool must_close = false;  ///< bytes of the request were left unread

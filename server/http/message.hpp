@@ -28,6 +28,8 @@ struct Request {
   std::string client;                          ///< address of the peer
   Clock::time_point received;                  ///< whole, the body included
   Clock::time_point deadline = Clock::time_point::max();
+  /// Whether the client has hung up and waits for no answer. Any thread may ask while the request is answered.
+  std::function<bool()> abandoned = [] { return false; };
 
   /// Empty where the header is absent.
   const std::string& header(const std::string& lower_case_name) const;
@@ -43,6 +45,7 @@ struct Response {
   /// Instead of a body: called again and again for the next piece (which may be empty) until there is none or the
   /// client has left. May wait, but not for long.
   std::function<std::optional<std::string>()> stream = {};
+  std::string problem = {};  ///< its code, where the answer is an error
 };
 
 }  // namespace roadfix::http

@@ -12,7 +12,8 @@ namespace roadfix::http {
 
 enum class Load {
   kLight,
-  kHeavy,  ///< a search or a detection: waits its turn, since only so many of these run at a time
+  kHeavy,        ///< a search or a detection: waits its turn, since only so many of these run at a time
+  kHeavyAnswer,  ///< heavy, and for the sake of its answer alone: given up when the client hangs up
 };
 
 struct Route {

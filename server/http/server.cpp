@@ -239,10 +239,15 @@ Response Server::Impl::answered(Exchange& exchange) {
     Request& request = exchange.request;
     request.received = Clock::now();
     request.deadline = request.received + settings_.request_time;
+    request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
     if (route.load == Load::kLight) return route.handler(request);
-    const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time);
+    const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
+    const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time, given_up);
     request.deadline = Clock::now() + settings_.request_time;
     return route.handler(request);
+  } catch (const Interrupted&) {
+    const bool gone = exchange.request.abandoned();
+    return failed(exchange, gone ? std::make_exception_ptr(ClientGone()) : std::current_exception());
   } catch (...) {
     return failed(exchange, std::current_exception());
   }
@@ -253,6 +258,7 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
   cors_.open(response);
   if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
   if (exchange.must_close) response.headers.emplace_back("Connection", "close");
+  exchange.problem = response.problem;
   fill(out, std::move(response));
 }
 
@@ -279,7 +285,7 @@ void Server::Impl::finished(const httplib::Request& head, const httplib::Respons
                  out.body.size());
   access_log_.write({std::chrono::system_clock::now(), exchange.request.id, exchange.request.client, head.method,
                      head.target, route, out.status, out.body.size(),
-                     std::chrono::duration<double, std::milli>(time).count()});
+                     std::chrono::duration<double, std::milli>(time).count(), exchange.problem});
 }
 
 Server::Server(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics)

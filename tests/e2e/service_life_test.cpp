@@ -171,6 +171,26 @@ TEST(ServiceLife, SendsSearchesAwayWhenTooManyWait) {
   EXPECT_GT(sent_away, 0);
 }
 
+TEST(ServiceLife, EndsASearchWhoseClientHungUp) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const testing::ServiceProcess service(folder.path(), {"--request-time", "1200"});
+  const auto told = [&](const std::string& figure) {
+    return testing::client_of(service).Get("/metrics")->body.find(figure) != std::string::npos;
+  };
+  const std::string body = town.seen_from(town.pose, 60);
+  {
+    testing::RawConnection connection(service.port());
+    connection.send(
+        "POST /v1/maps/town/fix?cell_m=2&scale_range=0.3&proof_s=600 HTTP/1.1\r\nHost: x\r\nContent-Type: "
+        "image/png\r\nContent-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body);
+    EXPECT_TRUE(eventually([&] { return told("roadfix_heavy_running 1\n"); }));
+  }
+  EXPECT_TRUE(eventually([&] { return told(R"(route="/v1/maps/{map}/fix",status="499"} 1)"); }));
+}
+
 TEST(ServiceLife, ServesEveryClientThoughThereAreMoreThanThreads) {
   const testing::TemporaryFolder folder;
   const testing::ServiceProcess service(folder.path(), {"--threads", "2"});
@@ -265,6 +285,7 @@ TEST(ServiceLife, WritesALineForEachRequest) {
   EXPECT_EQ(entry["id"], "flight-7");
   EXPECT_EQ(entry["status"], 400);
   EXPECT_EQ(entry["route"], "/v1/maps");
+  EXPECT_EQ(entry["problem"], "unknown-parameter");
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ TEST(AccessLog, WritesOneValidJsonObjectForEachRequestWhateverTheClientSends) {
   EXPECT_EQ(json["time"], "2023-11-14T22:13:20.123Z");
   EXPECT_EQ(json["status"], 400);
   EXPECT_EQ(json["route"], "/v1/maps");
+  EXPECT_FALSE(json.contains("problem"));
   EXPECT_FALSE(std::getline(file, line));
 }
 

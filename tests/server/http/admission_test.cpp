@@ -35,6 +35,26 @@ TEST(Admission, GivesUpAtTheDeadlineAndLeavesNoPlaceBehind) {
   EXPECT_NO_THROW(admission.enter(Clock::now() + 1s));
 }
 
+TEST(Admission, LetsGoOfWhatWasAbandonedAndLeavesNoPlaceBehind) {
+  Admission admission(1, 4);
+  const auto ticket = admission.enter(Clock::now() + 1s);
+  std::atomic<bool> abandoned = false;
+  std::atomic<bool> let_go = false;
+  {
+    const std::jthread waiting([&] {
+      try {
+        admission.enter(Clock::now() + 10min, [&] { return abandoned.load(); });
+      } catch (const ClientGone&) {
+        let_go = true;
+      }
+    });
+    wait_for([&] { return admission.waiting() == 1; });
+    abandoned = true;
+  }
+  EXPECT_TRUE(let_go);
+  EXPECT_EQ(admission.waiting(), 0);
+}
+
 TEST(Admission, LetsThemInInTheOrderTheyCame) {
   Admission admission(1, 8);
   std::vector<int> order;

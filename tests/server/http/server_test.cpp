@@ -21,6 +21,7 @@ Response plain_error(std::exception_ptr thrown, const Request& request) {
   try {
     std::rethrow_exception(std::move(thrown));
   } catch (const Error& error) {
+    if (error.code() == "client-gone") return {499, "text/plain", error.code()};
     return {error.code() == "server-busy" ? 503 : 400, "text/plain", error.code()};
   } catch (const std::exception&) {
     return {500, "text/plain", "unexpected " + request.id};
@@ -40,6 +41,11 @@ class HttpServer : public ::testing::Test {
                    ++waiting_;
                    while (!go_) std::this_thread::sleep_for(1ms);
                    return Response{200, "text/plain", "waited"};
+                 }});
+    router_.add({"POST", "/answer", {}, Load::kHeavyAnswer, [this](const Request& request) -> Response {
+                   ++waiting_;
+                   while (!request.abandoned()) std::this_thread::sleep_for(1ms);
+                   throw Interrupted("search-interrupted", "as searches do");
                  }});
     router_.add({"POST", "/times", {}, Load::kHeavy, [this](const Request& request) {
                    times_ = {request.received, request.deadline};
@@ -77,6 +83,9 @@ class HttpServer : public ::testing::Test {
     client.set_keep_alive(true);
     client.set_tcp_nodelay(true);
     return client;
+  }
+  void wait_for_figure(const std::string& line) const {
+    while (metrics_.text().find(line) == std::string::npos) std::this_thread::sleep_for(1ms);
   }
   std::string raw(const std::string& request) const {
     testing::RawConnection connection(port_);
@@ -271,12 +280,50 @@ TEST_F(HttpServer, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
     std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
     while (waiting_ == 0) std::this_thread::sleep_for(1ms);
     std::jthread second([&] { client().Post("/times", "", "text/plain"); });
-    while (metrics_.text().find("roadfix_heavy_waiting 1") == std::string::npos) std::this_thread::sleep_for(1ms);
+    wait_for_figure("roadfix_heavy_waiting 1");
     released = Clock::now();
     go_ = true;
   }
   EXPECT_LE(times_.first, released);
   EXPECT_GE(times_.second, released + settings_.request_time);
+}
+
+constexpr const char* kEmptyPost = " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n";
+
+TEST_F(HttpServer, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  const auto server = started();
+  {
+    testing::RawConnection running(port_);
+    running.send("POST /answer" + std::string(kEmptyPost));
+    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    {
+      testing::RawConnection queued(port_);
+      queued.send("POST /answer" + std::string(kEmptyPost));
+      wait_for_figure("roadfix_heavy_waiting 1");
+    }
+    wait_for_figure("roadfix_heavy_waiting 0");
+    EXPECT_NE(metrics_.text().find("roadfix_heavy_running 1"), std::string::npos) << "whose client still waits";
+  }
+  wait_for_figure(R"(route="/answer",status="499"} 2)");
+  EXPECT_EQ(waiting_, 1) << "the one that waited never began";
+}
+
+TEST_F(HttpServer, DoesWhatIsMoreThanAnAnswerThoughItsClientHungUp) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  const auto server = started();
+  const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  {
+    testing::RawConnection queued(port_);
+    queued.send("POST /wait" + std::string(kEmptyPost));
+    wait_for_figure("roadfix_heavy_waiting 1");
+  }
+  std::this_thread::sleep_for(300ms);
+  go_ = true;
+  wait_for_figure(R"(route="/wait",status="200"} 2)");
 }
 
 TEST_F(HttpServer, SendsAwayWhatHasWaitedTooLongForItsTurn) {

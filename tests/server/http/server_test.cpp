@@ -1,106 +1,14 @@
-// The server over real sockets, with handlers of the test's own.
-#include "server/http/server.hpp"
-
+// What a client gets from the server.
 #include <gmock/gmock.h>
-#include <httplib.h>
 
-#include <atomic>
-#include <thread>
-#include <utility>
-
-#include "core/units/error.hpp"
-#include "server/http/errors.hpp"
-#include "tests/support/raw_http.hpp"
+#include "tests/server/http/server_fixture.hpp"
 
 namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
 
-Response plain_error(std::exception_ptr thrown, const Request& request) {
-  try {
-    std::rethrow_exception(std::move(thrown));
-  } catch (const Error& error) {
-    if (error.code() == "client-gone") return {499, "text/plain", error.code()};
-    return {error.code() == "server-busy" ? 503 : 400, "text/plain", error.code()};
-  } catch (const std::exception&) {
-    return {500, "text/plain", "unexpected " + request.id};
-  }
-}
-
-class HttpServer : public ::testing::Test {
- protected:
-  HttpServer() {
-    router_.add({"GET", "/echo", {"text"}, Load::kLight, [](const Request& request) {
-                   return Response{200, "text/plain", request.query.empty() ? "" : request.query[0].second};
-                 }});
-    router_.add({"POST", "/length", {}, Load::kHeavy, [](const Request& request) {
-                   return Response{200, "text/plain", std::to_string(request.body.size())};
-                 }});
-    router_.add({"POST", "/wait", {}, Load::kHeavy, [this](const Request&) {
-                   ++waiting_;
-                   while (!go_) std::this_thread::sleep_for(1ms);
-                   return Response{200, "text/plain", "waited"};
-                 }});
-    router_.add({"POST", "/answer", {}, Load::kHeavyAnswer, [this](const Request& request) -> Response {
-                   ++waiting_;
-                   while (!request.abandoned()) std::this_thread::sleep_for(1ms);
-                   throw Interrupted("search-interrupted", "as searches do");
-                 }});
-    router_.add({"POST", "/times", {}, Load::kHeavy, [this](const Request& request) {
-                   times_ = {request.received, request.deadline};
-                   return Response{200, "text/plain", "done"};
-                 }});
-    router_.add(
-        {"GET", "/throw", {}, Load::kLight, [](const Request&) -> Response { throw std::logic_error("a mistake"); }});
-    router_.add({"GET", "/stream", {}, Load::kLight, [](const Request&) {
-                   Response response{200, "text/plain", {}};
-                   response.stream = [pieces = 0]() mutable -> std::optional<std::string> {
-                     return pieces++ < 3 ? std::optional<std::string>("piece ") : std::nullopt;
-                   };
-                   return response;
-                 }});
-    router_.add({"GET", "/broken-stream", {}, Load::kLight, [](const Request&) {
-                   Response response{200, "text/plain", {}};
-                   response.stream = [first = true]() mutable -> std::optional<std::string> {
-                     if (!std::exchange(first, false)) throw std::runtime_error("the source has gone");
-                     return "piece ";
-                   };
-                   return response;
-                 }});
-    settings_.port = 0;
-    settings_.crowded_time = 10min;  // however slow the machine is
-    settings_.threads = 8;
-  }
-
-  std::unique_ptr<Server> started() {
-    auto server = std::make_unique<Server>(settings_, router_, plain_error, metrics_);
-    port_ = server->start();
-    return server;
-  }
-  httplib::Client client() const {
-    httplib::Client client("127.0.0.1", port_);
-    client.set_keep_alive(true);
-    client.set_tcp_nodelay(true);
-    return client;
-  }
-  void wait_for_figure(const std::string& line) const {
-    while (metrics_.text().find(line) == std::string::npos) std::this_thread::sleep_for(1ms);
-  }
-  std::string raw(const std::string& request) const {
-    testing::RawConnection connection(port_);
-    connection.send(request);
-    return connection.read_all(5s);
-  }
-
-  Router router_;
-  ServerSettings settings_;
-  Metrics metrics_;
-  int port_ = 0;
-  std::atomic<int> waiting_ = 0;
-  std::atomic<bool> go_ = false;
-  std::pair<Clock::time_point, Clock::time_point> times_;  ///< received, deadline
-};
+class HttpServer : public testing::HttpServerTest {};
 
 TEST_F(HttpServer, AnswersManyClientsAtOnceEachWithItsOwn) {
   const auto server = started();
@@ -168,47 +76,6 @@ TEST_F(HttpServer, StreamsPiecesAndCutsOffAStreamThatFails) {
   EXPECT_EQ(client().Get("/echo?text=alive")->body, "alive");
 }
 
-TEST_F(HttpServer, EndsAHeadThatComesTooSlowly) {
-  settings_.head_time = 100ms;
-  const auto server = started();
-  EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHo"), ::testing::HasSubstr("request-timeout"));
-}
-
-TEST_F(HttpServer, EndsABodyThatComesTooSlowly) {
-  settings_.body_time = 100ms;
-  const auto server = started();
-  EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nabc"),
-              ::testing::HasSubstr("request-timeout"));
-}
-
-TEST_F(HttpServer, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
-  settings_.threads = 1;
-  settings_.body_time = 10min;
-  settings_.crowded_time = 10ms;
-  const auto server = started();
-  testing::RawConnection slow(port_);
-  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
-  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
-  httplib::Client other = client();
-  other.set_read_timeout(60s);
-  const auto echo = other.Get("/echo?text=alive");
-  ASSERT_TRUE(echo) << "the only thread was kept by a client that sends nothing";
-  EXPECT_EQ(echo->body, "alive");
-  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
-}
-
-TEST_F(HttpServer, WaitsForASlowSenderWhileNobodyElseDoes) {
-  settings_.threads = 1;
-  settings_.crowded_time = 1ms;
-  const auto server = started();
-  testing::RawConnection slow(port_);
-  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 5\r\n\r\nab");
-  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
-  std::this_thread::sleep_for(20ms);
-  slow.send("cde");
-  EXPECT_THAT(slow.read_all(), ::testing::EndsWith("\r\n\r\n5"));
-}
-
 TEST_F(HttpServer, GivesNoLengthToAnswersThatHaveNone) {
   const auto server = started();
   const std::string options = raw("OPTIONS /echo HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
@@ -249,107 +116,16 @@ TEST_F(HttpServer, RefusesHeaderNamesThatOthersReadDifferently) {
   EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHost: x\r\nX-A: b\r\n folded: c\r\n\r\n"), ::testing::HasSubstr("bad-header"));
 }
 
-TEST_F(HttpServer, ClosesConnectionsThatStayIdle) {
-  settings_.idle_time = 100ms;
-  const auto server = started();
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(raw(""), "");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, 10s) << "not the usual 15 s";
-}
-
-TEST_F(HttpServer, TellsConnectionsBeyondItsQueueToComeBack) {
-  settings_.threads = 1;
-  settings_.max_waiting_connections = 1;
-  const auto server = started();
-  std::jthread busy([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
-  const testing::RawConnection queued(port_);  // connections are taken in the order they came
-  const std::string answer = raw("");
-  EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 503"));
-  EXPECT_THAT(answer, ::testing::HasSubstr("Retry-After: 1"));
-  go_ = true;
-}
-
-TEST_F(HttpServer, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
-  settings_.heavy_running = 1;
-  settings_.request_time = 10min;
-  settings_.turn_time = 20min;
-  const auto server = started();
-  Clock::time_point released;
-  {
-    std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
-    std::jthread second([&] { client().Post("/times", "", "text/plain"); });
-    wait_for_figure("roadfix_heavy_waiting 1");
-    released = Clock::now();
-    go_ = true;
-  }
-  EXPECT_LE(times_.first, released);
-  EXPECT_GE(times_.second, released + settings_.request_time);
-}
-
-constexpr const char* kEmptyPost = " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n";
-
-TEST_F(HttpServer, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {
-  settings_.heavy_running = 1;
-  settings_.turn_time = 10min;
-  const auto server = started();
-  {
-    testing::RawConnection running(port_);
-    running.send("POST /answer" + std::string(kEmptyPost));
-    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
-    {
-      testing::RawConnection queued(port_);
-      queued.send("POST /answer" + std::string(kEmptyPost));
-      wait_for_figure("roadfix_heavy_waiting 1");
-    }
-    wait_for_figure("roadfix_heavy_waiting 0");
-    EXPECT_NE(metrics_.text().find("roadfix_heavy_running 1"), std::string::npos) << "whose client still waits";
-  }
-  wait_for_figure(R"(route="/answer",status="499"} 2)");
-  EXPECT_EQ(waiting_, 1) << "the one that waited never began";
-}
-
-TEST_F(HttpServer, DoesWhatIsMoreThanAnAnswerThoughItsClientHungUp) {
-  settings_.heavy_running = 1;
-  settings_.turn_time = 10min;
-  const auto server = started();
-  const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
-  {
-    testing::RawConnection queued(port_);
-    queued.send("POST /wait" + std::string(kEmptyPost));
-    wait_for_figure("roadfix_heavy_waiting 1");
-  }
-  std::this_thread::sleep_for(300ms);
-  go_ = true;
-  wait_for_figure(R"(route="/wait",status="200"} 2)");
-}
-
-TEST_F(HttpServer, SendsAwayWhatHasWaitedTooLongForItsTurn) {
-  settings_.heavy_running = 1;
-  settings_.request_time = 10min;
-  settings_.turn_time = 1ms;
-  const auto server = started();
-  std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
-  const auto answer = client().Post("/times", "", "text/plain");
-  go_ = true;
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->status, 503);
-  EXPECT_EQ(answer->body, "server-busy");
-}
-
 TEST_F(HttpServer, SaysWhenItsAddressIsTaken) {
   const auto server = started();
   settings_.port = port_;
   Metrics metrics;
-  Server second(settings_, router_, plain_error, metrics);
+  Server second(settings_, router_, testing::plain_error, metrics);
   EXPECT_THROW(second.start(), IoFailure);
 }
 
 TEST_F(HttpServer, CanBeStoppedBeforeItStarted) {
-  Server server(settings_, router_, plain_error, metrics_);
+  Server server(settings_, router_, testing::plain_error, metrics_);
   EXPECT_NO_THROW(server.stop());
 }
 

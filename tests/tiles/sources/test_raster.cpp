@@ -3,6 +3,8 @@
 #include <cpl_string.h>
 #include <ogr_spatialref.h>
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "tiles/sources/gdal_session.hpp"
@@ -33,6 +35,14 @@ void write_control_points(GDALDataset& dataset, const RasterSpec& spec) {
 }
 
 }  // namespace
+
+std::array<double, 6> around(double x, double y, double dx, double dy, double angle_deg) {
+  const double c = std::cos(angle_deg * std::numbers::pi / 180.0);
+  const double s = std::sin(angle_deg * std::numbers::pi / 180.0);
+  const double half = 150.0;  // pixels
+  const std::array<double, 4> m{dx * c, -dy * s, -dx * s, -dy * c};
+  return {x - half * (m[0] + m[1]), m[0], m[1], y - half * (m[2] + m[3]), m[2], m[3]};
+}
 
 std::string write_raster(const std::filesystem::path& path, const RasterSpec& spec, const PixelFunction& value,
                          const std::function<bool(int col, int row)>& mask) {

@@ -27,6 +27,9 @@ struct RasterSpec {
   std::vector<std::string> creation = {};  ///< options of the GeoTIFF driver
 };
 
+/// Transform of pixels of dx, dy, turned clockwise, that puts the middle of the first 300 x 300 at x, y.
+std::array<double, 6> around(double x, double y, double dx, double dy, double angle_deg);
+
 /// Value of a pixel of a band (from 1).
 using PixelFunction = std::function<double(int band, int col, int row)>;
 

@@ -1,13 +1,8 @@
 #include "tiles/store/map_writer.hpp"
 
 #include <gmock/gmock.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <thread>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
@@ -177,51 +172,6 @@ TEST(MapWriter, ACompleteSourceNeedsNothingMore) {
   EXPECT_EQ(tile_bytes(folder / "m.gpkg"), before);
 }
 
-TEST(MapWriter, ASourceGoesOnWhereAWriterWasThrownAway) {
-  const TemporaryFolder folder;
-  const TestSource source{"a", 1, some_blocks(3)};
-  {
-    MapWriter writer(folder / "whole.gpkg", settings_37n());
-    ingest(writer, source);
-  }
-  const auto path = folder / "m.gpkg";
-  for (std::size_t done = 0; done <= source.blocks.size(); ++done) {
-    MapWriter writer(path, settings_37n());
-    const auto open = writer.begin_source(source.record(), source.blocks, false);
-    ASSERT_EQ(open.size(), source.blocks.size() - done);
-    if (open.empty()) {
-      writer.finish_source("a");
-    } else {
-      writer.put_block("a", open.front(), random_cells(1, open.front()));
-      if (open.size() > 1) {
-        EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-incomplete");
-      }
-    }
-  }
-  EXPECT_EQ(tile_bytes(path), tile_bytes(folder / "whole.gpkg"));
-}
-
-TEST(MapWriter, FusingCanBeStoppedAndRepeated) {
-  const TemporaryFolder folder;
-  const TestSource source{"a", 1, some_blocks(10)};
-  const auto path = folder / "m.gpkg";
-  MapWriter writer(path, settings_37n());
-  for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
-    CellArray cells(kTileCells, kTileCells);
-    cells.at(3, 4) = kRoad;
-    writer.put_block("a", block, cells);
-  }
-  std::stop_source stop;
-  const auto stop_midway = [&](std::int64_t done, std::int64_t) {
-    if (done > 0) stop.request_stop();
-  };
-  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "interrupted");
-  EXPECT_GT(MapReader(path).info().pending, 0);
-  writer.finish_source("a");
-  EXPECT_EQ(MapReader(path).info().pending, 0);
-  EXPECT_EQ(MapReader(path).info().tiles, 100);
-}
-
 TEST(MapWriter, AWorkListThatNoWriterMadeIsRefused) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";
@@ -263,74 +213,12 @@ TEST(MapWriter, RefusesWhatDoesNotFit) {
   EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-not-found");
 }
 
-TEST(MapWriter, OnlyANewMapWithoutAFinishedBlockIsRemoved) {
-  const TemporaryFolder folder;
-  const TestSource source{"a", 1, some_blocks(2)};
-  {
-    MapWriter failed(folder / "new.gpkg", settings_37n());
-    failed.begin_source(source.record(), source.blocks, false);
-    failed.remove_if_new_and_empty();
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  {
-    MapWriter begun(folder / "begun.gpkg", settings_37n());
-    begun.begin_source(source.record(), source.blocks, false);
-    begun.put_block("a", source.blocks.front(), CellArray(256, 256));
-    begun.remove_if_new_and_empty();
-  }
-  EXPECT_EQ(MapReader(folder / "begun.gpkg").info().sources.front().blocks_done, 1);
-  { const MapWriter made_before(folder / "old.gpkg", settings_37n()); }
-  MapWriter(folder / "old.gpkg", settings_37n()).remove_if_new_and_empty();
-  EXPECT_TRUE(std::filesystem::exists(folder / "old.gpkg"));
-}
-
 TEST(MapWriter, AnExistingMapKeepsItsSettings) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";
   EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(2.0)); }), "no error");
   EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(1.0)); }), "map-settings-differ");
   EXPECT_EQ(code_of([&] { MapWriter(path, {*UtmZone::from_epsg(32636), 2.0}); }), "map-settings-differ");
-}
-
-/// Two sources, the second replaced by a third: every kind of transaction of a writer.
-void ingest_everything(const std::filesystem::path& path) {
-  MapWriter writer(path, settings_37n());
-  const TestSource a{"a", 1, some_blocks(2)};
-  const TestSource b{"b", 2, some_blocks(2, 1)};
-  const TestSource replacement{"b", 3, some_blocks(1, 1)};
-  ingest(writer, a);
-  const auto sources = MapReader(path).info().sources;
-  const bool replaced = std::ranges::any_of(
-      sources, [&](const SourceStatus& s) { return s.record.fingerprint == replacement.record().fingerprint; });
-  if (!replaced) ingest(writer, b);
-  ingest(writer, replacement, true);
-}
-
-TEST(MapWriter, AKilledProcessLosesNothing) {
-  const TemporaryFolder folder;
-  const auto started = std::chrono::steady_clock::now();
-  ingest_everything(folder / "whole.gpkg");
-  const auto duration = std::chrono::steady_clock::now() - started;
-  const auto expected = tile_bytes(folder / "whole.gpkg");
-  const auto version = MapReader(folder / "whole.gpkg").info().version;
-
-  constexpr int kRuns = 16;
-  for (int run = 0; run < kRuns; ++run) {
-    const auto path = folder / (std::to_string(run) + ".gpkg");
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      ingest_everything(path);
-      _exit(0);
-    }
-    std::this_thread::sleep_for(duration * run / kRuns);
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    ingest_everything(path);
-    EXPECT_EQ(tile_bytes(path), expected) << "killed after " << run << "/" << kRuns;
-    EXPECT_EQ(MapReader(path).info().version, version);
-    EXPECT_EQ(MapReader(path).info().pending, 0);
-  }
 }
 
 }  // namespace

@@ -1,0 +1,146 @@
+// How long the server waits for those who send slowly, or nothing, how long others wait for it, and who hung up.
+#include <gmock/gmock.h>
+
+#include "tests/server/http/server_fixture.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using namespace std::chrono_literals;
+
+class HttpServerTimes : public testing::HttpServerTest {};
+
+TEST_F(HttpServerTimes, EndsAHeadThatComesTooSlowly) {
+  settings_.head_time = 100ms;
+  const auto server = started();
+  EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHo"), ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServerTimes, EndsABodyThatComesTooSlowly) {
+  settings_.body_time = 100ms;
+  const auto server = started();
+  EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nabc"),
+              ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
+  settings_.threads = 1;
+  settings_.body_time = 10min;
+  settings_.crowded_time = 10ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
+  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  httplib::Client other = client();
+  other.set_read_timeout(60s);
+  const auto echo = other.Get("/echo?text=alive");
+  ASSERT_TRUE(echo) << "the only thread was kept by a client that sends nothing";
+  EXPECT_EQ(echo->body, "alive");
+  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
+  settings_.threads = 1;
+  settings_.crowded_time = 1ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 5\r\n\r\nab");
+  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  std::this_thread::sleep_for(20ms);
+  slow.send("cde");
+  EXPECT_THAT(slow.read_all(), ::testing::EndsWith("\r\n\r\n5"));
+}
+
+TEST_F(HttpServerTimes, ClosesConnectionsThatStayIdle) {
+  settings_.idle_time = 100ms;
+  const auto server = started();
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(raw(""), "");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 10s) << "not the usual 15 s";
+}
+
+TEST_F(HttpServerTimes, TellsConnectionsBeyondItsQueueToComeBack) {
+  settings_.threads = 1;
+  settings_.max_waiting_connections = 1;
+  const auto server = started();
+  std::jthread busy([&] { client().Post("/wait", "", "text/plain"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  const testing::RawConnection queued(port_);  // connections are taken in the order they came
+  const std::string answer = raw("");
+  EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(answer, ::testing::HasSubstr("Retry-After: 1"));
+  go_ = true;
+}
+
+TEST_F(HttpServerTimes, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
+  settings_.heavy_running = 1;
+  settings_.request_time = 10min;
+  settings_.turn_time = 20min;
+  const auto server = started();
+  Clock::time_point released;
+  {
+    std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    std::jthread second([&] { client().Post("/times", "", "text/plain"); });
+    wait_for_figure("roadfix_heavy_waiting 1");
+    released = Clock::now();
+    go_ = true;
+  }
+  EXPECT_LE(times_.first, released);
+  EXPECT_GE(times_.second, released + settings_.request_time);
+}
+
+constexpr const char* kEmptyPost = " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n";
+
+TEST_F(HttpServerTimes, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  const auto server = started();
+  {
+    testing::RawConnection running(port_);
+    running.send("POST /answer" + std::string(kEmptyPost));
+    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    {
+      testing::RawConnection queued(port_);
+      queued.send("POST /answer" + std::string(kEmptyPost));
+      wait_for_figure("roadfix_heavy_waiting 1");
+    }
+    wait_for_figure("roadfix_heavy_waiting 0");
+    EXPECT_NE(metrics_.text().find("roadfix_heavy_running 1"), std::string::npos) << "whose client still waits";
+  }
+  wait_for_figure(R"(route="/answer",status="499"} 2)");
+  EXPECT_EQ(waiting_, 1) << "the one that waited never began";
+}
+
+TEST_F(HttpServerTimes, DoesWhatIsMoreThanAnAnswerThoughItsClientHungUp) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  const auto server = started();
+  const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  {
+    testing::RawConnection queued(port_);
+    queued.send("POST /wait" + std::string(kEmptyPost));
+    wait_for_figure("roadfix_heavy_waiting 1");
+  }
+  std::this_thread::sleep_for(300ms);
+  go_ = true;
+  wait_for_figure(R"(route="/wait",status="200"} 2)");
+}
+
+TEST_F(HttpServerTimes, SendsAwayWhatHasWaitedTooLongForItsTurn) {
+  settings_.heavy_running = 1;
+  settings_.request_time = 10min;
+  settings_.turn_time = 1ms;
+  const auto server = started();
+  std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  const auto answer = client().Post("/times", "", "text/plain");
+  go_ = true;
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 503);
+  EXPECT_EQ(answer->body, "server-busy");
+}
+
+}  // namespace
+}  // namespace roadfix::http

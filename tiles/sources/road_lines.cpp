@@ -5,71 +5,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_layer.hpp"
+#include "tiles/sources/stray_roads.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 namespace {
-
-/// How the lines of a feature are drawn.
-struct Drawing {
-  double width_m = 0.0;
-  std::size_t road_class = 0;
-};
-
-bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
-              RoadNetwork& network) {
-  const int count = line.getNumPoints();
-  if (count < 2) return false;
-  std::vector<double> x(static_cast<std::size_t>(count));
-  std::vector<double> y(x.size());
-  std::vector<int> good(x.size(), FALSE);
-  for (int i = 0; i < count; ++i) {
-    x[static_cast<std::size_t>(i)] = line.getX(i);
-    y[static_cast<std::size_t>(i)] = line.getY(i);
-  }
-  to_plane.Transform(count, x.data(), y.data(), nullptr, good.data());
-  const std::size_t first = network.points.size();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (good[i] == FALSE || !std::isfinite(x[i]) || !std::isfinite(y[i])) {
-      network.points.resize(first);
-      return false;
-    }
-    network.points.push_back({x[i], y[i]});
-  }
-  network.lines.push_back({first, x.size(), drawing.width_m / 2.0, drawing.road_class});
-  return true;
-}
-
-/// Every line of the geometry, however deep it is nested. False when it has none that could be placed.
-bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
-                  RoadNetwork& network) {
-  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbLineString) return add_line(*geometry.toLineString(), to_plane, drawing, network);
-  if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != FALSE) {
-    bool any = false;
-    for (const OGRGeometry* part : *geometry.toGeometryCollection()) {
-      any = add_geometry(*part, to_plane, drawing, network) || any;
-    }
-    return any;
-  }
-  if (OGR_GT_IsCurve(type) != FALSE) {
-    const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
-    return straight && wkbFlatten(straight->getGeometryType()) == wkbLineString &&
-           add_line(*straight->toLineString(), to_plane, drawing, network);
-  }
-  return false;
-}
 
 std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
   const auto found = std::ranges::find(network.classes, road_class);
@@ -82,13 +34,22 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
 struct Parts {
   RoadNetwork classified;
   RoadNetwork plain;
+  std::size_t classified_before = 0;  ///< lines of the files before the one that is read
+  std::size_t plain_before = 0;
   bool any_layer = false;
   bool any_classified = false;
   std::int64_t features = 0;
   std::int64_t lines = 0;
   std::map<std::string, std::int64_t> unknown_classes;
+  bool strays_noted = false;
   /// Layers of lines without classes by name: the first file that has them, and their attributes.
   std::map<std::string, std::pair<std::string, std::string>> plain_layers;
+
+  RoadNetwork& network_of(const RoadLayer& layer) { return layer.classified() ? classified : plain; }
+  std::span<const RoadLine> lines_of_file(const RoadLayer& layer) const {
+    return layer.classified() ? std::span(classified.lines).subspan(classified_before)
+                              : std::span(plain.lines).subspan(plain_before);
+  }
 };
 
 /// Takes down what is known of a layer once all its features were seen.
@@ -112,26 +73,35 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
 
 /// Of the ground that a layer says something about: as much as its widest road, or the largest cell, on either side of
 /// a straight line.
-double least_side_m(const RoadNetwork& network) {
+double least_side_m(std::span<const RoadLine> lines) {
   double side_m = 2.0 * kMaxCellM;
-  for (const RoadLine& line : network.lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
+  for (const RoadLine& line : lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
   return side_m;
 }
 
-void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, Parts& parts) {
+void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
   const bool tile = vector_tile_of(path).has_value();
   if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
   const std::optional<OGREnvelope> box = file.extent_of(layer.layer());
   if (!box) return;
-  const double side_m = least_side_m(layer.classified() ? parts.classified : parts.plain);
+  const std::span<const RoadLine> lines = parts.lines_of_file(layer);
+  const double side_m = least_side_m(lines);
   const PlanePolygon covered = box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), path);
   if (layer.classified() || tile) parts.classified.covered.push_back(covered);
   if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
+  if (tile || parts.strays_noted) return;
+  RoadNetwork& network = parts.network_of(layer);
+  if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
+    network.notes.push_back(fmt::format("{}: {}", path, *note));
+    parts.strays_noted = true;
+  }
 }
 
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
               Parts& parts) {
   VectorFile file(path, options);
+  parts.classified_before = parts.classified.lines.size();
+  parts.plain_before = parts.plain.lines.size();
   const OGRSpatialReference plane = utm_reference(zone);
   std::map<const OGRLayer*, RoadLayer> layers;
   for (OGRLayer* layer : file.layers()) {
@@ -146,7 +116,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     if (found == layers.end() || geometry == nullptr) return;
     ++parts.features;
     RoadLayer& layer = found->second;
-    RoadNetwork& network = layer.classified() ? parts.classified : parts.plain;
+    RoadNetwork& network = parts.network_of(layer);
     const std::optional<double> width = layer.width_of(feature);
     if (!width ||
         !add_geometry(*geometry, layer.to_plane(), {*width, index_of(layer.class_of(feature), network)}, network)) {
@@ -156,7 +126,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
     add_layer(layer, rules, path, parts);
-    if (options.extent.empty()) add_covered(file, layer, path, parts);
+    if (options.extent.empty()) add_covered(file, layer, path, zone, parts);
   }
 }
 

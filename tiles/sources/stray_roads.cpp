@@ -1,0 +1,101 @@
+#include "tiles/sources/stray_roads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace roadfix {
+namespace {
+
+constexpr double kMostStray = 0.05;
+constexpr double kLeastRatio = 4.0;
+constexpr double kWorthNotingM2 = 10e6;
+
+double area_m2(const GridBox& box) { return box.width_m() * box.height_m(); }
+
+GridBox box_of(const RoadNetwork& network, const RoadLine& line) {
+  const auto points = std::span(network.points).subspan(line.first_point, line.points);
+  GridBox box{points.front(), points.front()};
+  for (const GridPoint point : points) box = united(box, {point, point});
+  return box;
+}
+
+/// The middle nine tenths from west to east and from south to north: a twentieth of the boxes on a side moves none of
+/// its rims. At least 20 boxes.
+GridBox middle_of(std::span<const GridBox> boxes) {
+  const std::size_t beside = boxes.size() / 20;
+  std::vector<double> rims(boxes.size());
+  const auto rim = [&](const auto& of, std::size_t rank) {
+    std::ranges::transform(boxes, rims.begin(), of);
+    const auto at = rims.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::ranges::nth_element(rims, at);
+    return *at;
+  };
+  const std::size_t last = boxes.size() - 1 - beside;
+  return {{rim([](const GridBox& box) { return box.min.east_m; }, beside),
+           rim([](const GridBox& box) { return box.min.north_m; }, beside)},
+          {rim([](const GridBox& box) { return box.max.east_m; }, last),
+           rim([](const GridBox& box) { return box.max.north_m; }, last)}};
+}
+
+bool holds(const GridBox& box, const GridBox& part) { return box.contains(part.min) && box.contains(part.max); }
+
+struct Core {
+  GridBox box;
+  std::int64_t boxes = 0;
+};
+
+/// What lies in the middle and around it, as far as the middle is wide.
+Core core_of(std::span<const GridBox> boxes) {
+  const GridBox middle = middle_of(boxes);
+  const GridBox around = grown(middle, std::max(middle.width_m(), middle.height_m()));
+  Core core{middle};
+  for (const GridBox& box : boxes) {
+    if (!holds(around, box)) continue;
+    core.box = united(core.box, box);
+    ++core.boxes;
+  }
+  return core;
+}
+
+/// W,S,E,N of a box in degrees that holds this one.
+std::string extent_around(const GridBox& box, const UtmZone& zone) {
+  const LatLon corners[] = {zone.unproject(box.min), zone.unproject({box.max.east_m, box.min.north_m}),
+                            zone.unproject({box.min.east_m, box.max.north_m}), zone.unproject(box.max)};
+  const auto down = [](double degrees) { return std::floor(degrees * 1e4) / 1e4; };
+  const auto up = [](double degrees) { return std::ceil(degrees * 1e4) / 1e4; };
+  return fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", down(std::min(corners[0].lon_deg, corners[2].lon_deg)),
+                     down(std::min(corners[0].lat_deg, corners[1].lat_deg)),
+                     up(std::max(corners[1].lon_deg, corners[3].lon_deg)),
+                     up(std::max(corners[2].lat_deg, corners[3].lat_deg)));
+}
+
+std::string sides(const GridBox& box) {
+  return fmt::format("{:.1f} x {:.1f} km", box.width_m() / 1e3, box.height_m() / 1e3);
+}
+
+}  // namespace
+
+std::optional<std::string> note_on_stray_roads(const RoadNetwork& network, std::span<const RoadLine> lines,
+                                               const GridBox& ground, UtmZone zone) {
+  constexpr std::size_t kFewest = 20;
+  if (lines.size() < kFewest) return std::nullopt;
+  std::vector<GridBox> boxes;
+  for (const RoadLine& line : lines) boxes.push_back(box_of(network, line));
+  const Core core = core_of(boxes);
+  const auto strays = static_cast<double>(std::ssize(boxes) - core.boxes);
+  const double ground_m2 = area_m2(ground);
+  if (strays > kMostStray * static_cast<double>(boxes.size()) || ground_m2 < kLeastRatio * area_m2(core.box) ||
+      ground_m2 - area_m2(core.box) < kWorthNotingM2) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{} of its {} roads lie within {}, but {} count as seen, and as no road wherever none is drawn. If that is not "
+      "so, "
+      "--extent {} keeps to the smaller ground",
+      core.boxes, boxes.size(), sides(core.box), sides(ground), extent_around(core.box, zone));
+}
+
+}  // namespace roadfix

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "cli/number_checks.hpp"
@@ -55,22 +54,17 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 }
 
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {
-  constexpr double kFarthestGroundM = 3000.0;
   if (options.gsd_m > 0.0) {
     require_roads_visible(options.gsd_m);
     return rectified(frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen));
   }
   constexpr double kAnyGsd = 1.0;  // follows from the camera
-  const GroundImage frame = frame_image(decoded, kAnyGsd);
   FrameCamera camera;
   camera.horizontal_fov = Angle::degrees(options.fov_deg);
   camera.agl_m = options.agl_m;
   camera.roll = Angle::degrees(options.roll_deg);
   camera.pitch = Angle::degrees(options.pitch_deg);
-  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
-  require_roads_visible(nominal_m);
-  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(kMostPixels));
+  return ground_seen(frame_image(decoded, kAnyGsd), camera, detector, static_cast<double>(kMostPixels));
 }
 
 cv::Mat picture_in(const std::string& path) {

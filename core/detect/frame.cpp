@@ -157,6 +157,15 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size size) {
   return camera.agl_m / focal_px(camera, size);
 }
 
+GroundView ground_seen(const GroundImage& frame, const FrameCamera& camera, const RoadDetector& detector,
+                       double max_pixels) {
+  constexpr double kFarthestGroundM = 3000.0;
+  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
+  require_roads_visible(nominal_m);
+  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
+  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, max_pixels);
+}
+
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,
                            const std::stop_token& stop) {
   const double cells_per_px = view.image.gsd_m / cell_m;

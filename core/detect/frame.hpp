@@ -51,6 +51,11 @@ void require_roads_visible(double gsd_m);
 /// Ground sample distance straight below the UAV with the camera level.
 double nominal_gsd_m(const FrameCamera& camera, cv::Size size);
 
+/// rectify() up to 3 km from the nadir point, farther than which ground is seen too flat to tell a road, in pixels that
+/// the detector makes use of. What frame.gsd_m says is not looked at. Throws "frame-too-coarse" too.
+GroundView ground_seen(const GroundImage& frame, const FrameCamera& camera, const RoadDetector& detector,
+                       double max_pixels);
+
 /// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,
                            const std::stop_token& stop = {});

@@ -1,6 +1,11 @@
 #include "server/api/base64.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <utility>
+
+#include "server/http/errors.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -53,6 +58,17 @@ Base64Result base64_decoded(std::string_view text) {
   if (rest >= 2) result.bytes.push_back(static_cast<std::uint8_t>(group >> (rest == 2 ? 4 : 10)));
   if (rest == 3) result.bytes.push_back(static_cast<std::uint8_t>(group >> 2));
   return result;
+}
+
+std::vector<std::uint8_t> bytes_of_base64(const std::string& field, std::string_view text) {
+  Base64Result result = base64_decoded(text);
+  if (result.bad_byte) {
+    throw http::InvalidField(
+        "bad-base64", field,
+        fmt::format("'{}' is not base64: character {} does not belong there", field, *result.bad_byte),
+        result.bad_byte);
+  }
+  return std::move(result.bytes);
 }
 
 }  // namespace roadfix::api

@@ -20,4 +20,7 @@ struct Base64Result {
 /// Padding may be left out; nothing else may be in the text.
 Base64Result base64_decoded(std::string_view text);
 
+/// The same of the field of a request. Throws InvalidField "bad-base64" with the position.
+std::vector<std::uint8_t> bytes_of_base64(const std::string& field, std::string_view text);
+
 }  // namespace roadfix::api

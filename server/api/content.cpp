@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
@@ -19,16 +18,6 @@ using nlohmann::json;
 /// A pose is three numbers in an object: four values, and something for the rest of the request.
 JsonLimits json_limits(const Limits& limits) {
   return {limits.json_depth, static_cast<std::size_t>(limits.poses) * 4 + 1000};
-}
-
-std::vector<std::uint8_t> bytes_of_base64(const std::string& name, const std::string& text) {
-  Base64Result result = base64_decoded(text);
-  if (result.bad_byte) {
-    throw InvalidField("bad-base64", name,
-                       fmt::format("'{}' is not base64: character {} does not belong there", name, *result.bad_byte),
-                       result.bad_byte);
-  }
-  return std::move(result.bytes);
 }
 
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {

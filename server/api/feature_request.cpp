@@ -19,8 +19,6 @@ using http::InvalidField;
 
 constexpr Range kGsd{0.0, 100.0, true};
 constexpr Range kFeatureCell{0.0, 1000.0, true};
-/// As for `roadfix fix`: farther ground is seen too flat to tell a road.
-constexpr double kFarthestGroundM = 3000.0;
 
 constexpr std::string_view kKinds[] = {"feature_map", "frame"};
 constexpr std::string_view kBorders[] = {"seen", "black"};
@@ -40,19 +38,14 @@ CellArray cells_of_json(const Fields& fields, const Limits& limits) {
   if (std::int64_t{cols} * rows > limits.cells) {
     throw LimitExceeded("too-many-cells", fmt::format("{} x {} cells are more than {}", cols, rows, limits.cells));
   }
-  const Base64Result decoded = base64_decoded(fields.text("cells"));
-  if (decoded.bad_byte) {
-    throw InvalidField("bad-base64", "cells",
-                       fmt::format("'cells' is not base64: character {} does not belong there", *decoded.bad_byte),
-                       decoded.bad_byte);
-  }
+  const std::vector<std::uint8_t> bytes = bytes_of_base64("cells", fields.text("cells"));
   CellArray cells(cols, rows);
-  if (decoded.bytes.size() != cells.cells().size()) {
-    throw InvalidField("bad-parameter", "cells",
-                       fmt::format("'cells' holds {} bytes, {} x {} cells need {}", decoded.bytes.size(), cols, rows,
-                                   cells.cells().size()));
+  if (bytes.size() != cells.cells().size()) {
+    throw InvalidField(
+        "bad-parameter", "cells",
+        fmt::format("'cells' holds {} bytes, {} x {} cells need {}", bytes.size(), cols, rows, cells.cells().size()));
   }
-  std::ranges::copy(decoded.bytes, cells.cells().begin());
+  std::ranges::copy(bytes, cells.cells().begin());
   return cells;
 }
 
@@ -108,11 +101,7 @@ GroundView view_of(const Content& content, const RoadDetector& detector, const L
     require_roads_visible(frame.gsd_m);
     return rectified(frame);
   }
-  const FrameCamera camera = camera_of(fields);
-  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
-  require_roads_visible(nominal_m);
-  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, static_cast<double>(limits.pixels));
+  return ground_seen(frame, camera_of(fields), detector, static_cast<double>(limits.pixels));
 }
 
 /// Detectors draw a coarse frame in finer pixels of their own before they look at it.

@@ -32,13 +32,7 @@ std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place
   if (found == frame.end() || !found->is_string()) {
     throw InvalidField("missing-parameter", field, fmt::format("'{}' must be a picture in base64", field));
   }
-  Base64Result result = base64_decoded(found->get<std::string>());
-  if (result.bad_byte) {
-    throw InvalidField("bad-base64", field,
-                       fmt::format("'{}' is not base64: character {} does not belong there", field, *result.bad_byte),
-                       result.bad_byte);
-  }
-  return std::move(result.bytes);
+  return bytes_of_base64(field, found->get_ref<const std::string&>());
 }
 
 BodyOffset offset_of(const json& frame, const std::string& place) {

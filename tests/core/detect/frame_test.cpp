@@ -112,6 +112,28 @@ TEST(Frame, WithPixelsWiderThanRoadsIsRefused) {
   EXPECT_THROW(require_roads_visible(1.01 * kCoarsestGsdM), InvalidInput);
 }
 
+/// Works best at pixels of half a metre.
+class HalfMetreDetector : public RoadDetector {
+ public:
+  CellArray detect(const GroundImage&, double, std::uint64_t, const std::stop_token&) const override { return {}; }
+  double preferred_gsd_m() const override { return 0.5; }
+  double halo_m() const override { return 0.0; }
+  std::string describe() const override { return "none"; }
+};
+
+TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
+  const HalfMetreDetector detector;
+  const GroundImage frame{cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))};
+  FrameCamera camera = level();
+  const auto gsd_at = [&](double agl_m) {
+    camera.agl_m = agl_m;
+    return ground_seen(frame, camera, detector, 1e7).image.gsd_m;
+  };
+  EXPECT_DOUBLE_EQ(gsd_at(100.0), 200.0 / 640);
+  EXPECT_DOUBLE_EQ(gsd_at(20.0), 0.25);
+  EXPECT_EQ(testing::code_of([&] { gsd_at(2000.0); }), "frame-too-coarse");
+}
+
 TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
   const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
   for (const double pitch : {-90.0, -85.0, 90.0}) {

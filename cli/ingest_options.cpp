@@ -69,7 +69,8 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--attribution", a.record.attribution, "Whom to name");
   command
       .add_option("--registration-sigma", a.registration_sigma_m,
-                  "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors")
+                  "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors; more "
+                  "by control points and RPC")
       ->check(positive());
 }
 

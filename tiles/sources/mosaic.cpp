@@ -99,6 +99,8 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     channels_ = std::max(channels_, file.channels());
     integers_ = integers_ || file.holds_integers();
     if (images_.empty()) crs_ = crs_name(file.crs());
+    PositionError error = roadfix::position_error(file, placement, zone);
+    if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
     if (!image.declared) {
       const std::vector<float> sample = file.sample_values();
       image.sampled = sampled_in(sample);

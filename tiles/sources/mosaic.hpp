@@ -15,6 +15,7 @@
 #include "core/detect/road_detector.hpp"
 #include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
+#include "tiles/sources/position_error.hpp"
 #include "tiles/sources/raster_file.hpp"
 
 namespace roadfix {
@@ -45,6 +46,8 @@ class Mosaic {
   /// Least and largest value sampled of a source of shares; low > high where none is valid, or they are colours.
   ValueRange sampled() const { return sampled_; }
   std::string crs() const { return crs_; }
+  /// Of the image whose place is the least certain.
+  const PositionError& position_error() const { return position_error_; }
 
   /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed. Thread-safe.
   GroundImage view(const GridBox& box, double gsd_m) const;
@@ -65,6 +68,7 @@ class Mosaic {
   ValueRange range_;
   ValueRange sampled_{1.0, 0.0};
   std::string crs_;
+  PositionError position_error_;
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first
 };

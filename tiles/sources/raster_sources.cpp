@@ -28,6 +28,13 @@ constexpr int kMaxPixels = 2048;
 /// Pixels a side of a cell that rasters of roads are read with; what is finer is averaged on the way.
 constexpr double kFinestParts = 4.0;
 
+/// `usual_m` where nothing says that the images lie worse.
+void state_position(const Mosaic& mosaic, double usual_m, SourceSummary& summary) {
+  const PositionError& error = mosaic.position_error();
+  summary.registration_sigma_m = std::max(usual_m, error.sigma_m);
+  if (error.sigma_m > usual_m) summary.notes.push_back(error.reason);
+}
+
 std::string settings_of(const RasterOptions& options) {
   std::string text = options.crs.empty() ? "" : fmt::format(" crs={}", options.crs);
   if (options.collar) {
@@ -52,7 +59,7 @@ class Imagery final : public CellSource {
     summary_.crs = mosaic_.crs();
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
-    summary_.registration_sigma_m = kImagerySigmaM;
+    state_position(mosaic_, kImagerySigmaM, summary_);
     std::optional<std::string> note = note_on_likely_roads(paths.front(), options);
     if (!note) note = note_on_collar(paths, options);
     if (note) summary_.notes.push_back(std::move(*note));
@@ -126,8 +133,8 @@ class RoadRaster final : public CellSource {
     summary_.crs = mosaic_.crs();
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
-    summary_.registration_sigma_m = kRasterSigmaM;
     summary_.notes = notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
+    state_position(mosaic_, kRasterSigmaM, summary_);
     std::optional<std::string> note = note_on_likely_picture(paths.front(), options, mosaic_.range());
     if (note) summary_.notes.push_back(std::move(*note));
   }

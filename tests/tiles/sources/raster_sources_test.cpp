@@ -126,6 +126,33 @@ TEST(Imagery, WithAPaintedCollarGetsANoteUnlessTheUserNamedIt) {
   EXPECT_TRUE(open_imagery({plain}, {}, kZone, 2.0, detector)->summary().notes.empty());
 }
 
+/// Nine control points of a raster of 1 m, the one in the middle `east_m` off.
+RasterSpec placed_by_points(double east_m) {
+  RasterSpec spec{.width = 400, .height = 400};
+  for (const double row : {0.0, 200.0, 400.0}) {
+    for (const double col : {0.0, 200.0, 400.0}) {
+      const bool middle = row == 200.0 && col == 200.0;
+      spec.control_points.push_back({col, row, 400000.0 + col + (middle ? east_m : 0.0), 4200400.0 - row});
+    }
+  }
+  return spec;
+}
+
+TEST(Imagery, IsAsUncertainAsItsControlPointsContradictEachOther) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto summary_of = [&](const std::string& name, const RasterSpec& spec) {
+    const std::string path = write_raster(folder / name, spec, [](int, int col, int) { return col % 200; });
+    return open_imagery({path}, {}, kZone, 2.0, detector)->summary();
+  };
+  const SourceSummary exact = summary_of("exact.tif", placed_by_points(0.0));
+  EXPECT_EQ(exact.registration_sigma_m, 2.0);
+  EXPECT_THAT(exact.notes, ::testing::IsEmpty());
+  const SourceSummary off = summary_of("off.tif", placed_by_points(200.0));
+  EXPECT_GT(off.registration_sigma_m, 30.0);
+  EXPECT_THAT(off.notes, ::testing::ElementsAre(::testing::HasSubstr("its 9 control points contradict each other")));
+}
+
 TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
   const testing::TemporaryFolder folder;
   const auto note = [&](GDALDataType type, const testing::PixelFunction& value) {

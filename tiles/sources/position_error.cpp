@@ -1,0 +1,57 @@
+#include "tiles/sources/position_error.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace roadfix {
+namespace {
+
+/// 4 m of the satellite's own, and relief of 20 m seen at a slant of 25 degrees.
+constexpr double kRpcSigmaM = 10.0;
+
+/// Points that GDAL's polynomial fits exactly: of first order, of second where it has as many.
+constexpr int kExactFirstOrder = 3;
+constexpr int kExactSecondOrder = 6;
+
+double control_point_sigma_m(const RasterFile& file, const Placement& placement, UtmZone zone) {
+  GDALDataset& dataset = file.dataset();
+  const int count = dataset.GetGCPCount();
+  const int exact = count >= kExactSecondOrder ? kExactSecondOrder : kExactFirstOrder;
+  if (count <= exact) return 0.0;
+  const TransformationPtr to_zone = transformation(file.crs(), utm_reference(zone), file.path());
+  double squares = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const GDAL_GCP& point = dataset.GetGCPs()[i];
+    std::vector<cv::Point2d> fitted{{point.dfGCPPixel, point.dfGCPLine}};
+    placement.to_plane(fitted);
+    double east = point.dfGCPX;
+    double north = point.dfGCPY;
+    if (to_zone->Transform(1, &east, &north) == FALSE) return std::numeric_limits<double>::infinity();
+    const cv::Point2d miss = fitted[0] - cv::Point2d(east, north);
+    squares += miss.dot(miss);
+  }
+  return std::sqrt(squares / (2.0 * (count - exact)));
+}
+
+}  // namespace
+
+PositionError position_error(const RasterFile& file, const Placement& placement, UtmZone zone) {
+  std::array<double, 6> transform{};
+  if (file.dataset().GetGeoTransform(transform.data()) == CE_None) return {};
+  if (file.dataset().GetGCPCount() > 0) {
+    const double sigma_m = control_point_sigma_m(file, placement, zone);
+    return {sigma_m, fmt::format("{}: its {} control points contradict each other by {:.3g} m (1 sigma), and so "
+                                 "uncertain is where it lies. Correct them, or make an orthoimage of it first",
+                                 file.path(), file.dataset().GetGCPCount(), sigma_m)};
+  }
+  return {kRpcSigmaM,
+          fmt::format("{}: placed by its rational polynomials at the mean height of the scene, which is taken to "
+                      "be uncertain by {} m (1 sigma), more where hills are. Make an orthoimage of it first: gdalwarp "
+                      "-rpc -to RPC_DEM=terrain.tif",
+                      file.path(), kRpcSigmaM)};
+}
+
+}  // namespace roadfix

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 9> kImageEndings{".tif", ".tiff", ".jpg", ".jpeg", ".png",
                                                         ".jp2", ".img",  ".vrt", ".webp"};
-constexpr std::array<std::string_view, 8> kVectorEndings{".shp", ".geojson", ".json", ".gpkg",
-                                                         ".pbf", ".osm",     ".mvt",  ".fgb"};
+constexpr std::array<std::string_view, 9> kVectorEndings{".shp", ".geojson", ".json", ".gpkg", ".pbf",
+                                                         ".osm", ".mvt",     ".fgb",  ".gdb"};
 
 std::string ending_of(const fs::path& path) { return lower_case(path.extension().string()); }
 
@@ -60,10 +60,15 @@ std::string name_of_folder(const fs::path& folder) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+/// An ESRI file geodatabase is a folder, which GDAL opens as one file.
+bool is_geodatabase(const fs::path& path) { return ending_of(path) == ".gdb"; }
+
 std::vector<std::string> files_in_folder(const fs::path& folder) {
   std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  for (auto entry = fs::recursive_directory_iterator(folder); entry != fs::recursive_directory_iterator(); ++entry) {
+    const bool geodatabase = is_geodatabase(entry->path()) && entry->is_directory();
+    if (geodatabase) entry.disable_recursion_pending();
+    if (geodatabase || entry->is_regular_file()) files.push_back(entry->path().string());
   }
   return files;
 }
@@ -78,7 +83,11 @@ std::vector<std::string> files_in_zip(const std::string& archive) {
                        fmt::format("{}: cannot be opened as a ZIP archive; fetch it again, or unpack it", archive));
   }
   std::vector<std::string> files;
-  for (int i = 0; i < names.size(); ++i) files.push_back(inside + "/" + names[i]);
+  for (int i = 0; i < names.size(); ++i) {
+    const fs::path name = inside + "/" + names[i];
+    const bool folder = !name.has_filename();
+    if (!folder || is_geodatabase(name.parent_path())) files.push_back((folder ? name.parent_path() : name).string());
+  }
   return files;
 }
 
@@ -129,7 +138,7 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
   require_gdal();
   const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();
   SourceFiles result;
-  if (fs::is_directory(path)) {
+  if (fs::is_directory(path) && !is_geodatabase(path)) {
     result = source_of_all(files_in_folder(path), path.string(), meaning);
     result.name = name_of_folder(path);
   } else if (ending_of(path) == ".zip" && fs::exists(path)) {

@@ -73,6 +73,27 @@ TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
   EXPECT_EQ(files.kind, SourceKind::kRoadRaster);
 }
 
+TEST_F(SourceFilesTest, AFileGeodatabaseIsAFileThoughItIsAFolder) {
+  std::ofstream(folder / "lines.geojson") << kLine;
+  const std::string lines = (folder / "lines.geojson").string();
+  const std::string geodatabase = (folder / "Roads.gdb").string();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("OpenFileGDB");
+  if (driver == nullptr || driver->GetMetadataItem(GDAL_DCAP_CREATE) == nullptr) GTEST_SKIP() << "GDAL writes none";
+  {
+    const DatasetPtr from = open_dataset(lines, GDAL_OF_VECTOR);
+    const DatasetPtr to(driver->Create(geodatabase.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    ASSERT_NE(to, nullptr);
+    ASSERT_NE(to->CopyLayer(from->GetLayer(0), "roads"), nullptr);
+  }
+  std::filesystem::remove(folder / "lines.geojson");
+  for (const std::string& way : {geodatabase, geodatabase + "/"}) {
+    const SourceFiles files = find_source(way, SourceMeaning::kAuto);
+    EXPECT_EQ(files.name, "Roads") << way;
+    EXPECT_EQ(files.kind, SourceKind::kRoadVectors) << way;
+  }
+  EXPECT_THAT(find_source(folder.path().string(), SourceMeaning::kAuto).paths, ElementsAre(geodatabase));
+}
+
 TEST_F(SourceFilesTest, AFolderHasItsNameHoweverItIsReached) {
   image("a.tif");
   std::filesystem::create_directory(folder / "below");

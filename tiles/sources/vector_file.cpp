@@ -126,9 +126,10 @@ std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
   box = OGREnvelope();
   // Not layer.GetExtent(TRUE): the OpenStreetMap driver gives its layers interleaved only.
   for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
-    if (&of != &layer || feature.GetGeometryRef() == nullptr) return;
+    const OGRGeometry* geometry = feature.GetGeometryRef();
+    if (&of != &layer || geometry == nullptr || geometry->IsEmpty() != FALSE) return;
     OGREnvelope own;
-    feature.GetGeometryRef()->getEnvelope(&own);
+    geometry->getEnvelope(&own);
     box.Merge(own);
   });
   if (box.IsInit() == 0) return std::nullopt;

@@ -92,6 +92,17 @@ TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
   EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
 }
 
+TEST_F(VectorRoads, EmptyLinesLieNowhereAndStretchNothing) {
+  const std::string path = geojson(
+      {feature(R"("highway":"primary")", at(-50, -50), at(50, 50)),
+       R"({"type":"Feature","properties":{"highway":"primary"},"geometry":{"type":"LineString","coordinates":[]}})",
+       R"({"type":"Feature","properties":{"highway":"primary"},"geometry":null})"});
+  const GridPoint centre = kZone.project(centre_of_roads({path}, {}));
+  EXPECT_NEAR(centre.east_m, kCentre.east_m, 1.0);
+  EXPECT_NEAR(centre.north_m, kCentre.north_m, 1.0);
+  EXPECT_LT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->extent().width_m(), 120.0);
+}
+
 TEST_F(VectorRoads, TheCentreIsThatOfTheGroundThatIsAskedFor) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-9000, 0), at(0, 0))});
   EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m - 4500.0, 1.0);

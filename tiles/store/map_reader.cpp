@@ -111,10 +111,6 @@ MapReader& MapReader::operator=(MapReader&&) noexcept = default;
 
 const MapInfo& MapReader::info() const { return *state_->info; }
 
-std::string MapReader::version_now() const {
-  return state_->with_channel([](Channel& channel) { return read_version(*channel.map); });
-}
-
 RoadGrid MapReader::read(const GridGeometry& geometry) const {
   const double ratio = geometry.cell_m / info().settings.cell_m;
   int exponent = 0;

@@ -23,10 +23,8 @@ class MapReader {
   MapReader& operator=(MapReader&&) noexcept;
 
   /// As it was when the map was opened. Tiles are read when they are asked for and kept: while a writer changes the
-  /// map, a reader may see old and new ones. Open a new reader when version_now() differs from info().version.
+  /// map, a reader may see old and new ones; a new reader has the map as it is then.
   const MapInfo& info() const;
-  /// The version that the file has now; one small query. Thread-safe.
-  std::string version_now() const;
 
   /// Fused cells; geometry.cell_m = settings.cell_m * 2^level with level >= 0, at most 4096 m (levels that the file
   /// does not hold are made from its coarsest). Unobserved where the map has none. Thread-safe. Throws InvalidInput

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_ingest_command(app);
   roadfix::cli::add_info_command(app);
   roadfix::cli::add_verify_command(app);
+  roadfix::cli::add_remove_command(app);
   roadfix::cli::add_bench_command(app);
   roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);

@@ -75,6 +75,21 @@ TEST_F(MapCommands, VerifySaysThatAMapIsEmpty) {
   EXPECT_THAT(roadfix("verify " + path.string()).out, Not(HasSubstr("empty")));
 }
 
+TEST_F(MapCommands, RemoveLeavesTheMapOfTheOtherSources) {
+  const auto before = testing::tile_bytes(path);
+  {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"b", 2, some_blocks(2, 1)});
+  }
+  EXPECT_NE(testing::tile_bytes(path), before);
+  EXPECT_EQ(roadfix("remove " + path.string() + " b").code, 0);
+  EXPECT_EQ(testing::tile_bytes(path), before);
+  const ProgramResult again = roadfix("remove " + path.string() + " b");
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("[source-not-found]"));
+  EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
+}
+
 TEST_F(MapCommands, ExportWritesARegion) {
   const auto target = folder / "out.tif";
   const std::string arguments = path.string() + " " + target.string();
@@ -108,9 +123,9 @@ TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {
 }
 
 TEST_F(MapCommands, FailureIsOneLineAndWrongUsageIsTwo) {
-  for (const char* command : {"info", "verify", "export"}) {
+  for (const char* command : {"info", "verify", "export", "remove"}) {
     const std::string name = command;
-    const std::string rest = name == "export" ? " x.tif" : "";
+    const std::string rest = name == "export" ? " x.tif" : name == "remove" ? " a" : "";
     const ProgramResult missing = roadfix(name + " no-such-map.gpkg" + rest);
     EXPECT_EQ(missing.code, 1);
     EXPECT_EQ(missing.err, "roadfix: no-such-map.gpkg: no such file [map-not-found]\n");

@@ -24,9 +24,10 @@ class FusionQueue {
   void drain(const OnProgress& progress, const std::stop_token& stop);
   /// The box of the observed cells, as other programs read it.
   void update_extent();
+  /// Tiles of all levels that wait.
+  std::int64_t size();
 
  private:
-  std::int64_t size();
   std::pair<int, TileIndex> pending_tile(const sqlite::Statement& row) const;
   std::int64_t fuse_some();
   void fuse(int zoom, TileIndex index);

@@ -34,7 +34,7 @@ bool create_if_missing(const std::filesystem::path& path, const MapSettings& set
 Connection open_with(const std::filesystem::path& path, const MapSettings& settings) {
   Connection map = open_map(path, Access::kReadWrite);
   const MapSettings existing = read_settings(map);
-  if (existing.zone != settings.zone || existing.cell_m != settings.cell_m) {
+  if (existing != settings) {
     throw InvalidInput(
         "map-settings-differ",
         fmt::format("{}: the map has EPSG:{} and cells of {} m, not EPSG:{} and {} m. Use its settings or "
@@ -64,6 +64,11 @@ struct MapWriter::State {
                   "RETURNING 1") {}
 
   std::vector<std::string> drop_damaged_evidence();
+  NotFound no_source(const std::string& name) const {
+    return {"source-not-found",
+            fmt::format("{}: there is no source named '{}'. roadfix info names those that are there",
+                        map.path().string(), name)};
+  }
 
   WriterLock lock;
   bool made_here;
@@ -201,8 +206,7 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
           .with(complete->id)
           .run();
     } else if (!replaced) {
-      throw NotFound("source-not-found",
-                     fmt::format("{}: there is no source named '{}'", s.map.path().string(), source));
+      throw s.no_source(source);
     }
     transaction.commit();
   }
@@ -216,11 +220,11 @@ void MapWriter::remove_if_new_and_empty() {
   std::filesystem::remove(s.map.path(), error);
 }
 
-void MapWriter::remove_source(const std::string& source) {
+bool MapWriter::remove_source(const std::string& source, const OnProgress& progress, std::stop_token stop) {
   State& s = *state_;
+  bool any = false;
   {
     Transaction transaction(s.map, Transaction::Kind::kWrite);
-    bool any = false;
     for (const bool in_force : {false, true}) {
       const auto found = s.sources.find(source, in_force);
       if (!found) continue;
@@ -228,13 +232,11 @@ void MapWriter::remove_source(const std::string& source) {
       s.sources.remove(found->id);
       any = true;
     }
-    if (!any) {
-      throw NotFound("source-not-found",
-                     fmt::format("{}: there is no source named '{}'", s.map.path().string(), source));
-    }
+    if (!any && s.fusion.size() == 0) throw s.no_source(source);
     transaction.commit();
   }
-  s.fusion.drain({}, {});
+  s.fusion.drain(progress, stop);
+  return any;
 }
 
 std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop_token stop) {

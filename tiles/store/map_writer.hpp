@@ -43,8 +43,9 @@ class MapWriter {
   /// leaves no map. Nothing but the destructor may be called afterwards.
   void remove_if_new_and_empty();
 
-  /// Removes a source and fuses what it touched.
-  void remove_source(const std::string& source);
+  /// Takes a source out of the map, complete or not, and fuses what it touched. Can be interrupted and repeated: then
+  /// it only goes on fusing, and returns false. Throws NotFound ("source-not-found") where nothing is left to fuse.
+  bool remove_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
   /// Fuses every tile anew from the evidence. Evidence that cannot be decoded is dropped first; returns the names of
   /// the sources that lost some, which count as changed from now on: ingest them again with `replace`. Readers see the

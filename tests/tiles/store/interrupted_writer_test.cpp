@@ -69,6 +69,23 @@ TEST(InterruptedWriter, FusingCanBeStoppedAndRepeated) {
   EXPECT_EQ(MapReader(path).info().tiles, 100);
 }
 
+TEST(InterruptedWriter, RemovingASourceCanBeStoppedAndRepeated) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  MapWriter one(folder / "one.gpkg", settings_37n());
+  ingest(one, {"a", 1, some_blocks(2)});
+  MapWriter writer(path, settings_37n());
+  ingest(writer, {"a", 1, some_blocks(2)});
+  ingest(writer, {"b", 2, some_blocks(2, 1)});
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_EQ(code_of([&] { writer.remove_source("b", {}, stopped.get_token()); }), "interrupted");
+  EXPECT_GT(MapReader(path).info().pending, 0);
+  EXPECT_FALSE(writer.remove_source("b")) << "it has gone already";
+  EXPECT_EQ(MapReader(path).info().pending, 0);
+  EXPECT_EQ(tile_bytes(path), tile_bytes(folder / "one.gpkg"));
+}
+
 TEST(InterruptedWriter, OnlyANewMapWithoutAFinishedBlockIsRemoved) {
   const TemporaryFolder folder;
   const TestSource source{"a", 1, some_blocks(2)};

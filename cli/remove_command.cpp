@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/terminal.hpp"
+#include "core/units/error.hpp"
+#include "tiles/store/map_writer.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+struct Options {
+  std::string map;
+  std::string source;
+};
+
+void remove_source(const Options& options) {
+  const std::stop_token stop = stop_on_signals();
+  const auto settings = MapWriter::settings_of(options.map);
+  if (!settings) throw NotFound("map-not-found", fmt::format("{}: no such file", options.map));
+  MapWriter writer(options.map, *settings);
+  bool was_there = false;
+  {
+    Progress progress("fusing", "tiles");
+    was_there = writer.remove_source(
+        options.source, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+  }
+  fmt::print("{}: source '{}' {}\n", options.map, options.source,
+             was_there ? "is removed" : "was not there any more; what was left to fuse is fused");
+}
+
+}  // namespace
+
+void add_remove_command(CLI::App& app) {
+  auto* command = app.add_subcommand("remove", "Takes a source out of a map");
+  command->footer(
+      "Example: roadfix remove adiyaman.gpkg before\nThe map is then as if the source had never been ingested; roadfix "
+      "info names the sources. Interrupted or killed, the same command goes on where it was.");
+  const auto options = std::make_shared<Options>();
+  command->add_option("map", options->map, "Map file (GeoPackage)")->required();
+  command->add_option("source", options->source, "Name of the source")->required();
+  command->callback([options] { remove_source(*options); });
+}
+
+}  // namespace roadfix::cli

@@ -4,6 +4,7 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <mutex>
 
 #include "core/units/error.hpp"
@@ -93,6 +94,25 @@ std::string crs_name(const OGRSpatialReference& reference) {
   return name != nullptr ? name : "unnamed";
 }
 
+void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path) {
+  constexpr double kWgs84M = 6378137.0;
+  constexpr double kSameM =
+      5.0;  // GRS 80, WGS 72, the sphere of web maps; those of older surveys differ by 69 m and more
+  OGRErr outcome = OGRERR_NONE;
+  const double axis_m = from.GetSemiMajor(&outcome);
+  if (outcome != OGRERR_NONE || std::abs(axis_m - kWgs84M) < kSameM) return;
+  const GdalMessages messages;
+  OGRCoordinateTransformationOptions options;
+  options.SetBallparkAllowed(false);
+  if (TransformationPtr(OGRCreateCoordinateTransformation(&from, &to, options))) return;
+  const char* ellipsoid = from.GetAttrValue("SPHEROID");
+  throw InvalidInput("datum-unknown",
+                     fmt::format("{}: its reference system {} does not say how its ellipsoid ({}) lies to that of WGS "
+                                 "84, and the roads could come to lie hundreds of metres off. Name the right one with "
+                                 "--crs, for example --crs EPSG:23037 (ED50, zone 37)",
+                                 path, crs_name(from), ellipsoid != nullptr ? ellipsoid : "unnamed"));
+}
+
 TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
                                  const std::string& path) {
   const GdalMessages messages;
@@ -103,6 +123,7 @@ TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpati
                                    "one with --crs",
                                    path, crs_name(from), crs_name(to), messages.text()));
   }
+  require_known_datum(from, to, path);
   return result;
 }
 

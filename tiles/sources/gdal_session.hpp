@@ -53,7 +53,10 @@ struct DestroyTransformation {
   void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
 };
 using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation>;
-/// Throws InvalidInput "crs-not-transformable"; `path` is named in it.
+/// Throws InvalidInput "datum-unknown" where the way from one to the other is a guess, which takes places on another
+/// ellipsoid than that of WGS 84 for places on it: they lie up to some hundred metres apart. `path` is named in it.
+void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path);
+/// Throws InvalidInput ("crs-not-transformable", "datum-unknown"); `path` is named in it.
 TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
                                  const std::string& path);
 

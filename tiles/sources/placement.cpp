@@ -23,6 +23,7 @@ std::string wkt(const OGRSpatialReference& reference) {
 }
 
 void* create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
+  require_known_datum(file.crs(), target, file.path());
   const GdalMessages messages;
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());

@@ -1,5 +1,6 @@
 #include "tiles/sources/mosaic.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <opencv2/imgproc.hpp>
@@ -152,6 +153,19 @@ TEST_F(MosaicTest, CoordinatesWithoutAPlaceInTheZoneAreRefused) {
   } catch (const InvalidInput& error) {
     EXPECT_EQ(error.code(), "crs-not-transformable");
     EXPECT_THAT(error.what(), ::testing::HasSubstr("--crs"));
+  }
+}
+
+TEST_F(MosaicTest, AnOldEllipsoidNeedsADatumToLieAnywhere) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0}, [](int, int, int) { return 1.0; });
+  const auto west = [&](const std::string& crs) {
+    return Mosaic({path}, {.crs = crs, .collar = {}}, ValueRule::kPicture, kZone).extent().min.east_m;
+  };
+  EXPECT_EQ(testing::code_of([&] { west("+proj=utm +zone=37 +ellps=intl +no_defs"); }), "datum-unknown");
+  EXPECT_NEAR(west("EPSG:23037"), 400000.0 - 14.0, 5.0) << "ED50 lies 180 m to the south, too";
+  EXPECT_NEAR(west("+proj=utm +zone=37 +ellps=intl +towgs84=-87,-98,-121,0,0,0,0 +no_defs"), 400000.0 - 14.0, 12.0);
+  for (const char* ellipsoid : {"GRS80", "WGS84"}) {
+    EXPECT_NEAR(west(fmt::format("+proj=utm +zone=37 +ellps={} +no_defs", ellipsoid)), 400000.0, 0.1) << ellipsoid;
   }
 }
 

@@ -92,6 +92,14 @@ TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
   EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
 }
 
+TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
+  VectorOptions options;
+  options.crs = "+proj=longlat +ellps=intl +no_defs";
+  EXPECT_EQ(testing::code_of([&] { open_road_vectors({path}, options, RoadRules(), kZone, 2.0); }), "datum-unknown");
+  EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, options); }), "datum-unknown");
+}
+
 TEST_F(VectorRoads, EmptyLinesLieNowhereAndStretchNothing) {
   const std::string path = geojson(
       {feature(R"("highway":"primary")", at(-50, -50), at(50, 50)),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/ingest_report.hpp"
 #include "core/geodesy/utm.hpp"
 #include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
@@ -65,12 +66,16 @@ MapSettings settings_around_equator(const IngestArguments& arguments, const Sour
 }
 
 PlannedSource plan_source(const SourceRequest& request, const MapSettings& settings, const RoadDetector* detector) {
+  PlannedSource planned;
   try {
-    PlannedSource planned{open_source(request, settings, detector)};
+    planned.cells = open_source(request, settings, detector);
     planned.blocks = std::ssize(plan_blocks(*planned.cells, request.files.name, settings));
     return planned;
   } catch (const InvalidInput& error) {
     if (is_about_place(error.code())) refuse_another_zone(request, settings);
+    throw;
+  } catch (const LimitExceeded&) {
+    if (planned.cells) print_notes(request.files, planned.cells->summary());  // of what makes it so large, for one
     throw;
   }
 }

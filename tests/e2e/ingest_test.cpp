@@ -1,4 +1,5 @@
 // roadfix ingest as a whole: killed anywhere, stopped, fed with damaged files.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sqlite3.h>
@@ -214,6 +215,26 @@ TEST_F(IngestCommand, ASourceFarFromTheZoneOfTheMapHearsOfBothChoices) {
   EXPECT_EQ(near.code, 0);
   EXPECT_THAT(near.err, ::testing::AllOf(HasSubstr(" km from the central meridian of EPSG:32637"),
                                          HasSubstr("0.20 % too long"), HasSubstr("another --map")));
+}
+
+TEST_F(IngestCommand, ASourceMadeTooLargeByAStrayRoadHearsOfTheExtentOfTheOthers) {
+  const auto line = [](double lon, double lat) {
+    return fmt::format(R"({{"type":"Feature","geometry":{{"type":"LineString","coordinates":[[{},{}],[{},{}]]}}}})",
+                       lon, lat, lon + 0.002, lat + 0.002);
+  };
+  std::ofstream file(folder / "town.geojson");
+  file << R"({"type":"FeatureCollection","features":[)" << line(0.0, 0.0);
+  for (int i = 0; i < 100; ++i) file << ',' << line(38.2 + 0.001 * (i % 10), 37.7 + 0.001 * (i / 10));
+  file << "]}";
+  file.close();
+  const std::string source = folder / "town.geojson";
+  const ChildResult all = ingest({source, "--map", map("m.gpkg")});
+  EXPECT_EQ(all.code, 1);
+  EXPECT_THAT(all.err, HasSubstr("100 of its 101 roads"));
+  EXPECT_THAT(all.err, HasSubstr("[source-too-large]"));
+  const std::size_t start = all.err.find("--extent ") + 9;
+  const std::string extent = all.err.substr(start, all.err.find(' ', start) - start);
+  EXPECT_EQ(ingest({source, "--map", map("m.gpkg"), "--extent", extent}).code, 0) << extent;
 }
 
 TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {

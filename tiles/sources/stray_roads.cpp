@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tiles/sources/gdal_session.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -60,16 +62,23 @@ Core core_of(std::span<const GridBox> boxes) {
   return core;
 }
 
-/// W,S,E,N of a box in degrees that holds this one.
-std::string extent_around(const GridBox& box, const UtmZone& zone) {
-  const LatLon corners[] = {zone.unproject(box.min), zone.unproject({box.max.east_m, box.min.north_m}),
-                            zone.unproject({box.min.east_m, box.max.north_m}), zone.unproject(box.max)};
+/// W,S,E,N in degrees, rounded outwards; in letters where it has none. Not by UtmZone: a stray road may have led to a
+/// zone far from all others.
+std::string extent_around(const GridBox& box, UtmZone zone) {
+  constexpr int kPointsOfASide = 21;
+  const GdalMessages messages;
+  const TransformationPtr to_earth = transformation(utm_reference(zone), wgs84_reference(), "the roads");
+  double west = 0.0;
+  double south = 0.0;
+  double east = 0.0;
+  double north = 0.0;
+  if (to_earth->TransformBounds(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m, &west, &south, &east,
+                                &north, kPointsOfASide) == FALSE) {
+    return "W,S,E,N";
+  }
   const auto down = [](double degrees) { return std::floor(degrees * 1e4) / 1e4; };
   const auto up = [](double degrees) { return std::ceil(degrees * 1e4) / 1e4; };
-  return fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", down(std::min(corners[0].lon_deg, corners[2].lon_deg)),
-                     down(std::min(corners[0].lat_deg, corners[1].lat_deg)),
-                     up(std::max(corners[1].lon_deg, corners[3].lon_deg)),
-                     up(std::max(corners[2].lat_deg, corners[3].lat_deg)));
+  return fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", down(west), down(south), up(east), up(north));
 }
 
 std::string sides(const GridBox& box) {

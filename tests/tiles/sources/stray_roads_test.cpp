@@ -56,6 +56,14 @@ TEST_F(StrayRoads, MayLieTogetherAndOnAllSides) {
   EXPECT_THAT(notes(roads), ElementsAre(HasSubstr("100 of its 103 roads lie within 1.9 x 1.9 km")));
 }
 
+TEST_F(StrayRoads, AreToldOfWhereTheyLeadToAZoneFarFromTheMany) {
+  auto roads = town(10, 200);
+  roads.push_back(R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[[0,0],[0.001,0.001]]}})");
+  const UtmZone between = *UtmZone::from_epsg(32634);  // that of the middle of the box
+  const RoadNetwork network = read_road_network({geojson(roads)}, {}, RoadRules(), between);
+  EXPECT_THAT(network.notes, ElementsAre(HasSubstr("--extent 37.8")));
+}
+
 TEST_F(StrayRoads, AreNoVillagesAroundATown) {
   auto roads = town(10, 200);
   for (int i = 0; i < 12; ++i) roads.push_back(road(-8'000 + 1'500 * i, 9'000));

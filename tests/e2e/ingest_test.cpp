@@ -224,7 +224,9 @@ TEST_F(IngestCommand, ASourceMadeTooLargeByAStrayRoadHearsOfTheExtentOfTheOthers
   };
   std::ofstream file(folder / "town.geojson");
   file << R"({"type":"FeatureCollection","features":[)" << line(0.0, 0.0);
-  for (int i = 0; i < 100; ++i) file << ',' << line(38.2 + 0.001 * (i % 10), 37.7 + 0.001 * (i / 10));
+  for (int row = 0; row < 10; ++row) {
+    for (int col = 0; col < 10; ++col) file << ',' << line(38.2 + 0.001 * col, 37.7 + 0.001 * row);
+  }
   file << "]}";
   file.close();
   const std::string source = folder / "town.geojson";

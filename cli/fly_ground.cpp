@@ -179,6 +179,8 @@ fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Gro
 
 VehicleNoise vehicle_of(const FlyOptions& options) {
   VehicleNoise vehicle;
+  vehicle.wind = Wind::of(options.wind_sigma_m_s, options.wind_walk);
+  vehicle.scale_range = options.scale_range;
   if (!options.no_odometry) return vehicle;
   const fly::Handling handling = handling_of(options);
   vehicle.planar =

@@ -37,6 +37,26 @@ void add_basics(CLI::App& command, FlyOptions& o) {
       ->check(CLI::Range(1, 1024));
 }
 
+void add_belief_options(CLI::App& command, FlyOptions& o) {
+  constexpr const char* kGroup = "What the filters take to be uncertain";
+  command
+      .add_option("--scale-range", o.scale_range,
+                  "The altitude: the ground seen may be smaller by this share, or larger by as much, for long")
+      ->capture_default_str()
+      ->group(kGroup)
+      ->check(CLI::Range(0.0, kMostScaleRange));
+  command
+      .add_option("--wind-sigma", o.wind_sigma_m_s,
+                  "The wind at first, where odometry is relative to the air: 1 sigma in metres per second and axis")
+      ->group(kGroup)
+      ->check(CLI::Range(0.0, 100.0));
+  command
+      .add_option("--wind-walk", o.wind_walk,
+                  "Its changes: growth of the sigma in m/s per square root of a second; default: a fiftieth of it")
+      ->group(kGroup)
+      ->check(CLI::Range(0.0, 10.0));
+}
+
 void add_flight_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "Flight";
   const auto add = [&](const char* name, auto& value, const char* what) {
@@ -79,8 +99,12 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
   add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");
   add("--turn-noise", o.turn_noise_deg, "Odometry: degrees of each step's turn");
   add("--turn-drift", o.turn_drift_deg, "Odometry: degrees per second, once for a flight");
+  add("--wind", o.plan.odometry.wind_m_s,
+      "Odometry: metres per second and axis of a wind that it does not feel, once for a flight");
   add("--attitude", o.attitude_deg, "Imagery: degrees of roll and pitch not known to the rectification");
-  add("--altitude", o.camera.altitude, "Imagery: relative error of the altitude");
+  add("--altitude", o.camera.altitude, "Imagery: relative error of the altitude, in every frame");
+  add("--altitude-bias", o.plan.altitude_bias,
+      "Relative error of the altitude, once for a flight; recorded frames are as they are");
   add("--agl", o.camera.agl_m, "Imagery: metres above ground, by which attitude moves what is seen");
   add("--erase", o.quality.erase, "Feature maps: share of the road that is missing");
   add("--invent", o.quality.invent, "Feature maps: roads that are not there, as a share of the true ones");
@@ -146,6 +170,7 @@ void add_fly_options(CLI::App& command, FlyOptions& options) {
   add_basics(command, options);
   add_flight_options(command, options);
   add_error_options(command, options);
+  add_belief_options(command, options);
   add_service_options(command, options);
   add_output_options(command, options);
   add_detector_options(command, options.detector);

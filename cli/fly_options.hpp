@@ -25,6 +25,9 @@ struct FlyOptions {
   fly::FlightPlan plan;
   std::optional<int> steps;  ///< default: those of the plan; of a recorded flight all
   double turn_rate_deg = 10.0;
+  std::optional<double> wind_sigma_m_s;
+  std::optional<double> wind_walk;
+  double scale_range = 0.0;
   double turn_noise_deg = 0.3;
   double turn_drift_deg = 0.05;
   bool no_odometry = false;

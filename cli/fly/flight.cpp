@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -45,13 +46,14 @@ class Sight {
   Sight(const FlightPlan& plan, const Sensor& sensor, std::uint64_t seed) : plan_(plan), sensor_(sensor), seed_(seed) {
     Random random = stream(seed, kRegistration, 0);
     off_ = {plan.registration_m * normal(random), plan.registration_m * normal(random)};
+    scale_ = std::max(0.5, 1.0 + plan.altitude_bias * normal(random));
   }
 
   Sighting at(int step, const GridPose& pose) const {
     Random random = camera_stream(seed_, step);
     if (!frame_comes(plan_, step, random)) return {};
     return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
-                       random);
+                       scale_, random);
   }
 
  private:
@@ -59,6 +61,7 @@ class Sight {
   const Sensor& sensor_;
   std::uint64_t seed_;
   GridPoint off_;
+  double scale_ = 1.0;
 };
 
 }  // namespace

@@ -39,6 +39,9 @@ struct FlightPlan {
   /// 1 sigma per axis by which all that is seen lies elsewhere than on the map, once for the flight: what a map that is
   /// told to be so far off may do. Of no use where imagery has an error of its own.
   double registration_m = 0.0;
+  /// 1 sigma of the relative error of the altitude, once for the flight: so much larger is all ground that is seen than
+  /// the vehicle takes it to be. Recorded frames are as they are.
+  double altitude_bias = 0.0;
 };
 
 /// What the vehicle tells at a step.

@@ -69,7 +69,7 @@ json line(const json& places, const std::string& what, const std::string& filter
 std::string csv_header() {
   return "seed,filter,step,time_s,true_lat,true_lon,true_heading_deg,lat,lon,heading_deg,error_m,heading_error_deg,"
          "weight,converged,sigma_major_m,sigma_minor_m,ellipse_heading_deg,heading_sigma_deg,cov_ee_m2,cov_en_m2,"
-         "cov_nn_m2,clusters,particles,measurement,doubt,resets,step_ms\n";
+         "cov_nn_m2,clusters,particles,measurement,doubt,resets,scale,scale_sigma,step_ms\n";
 }
 
 std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& zone) {
@@ -80,13 +80,14 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
     const Covariance covariance = covariance_of(r, zone);
     lines += fmt::format(
         "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{:.3f},{:.3f},{:.2f},{:.3f},"
-        "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.3f}\n",
+        "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",
         run.seed, filter, r.sequence, r.time_s, truth.lat_deg, truth.lon_deg,
         zone.true_from_grid(r.truth.heading, r.truth.position).compass_degrees(), best.pose.position.lat_deg,
         best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
         r.estimate.converged ? 1 : 0, best.sigma_m[0], best.sigma_m[1], best.ellipse_heading.degrees(),
         best.heading_sigma.degrees(), covariance.ee, covariance.en, covariance.nn, r.estimate.cluster_count,
-        r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, r.step_ms);
+        r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, best.scale,
+        best.scale_sigma, r.step_ms);
   }
   return lines;
 }

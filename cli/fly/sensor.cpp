@@ -23,13 +23,13 @@ class Camera {
   Camera(const Orthoimage& imagery, const Footprint& footprint, const CameraErrors& errors, double cell_m)
       : imagery_(imagery), footprint_(footprint), errors_(errors), cell_m_(cell_m) {}
 
-  Shot aim(const GridPose& pose, bench::Random& random) const {
+  Shot aim(const GridPose& pose, double scale, bench::Random& random) const {
     // A small tilt moves what is seen; that it also stretches it by a share of that is left out.
     const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
-    const double scale = std::max(0.5, 1.0 + errors_.altitude * normal(random));
+    const double now = std::max(0.5, 1.0 + errors_.altitude * normal(random));
     constexpr int kSeedBits = 31;
-    return {moved(pose, {forward, right, {}}), scale, random() >> (64 - kSeedBits)};
+    return {moved(pose, {forward, right, {}}), scale * now, random() >> (64 - kSeedBits)};
   }
 
   CameraFrame take(const Shot& shot) const {
@@ -67,8 +67,8 @@ class ImagingSensor : public Sensor {
  public:
   ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
 
-  Sighting see(const GridPose& pose, bench::Random& random) const override {
-    CameraFrame frame = camera_.take(camera_.aim(pose, random));
+  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+    CameraFrame frame = camera_.take(camera_.aim(pose, scale, random));
     return {detect_features(detector_, rectified(std::move(frame.image)), frame.cell_m, frame.seed), {}};
   }
 
@@ -83,8 +83,8 @@ class CameraSensor : public Sensor {
  public:
   explicit CameraSensor(const Camera& camera) : camera_(camera) {}
 
-  Sighting see(const GridPose& pose, bench::Random& random) const override {
-    return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, random)] { return camera.take(shot); }};
+  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+    return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] { return camera.take(shot); }};
   }
 
   bool shows(GridPoint point) const override { return camera_.shows(point); }
@@ -96,13 +96,15 @@ class CameraSensor : public Sensor {
 class SimulatedSensor : public Sensor {
  public:
   SimulatedSensor(const MapView& map, const Footprint& footprint, const FeatureQuality& quality)
-      : ground_(map.read(GridGeometry::covering(map.extent, map.cell_m))),
-        cols_(static_cast<int>(std::lround(footprint.width_m / map.cell_m))),
-        rows_(static_cast<int>(std::lround(footprint.height_m / map.cell_m))),
-        quality_(quality) {}
+      : ground_(map.read(GridGeometry::covering(map.extent, map.cell_m))), footprint_(footprint), quality_(quality) {}
 
-  Sighting see(const GridPose& pose, bench::Random& random) const override {
-    return {simulate_features(ground_, pose, cols_, rows_, quality_, random), {}};
+  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+    const double cell_m = ground_.geometry.cell_m;
+    const auto cells = [&](double metres) { return static_cast<int>(std::lround(scale * metres / cell_m)); };
+    FeatureMap features =
+        simulate_features(ground_, pose, cells(footprint_.width_m), cells(footprint_.height_m), quality_, random);
+    features.cell_m /= scale;
+    return {std::move(features), {}};
   }
 
   bool shows(GridPoint point) const override {
@@ -112,8 +114,7 @@ class SimulatedSensor : public Sensor {
 
  private:
   RoadGrid ground_;
-  int cols_;
-  int rows_;
+  Footprint footprint_;
   FeatureQuality quality_;
 };
 

@@ -35,8 +35,9 @@ struct Sighting {
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// Safe to call from several threads with generators of their own.
-  virtual Sighting see(const GridPose& pose, bench::Random& random) const = 0;
+  /// `scale`: the ground that is seen is so many times as large as the sighting says. Safe to call from several threads
+  /// with generators of their own.
+  virtual Sighting see(const GridPose& pose, double scale, bench::Random& random) const = 0;
   /// Whether the middle of the frame would show ground.
   virtual bool shows(GridPoint point) const = 0;
 };

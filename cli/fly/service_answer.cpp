@@ -22,7 +22,9 @@ TrackCluster cluster_of(const json& value) {
           value.at("sigma_m").get<std::array<double, 2>>(),
           Angle::degrees(value.at("ellipse_heading_deg")),
           Angle::degrees(value.at("heading_sigma_deg")),
-          value.at("radius95_m")};
+          value.at("radius95_m"),
+          value.at("scale"),
+          value.at("scale_sigma")};
 }
 
 Measurement measurement_of(const std::string& word) {

@@ -98,7 +98,9 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
                {"measure_every", plan.measure_every},
                {"seed", seed},
                {"odometry_share", plan.vehicle.odometry_share},
-               {"wind_walk", plan.vehicle.wind_walk}};
+               {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
+               {"wind_walk", plan.vehicle.wind.walk},
+               {"scale_range", plan.vehicle.scale_range}};
   if (plan.vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
     request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;

@@ -17,7 +17,9 @@ Odometry arc(double length_m, Angle turn) {
 }  // namespace
 
 OdometrySensor::OdometrySensor(const OdometryErrors& errors, bench::Random& random)
-    : errors_(errors), scale_(1.0 + errors.scale * normal(random)), turn_drift_(normal(random) * errors.turn_drift) {}
+    : errors_(errors), scale_(1.0 + errors.scale * normal(random)), turn_drift_(normal(random) * errors.turn_drift) {
+  if (errors.wind_m_s > 0.0) wind_m_s_ = {errors.wind_m_s * normal(random), errors.wind_m_s * normal(random)};
+}
 
 Odometry OdometrySensor::tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const {
   const double spread = errors_.share * length_m;
@@ -32,6 +34,8 @@ Odometry Vehicle::move(Angle turn, bench::Random& random) {
   const double length_m = handling_.speed_m_s * handling_.step_s;
   const Odometry step = arc(length_m, turn);
   pose_ = moved(pose_, step);
+  pose_.position.east_m += handling_.step_s * odometry_.wind_m_s().east_m;
+  pose_.position.north_m += handling_.step_s * odometry_.wind_m_s().north_m;
   return odometry_.tell(step, length_m, handling_.step_s, random);
 }
 

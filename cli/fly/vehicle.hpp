@@ -13,6 +13,7 @@ struct OdometryErrors {
   Angle turn = Angle::degrees(0.3);         ///< of a step's turn
   double scale = 0.02;                      ///< of all distances: altitude or calibration is off
   Angle turn_drift = Angle::degrees(0.05);  ///< per second
+  double wind_m_s = 0.0;                    ///< per axis: it is relative to the air
 };
 
 /// Of one flight: what it draws once is drawn when it is made.
@@ -20,13 +21,16 @@ class OdometrySensor {
  public:
   OdometrySensor(const OdometryErrors& errors, bench::Random& random);
 
-  /// What it says of a motion of that length and duration.
+  /// What it says of a motion through the air of that length and duration.
   Odometry tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
+  /// Velocity of the air over the ground, east and north.
+  GridPoint wind_m_s() const { return wind_m_s_; }
 
  private:
   OdometryErrors errors_;
   double scale_;
   Angle turn_drift_;
+  GridPoint wind_m_s_;
 };
 
 class Vehicle {

@@ -76,10 +76,13 @@ Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
     cluster.mean.position.north_m += w * p.north_m[i];
     sine += w * std::sin(p.heading_rad[i]);
     cosine += w * std::cos(p.heading_rad[i]);
+    cluster.log_scale += w * p.log_scale[i];
   }
   cluster.mean.position.east_m /= cluster.weight;
   cluster.mean.position.north_m /= cluster.weight;
+  cluster.log_scale /= cluster.weight;
   cluster.mean.heading = Angle::radians(std::atan2(sine, cosine));
+  double scale_variance = 0.0;
   std::vector<std::pair<double, double>> distances;
   for (const std::size_t i : members) {
     const std::array<double, 3> off{p.east_m[i] - cluster.mean.position.east_m,
@@ -88,8 +91,10 @@ Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t b = 0; b < 3; ++b) cluster.covariance[a][b] += p.weight[i] / cluster.weight * off[a] * off[b];
     }
+    scale_variance += p.weight[i] / cluster.weight * std::pow(p.log_scale[i] - cluster.log_scale, 2.0);
     distances.emplace_back(std::hypot(off[0], off[1]), p.weight[i]);
   }
+  cluster.log_scale_sigma = std::sqrt(scale_variance);
   std::ranges::sort(distances);
   double within = 0.0;
   for (const auto& [distance, weight] : distances) {

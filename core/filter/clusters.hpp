@@ -18,6 +18,8 @@ struct Cluster {
   double weight = 0.0;  ///< share of all weight
   PoseCovariance covariance{};
   double radius95_m = 0.0;  ///< holds 95 % of the cluster's weight
+  double log_scale = 0.0;   ///< mean
+  double log_scale_sigma = 0.0;
   std::size_t particles = 0;
 
   /// 1 sigma along the major axis.

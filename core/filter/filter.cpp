@@ -19,7 +19,8 @@ bool normalise(std::vector<double>& weights) {
 
 class ProposalDraw {
  public:
-  explicit ProposalDraw(std::span<const Proposal> proposals) : proposals_(proposals) {
+  ProposalDraw(std::span<const Proposal> proposals, const AcceptanceRegion& region)
+      : proposals_(proposals), region_(region) {
     for (const Proposal& proposal : proposals) {
       total_ += proposal.weight;
       const auto factor = cholesky(proposal.covariance);
@@ -37,12 +38,17 @@ class ProposalDraw {
     const double a = random.normal();
     const double b = random.normal();
     const double c = random.normal();
-    return {mean.position.east_m + l[0][0] * a, mean.position.north_m + l[1][0] * a + l[1][1] * b,
-            (mean.heading + Angle::radians(l[2][0] * a + l[2][1] * b + l[2][2] * c)).wrapped().radians()};
+    ParticleState state{mean.position.east_m + l[0][0] * a, mean.position.north_m + l[1][0] * a + l[1][1] * b,
+                        (mean.heading + Angle::radians(l[2][0] * a + l[2][1] * b + l[2][2] * c)).wrapped().radians()};
+    const double log_scale = proposals_[k].log_scale + proposals_[k].log_scale_sigma * random.normal();
+    state.log_scale = std::clamp(log_scale, -region_.most_log_scale, region_.most_log_scale);
+    draw_drift(region_, state, random);
+    return state;
   }
 
  private:
   std::span<const Proposal> proposals_;
+  const AcceptanceRegion& region_;
   std::vector<Matrix3> factors_;
   double total_ = 0.0;
 };
@@ -79,13 +85,13 @@ void Filter::start_from(std::span<const Proposal> proposals, double uniform_shar
 void Filter::restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   ++state_.step;
   state_.slow_support = state_.fast_support = 0.5;
-  const ProposalDraw around(proposals);
+  const ProposalDraw around(proposals, region_);
   const auto count = static_cast<std::size_t>(options_.max_particles);
   const auto uniform = proposals.empty() ? count : static_cast<std::size_t>(uniform_share * static_cast<double>(count));
   state_.particles.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     RandomStream random(Draw::kStart, {state_.seed, state_.step, i});
-    state_.particles.set(i, i < uniform ? uniform_draw(over, random) : around(random));
+    state_.particles.set(i, i < uniform ? uniform_draw(region_, over, random) : around(random));
     state_.particles.weight[i] = 1.0 / static_cast<double>(count);
   }
 }
@@ -96,7 +102,7 @@ void Filter::begin_step() {
   if (options_.injection != Injection::kFixedShare) return;
   const auto count = static_cast<double>(state_.particles.size());
   replace_some(static_cast<std::size_t>(options_.injected_share * count),
-               [this](RandomStream& random) { return uniform_draw(region_.poses, random); });
+               [this](RandomStream& random) { return uniform_draw(region_, region_.poses, random); });
 }
 
 bool Filter::keep_within_region() {
@@ -165,7 +171,7 @@ void Filter::resample() {
   p = std::move(drawn);
   roughen(ancestors);
   replace_some(static_cast<std::size_t>(share_to_inject() * static_cast<double>(count)),
-               [this](RandomStream& stream) { return uniform_draw(region_.poses, stream); });
+               [this](RandomStream& stream) { return uniform_draw(region_, region_.poses, stream); });
 }
 
 void Filter::roughen(std::span<const std::size_t> ancestors) {
@@ -178,13 +184,16 @@ void Filter::roughen(std::span<const std::size_t> ancestors) {
     p.north_m[k] += options_.roughening_m * random.normal();
     const double turn = options_.roughening_heading.radians() * random.normal();
     p.heading_rad[k] = Angle::radians(p.heading_rad[k] + turn).wrapped().radians();
+    const double log_scale = p.log_scale[k] + options_.roughening_log_scale * random.normal();
+    p.log_scale[k] = std::clamp(log_scale, -region_.most_log_scale, region_.most_log_scale);
   }
 }
 
 void Filter::inject(std::span<const Proposal> proposals, double share) {
   if (proposals.empty()) return;
   ++state_.step;
-  replace_some(static_cast<std::size_t>(share * static_cast<double>(state_.particles.size())), ProposalDraw(proposals));
+  replace_some(static_cast<std::size_t>(share * static_cast<double>(state_.particles.size())),
+               ProposalDraw(proposals, region_));
 }
 
 template <typename DrawState>

@@ -35,6 +35,7 @@ struct FilterOptions {
   double fast_rate = 0.2;
   double roughening_m = 1.0;  ///< 1 sigma by which copies of a particle are moved apart
   Angle roughening_heading = Angle::degrees(0.5);
+  double roughening_log_scale = 0.003;  ///< where the region leaves the scale open
 
   /// The paper's: a fixed number, resampling after every measurement, 15 % drawn uniformly in every step, copies stay
   /// copies.
@@ -46,6 +47,8 @@ struct Proposal {
   GridPose mean;
   PoseCovariance covariance{};
   double weight = 1.0;
+  double log_scale = 0.0;
+  double log_scale_sigma = 0.0;
 };
 
 /// All that a filter is between two steps.

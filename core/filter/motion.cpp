@@ -74,6 +74,11 @@ void OdometryMotion::operator()(ParticleState& state, RandomStream& random) cons
   drift(state, random, seconds_, drift_walk_);
 }
 
+void ScaleWalk::operator()(ParticleState& state, RandomStream& random) const {
+  const double sigma = walk * std::sqrt(seconds);
+  state.log_scale = std::clamp(state.log_scale + sigma * random.normal(), -most_log_scale, most_log_scale);
+}
+
 void ConstantVelocityMotion::operator()(ParticleState& state, RandomStream& random) const {
   drift(state, random, seconds, velocity_walk);
   state.heading_rad = wrapped(state.heading_rad + heading_walk_rad * std::sqrt(seconds) * random.normal());

@@ -55,6 +55,15 @@ class OdometryMotion {
   double drift_walk_;
 };
 
+/// The error of the altitude wanders, and stays within its range.
+struct ScaleWalk {
+  double seconds = 0.0;
+  double walk = 0.0;  ///< growth of the logarithm's sigma per square root of a second
+  double most_log_scale = 0.0;
+
+  void operator()(ParticleState& state, RandomStream& random) const;
+};
+
 /// Nothing is told: the drift goes on, changed by white acceleration, and the heading wanders.
 struct ConstantVelocityMotion {
   double seconds = 0.0;

@@ -13,13 +13,15 @@
 namespace roadfix {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3130'5346'4652ULL;  // "RFFS01"
+constexpr std::uint64_t kMagic = 0x3230'5346'4652ULL;        // "RFFS02"
+constexpr std::uint64_t kMagicBefore = 0x3130'5346'4652ULL;  // "RFFS01": without the last column
 constexpr std::size_t kMaxParticles = 10'000'000;
-constexpr std::size_t kColumns = 6;
+constexpr std::size_t kColumns = 7;
 constexpr std::size_t kHeaderWords = 7;
 
 auto columns_of(auto& p) {
-  return std::array{&p.east_m, &p.north_m, &p.heading_rad, &p.drift_east_m_s, &p.drift_north_m_s, &p.weight};
+  return std::array{&p.east_m,          &p.north_m, &p.heading_rad, &p.drift_east_m_s,
+                    &p.drift_north_m_s, &p.weight,  &p.log_scale};
 }
 
 [[noreturn]] void refuse(const char* what) {
@@ -46,9 +48,11 @@ std::vector<std::byte> to_bytes(const FilterState& state) {
 }
 
 FilterState filter_state_of(std::span<const std::byte> bytes) {
-  if (bytes.size() < kWordBytes * kHeaderWords || word_at(bytes, 0) != kMagic) refuse("is of no known version");
+  const std::uint64_t magic = bytes.size() < kWordBytes * kHeaderWords ? 0 : word_at(bytes, 0);
+  if (magic != kMagic && magic != kMagicBefore) refuse("is of no known version");
+  const std::size_t columns = magic == kMagic ? kColumns : kColumns - 1;
   const std::uint64_t count = word_at(bytes, 1);
-  if (count == 0 || count > kMaxParticles || bytes.size() != kWordBytes * (kHeaderWords + kColumns * count)) {
+  if (count == 0 || count > kMaxParticles || bytes.size() != kWordBytes * (kHeaderWords + columns * count)) {
     refuse("is not whole");
   }
   FilterState state;
@@ -59,14 +63,16 @@ FilterState filter_state_of(std::span<const std::byte> bytes) {
   state.fast_support = std::bit_cast<double>(word_at(bytes, 6));
   state.particles.resize(count);
   std::size_t at = kWordBytes * kHeaderWords;
-  for (auto* column : columns_of(state.particles)) {
+  const auto all = columns_of(state.particles);
+  for (auto* column : std::span(all).first(columns)) {
     std::memcpy(column->data(), bytes.data() + at, kWordBytes * count);
     at += kWordBytes * count;
     if (!std::ranges::all_of(*column, [](double x) { return std::isfinite(x); })) refuse("holds what is no number");
   }
   const auto is_support = [](double x) { return x >= 0.0 && x <= 1.0; };
   const bool has_weights = std::ranges::all_of(state.particles.weight, [](double w) { return w >= 0.0 && w <= 1.0; });
-  if (!is_support(state.slow_support) || !is_support(state.fast_support) || !has_weights) {
+  const bool has_scales = std::ranges::all_of(state.particles.log_scale, [](double s) { return std::abs(s) <= 1.0; });
+  if (!is_support(state.slow_support) || !is_support(state.fast_support) || !has_weights || !has_scales) {
     refuse("holds values that no filter has");
   }
   return state;

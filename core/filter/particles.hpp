@@ -16,6 +16,9 @@ struct ParticleState {
   double heading_rad = 0.0;
   double drift_east_m_s = 0.0;
   double drift_north_m_s = 0.0;
+  /// Natural logarithm of how many times larger the ground below is than was told, since the altitude is only roughly
+  /// known.
+  double log_scale = 0.0;
 
   GridPose pose() const { return {{east_m, north_m}, Angle::radians(heading_rad)}; }
   friend bool operator==(const ParticleState&, const ParticleState&) = default;
@@ -28,16 +31,17 @@ struct Particles {
   std::vector<double> heading_rad;  ///< in (-pi, pi]
   std::vector<double> drift_east_m_s;
   std::vector<double> drift_north_m_s;
+  std::vector<double> log_scale;
   std::vector<double> weight;  ///< sum to 1
 
   std::size_t size() const { return weight.size(); }
   void resize(std::size_t count) {
-    for (auto* column : {&east_m, &north_m, &heading_rad, &drift_east_m_s, &drift_north_m_s, &weight}) {
+    for (auto* column : {&east_m, &north_m, &heading_rad, &drift_east_m_s, &drift_north_m_s, &log_scale, &weight}) {
       column->resize(count);
     }
   }
   ParticleState at(std::size_t i) const {
-    return {east_m[i], north_m[i], heading_rad[i], drift_east_m_s[i], drift_north_m_s[i]};
+    return {east_m[i], north_m[i], heading_rad[i], drift_east_m_s[i], drift_north_m_s[i], log_scale[i]};
   }
   void set(std::size_t i, const ParticleState& state) {
     east_m[i] = state.east_m;
@@ -45,6 +49,7 @@ struct Particles {
     heading_rad[i] = state.heading_rad;
     drift_east_m_s[i] = state.drift_east_m_s;
     drift_north_m_s[i] = state.drift_north_m_s;
+    log_scale[i] = state.log_scale;
   }
   friend bool operator==(const Particles&, const Particles&) = default;
 };

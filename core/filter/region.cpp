@@ -12,18 +12,26 @@ GridBox clipped(const GridBox& box, const GridCircle& circle) {
 
 bool AcceptanceRegion::keeps(GridPoint point) const { return poses.grown(beyond_m, Angle()).contains(point); }
 
-ParticleState uniform_draw(const PoseRegion& region, RandomStream& random) {
-  const GridBox within = region.circle ? clipped(region.box, *region.circle) : region.box;
+ParticleState uniform_draw(const AcceptanceRegion& region, const PoseRegion& poses, RandomStream& random) {
+  const GridBox within = poses.circle ? clipped(poses.box, *poses.circle) : poses.box;
   ParticleState state;
   constexpr int kMostTries = 1000;  // a circle that only grazes the box
   for (int i = 0; i < kMostTries; ++i) {
     state.east_m = random.uniform(within.min.east_m, within.max.east_m);
     state.north_m = random.uniform(within.min.north_m, within.max.north_m);
-    if (region.contains({state.east_m, state.north_m})) break;
+    if (poses.contains({state.east_m, state.north_m})) break;
   }
-  const double half_rad = region.heading_half_width.radians();
-  state.heading_rad = (region.heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
+  const double half_rad = poses.heading_half_width.radians();
+  state.heading_rad = (poses.heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
+  state.log_scale = random.uniform(-region.most_log_scale, region.most_log_scale);
+  draw_drift(region, state, random);
   return state;
+}
+
+void draw_drift(const AcceptanceRegion& region, ParticleState& state, RandomStream& random) {
+  if (region.drift_sigma_m_s == 0.0) return;
+  state.drift_east_m_s = region.drift_sigma_m_s * random.normal();
+  state.drift_north_m_s = region.drift_sigma_m_s * random.normal();
 }
 
 }  // namespace roadfix

@@ -35,14 +35,15 @@ double kld_sample_count(std::size_t bins, const KldOptions& options) {
 }
 
 std::size_t occupied_bins(const Particles& particles, std::span<const std::size_t> chosen, const KldOptions& options) {
-  using Bin = std::array<std::int64_t, 3>;
+  using Bin = std::array<std::int64_t, 4>;
+  const auto bin = [](double value, double size) { return static_cast<std::int64_t>(std::floor(value / size)); };
   std::vector<Bin> bins;
   for (std::size_t n = 0; n < chosen.size(); ++n) {
     const std::size_t i = chosen[n];
     if (n > 0 && i == chosen[n - 1]) continue;
-    bins.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / options.bin_m)),
-                    static_cast<std::int64_t>(std::floor(particles.north_m[i] / options.bin_m)),
-                    static_cast<std::int64_t>(std::floor(particles.heading_rad[i] / options.bin_heading.radians()))});
+    bins.push_back({bin(particles.east_m[i], options.bin_m), bin(particles.north_m[i], options.bin_m),
+                    bin(particles.heading_rad[i], options.bin_heading.radians()),
+                    bin(particles.log_scale[i], options.bin_log_scale)});
   }
   std::ranges::sort(bins);
   return static_cast<std::size_t>(std::distance(bins.begin(), std::unique(bins.begin(), bins.end())));

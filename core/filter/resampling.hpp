@@ -19,6 +19,7 @@ std::vector<std::size_t> systematic_ancestors(std::span<const double> weights, s
 struct KldOptions {
   double bin_m = 20.0;
   Angle bin_heading = Angle::degrees(10.0);
+  double bin_log_scale = 0.05;
   double error = 0.05;       ///< Kullback-Leibler distance to the true posterior that is tolerated ...
   double quantile = 2.3263;  ///< ... with the probability of this standard normal quantile (0.99)
 };

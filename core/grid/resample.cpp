@@ -108,6 +108,13 @@ FeatureMap resampled(const FeatureMap& map, double cell_m) {
   return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
 }
 
+FeatureMap scaled(const FeatureMap& map, double factor) {
+  if (factor == 1.0) return map;
+  FeatureMap larger = map;
+  larger.cell_m *= factor;
+  return resampled(larger, map.cell_m);
+}
+
 FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }
 
 CellArray quarter_turned(const CellArray& cells) {

@@ -16,6 +16,9 @@ RoadGrid halved(const RoadGrid& grid);
 /// The same ground in cells of another size, averaged over area when coarser, bilinear when finer.
 FeatureMap resampled(const FeatureMap& map, double cell_m);
 
+/// Its ground so many times as large, in cells of the same size.
+FeatureMap scaled(const FeatureMap& map, double factor);
+
 /// The feature map turned to grid north-up: `heading` is the direction of its forward edge, clockwise from grid north.
 /// The result is just large enough; corners that the map did not see are unobserved; nadir lies on a cell centre.
 FeatureMap rotated(const FeatureMap& map, Angle heading);

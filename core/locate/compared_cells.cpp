@@ -45,13 +45,6 @@ ComparedBlock coarser(const MapView& map, const GridGeometry& window, int levels
   return block;
 }
 
-FeatureMap at_scale(const FeatureMap& features, double scale) {
-  if (scale == 1.0) return features;
-  FeatureMap scaled = features;
-  scaled.cell_m *= scale;
-  return resampled(scaled, features.cell_m);
-}
-
 }  // namespace
 
 GridReader compared_cells(const MapView& map, double finest_cell_m) {
@@ -86,7 +79,7 @@ double rho_at(const MapView& map, const FeatureMap& features, const GridPose& po
   const double row = -pose.position.north_m / features.cell_m;
   const LatticeIndex cell{static_cast<int>(std::floor(col)), static_cast<int>(std::floor(row))};
   const Footprint footprint =
-      footprint_at(at_scale(features, scale), pose.heading, {col - cell.col - 0.5, row - cell.row - 0.5});
+      footprint_at(scaled(features, scale), pose.heading, {col - cell.col - 0.5, row - cell.row - 0.5});
   const int reach = footprint.reach();
   const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
   const MapPlane plane(map.read(window).cells, 0);

@@ -89,10 +89,7 @@ void require_valid(const FixOptions& options, double area_km2) {
     throw InvalidInput("confidence-out-of-range",
                        fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
   }
-  if (!(options.scale_range >= 0.0 && options.scale_range <= kMostScaleRange)) {
-    throw InvalidInput("scale-range-out-of-range", fmt::format("the scale range is {}: give a share from 0 to {}",
-                                                               options.scale_range, kMostScaleRange));
-  }
+  require_scale_range(options.scale_range);
   if (options.max_search_km2 > 0.0 && area_km2 > options.max_search_km2) {
     throw LimitExceeded("search-area-too-large",
                         fmt::format("the prior leaves {:.1f} km2 to search, more than the limit of {:.1f} km2: give a "

@@ -11,10 +11,16 @@
 
 namespace roadfix {
 
-/// One for each particle, in their order. `features` are in cells of the map or of an overview (see in_cells_of()).
-/// Particles share headings in bins by which the edge of the footprint moves two cells, and lie on the nearest cell.
-/// Those without weight are left out: n = 0. Throws Interrupted when asked to stop.
-std::vector<MatchSums> match_particles(const MapView& map, const FeatureMap& features, const Particles& particles,
-                                       int threads = 1, const std::stop_token& stop = {});
+struct ParticleMatches {
+  std::vector<MatchSums> sums;  ///< one for each particle, in their order; n = 0 for those without weight
+  /// Factor on the feature map's size at which each was matched.
+  std::vector<double> scales;
+};
+
+/// `features` are in cells of the map or of an overview (see in_cells_of()), and their size may be wrong by
+/// `scale_range` (see Scales). Particles share headings, and scales, in bins by which the edge of the footprint moves
+/// two cells, and lie on the nearest cell. Throws Interrupted when asked to stop.
+ParticleMatches match_particles(const MapView& map, const FeatureMap& features, const Particles& particles,
+                                double scale_range = 0.0, int threads = 1, const std::stop_token& stop = {});
 
 }  // namespace roadfix

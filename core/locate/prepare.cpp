@@ -72,6 +72,12 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
   return resampled(features, cell_m);
 }
 
+void require_scale_range(double range) {
+  if (range >= 0.0 && range <= kMostScaleRange) return;
+  throw InvalidInput("scale-range-out-of-range",
+                     fmt::format("the scale range is {}: give a share from 0 to {}", range, kMostScaleRange));
+}
+
 PoseRegion region_of(const MapView& map, const Prior& prior) {
   if (map.extent.empty() || map.extent.width_m() <= 0.0 || map.extent.height_m() <= 0.0) {
     throw InvalidInput("map-unobserved",

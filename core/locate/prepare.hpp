@@ -10,6 +10,9 @@ namespace roadfix {
 /// Throws InvalidInput for an empty feature map and one of a size that makes no sense.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
+/// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMostScaleRange.
+void require_scale_range(double range);
+
 /// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing.
 PoseRegion region_of(const MapView& map, const Prior& prior);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/locate/ellipse.hpp"
+#include "core/match/footprint.hpp"
 
 namespace roadfix {
 
@@ -27,8 +28,9 @@ std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
   return prior;
 }
 
-std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
+std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features) {
   constexpr double kWiden = 4.0;
+  const double cell_at_the_edge = 1.0 / footprint_reach(features);
   constexpr double kLeastWeight = 0.02;
   std::vector<Proposal> proposals;
   for (const FixMode& mode : fix.modes) {
@@ -44,7 +46,9 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix) {
                          {{{along2 * s * s + across2 * c * c, shared, 0.0},
                            {shared, along2 * c * c + across2 * s * s, 0.0},
                            {0.0, 0.0, turn2}}},
-                         std::max(mode.weight, kLeastWeight)});
+                         std::max(mode.weight, kLeastWeight),
+                         std::log(mode.scale),
+                         std::sqrt(kWiden) * cell_at_the_edge});
   }
   return proposals;
 }
@@ -56,7 +60,9 @@ TrackCluster to_geographic(const MapView& map, const Cluster& cluster) {
           ellipse.sigma_m,
           ellipse.heading,
           Angle::radians(std::sqrt(cluster.covariance[2][2])),
-          cluster.radius95_m};
+          cluster.radius95_m,
+          std::exp(cluster.log_scale),
+          std::exp(cluster.log_scale) * cluster.log_scale_sigma};
 }
 
 }  // namespace roadfix

@@ -6,8 +6,18 @@
 #include "core/locate/prepare.hpp"
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/tracker_step.hpp"
+#include "core/match/scales.hpp"
 
 namespace roadfix {
+namespace {
+
+AcceptanceRegion region_of_flight(const MapView& map, const TrackSettings& settings) {
+  require_scale_range(settings.vehicle.scale_range);
+  return {region_of(map, {}), settings.beyond_map_m, most_log_scale(settings.vehicle.scale_range),
+          settings.vehicle.wind.sigma_m_s};
+}
+
+}  // namespace
 
 const char* to_string(Measurement measurement) {
   switch (measurement) {
@@ -27,6 +37,11 @@ const char* to_string(Measurement measurement) {
   return "useless";
 }
 
+Wind Wind::of(std::optional<double> sigma_m_s, std::optional<double> walk) {
+  constexpr double kRootSeconds = 50.0;
+  return {sigma_m_s.value_or(kRootSeconds * walk.value_or(0.0)), walk.value_or(sigma_m_s.value_or(0.0) / kRootSeconds)};
+}
+
 TrackSettings TrackSettings::paper(int particles) {
   TrackSettings settings;
   settings.start = TrackStart::kUniform;
@@ -41,7 +56,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
       settings_(std::move(settings)),
       start_(region_of(map_, settings_.prior)),
-      region_{region_of(map_, {}), settings_.beyond_map_m} {}
+      region_(region_of_flight(map_, settings_)) {}
 
 StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
   return Step(*this, before, step, limits).run();

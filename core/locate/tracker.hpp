@@ -24,6 +24,17 @@
 
 namespace roadfix {
 
+/// The motion of the air over the ground, where odometry or the planar speed is relative to the air.
+struct Wind {
+  double sigma_m_s = 0.0;  ///< per axis, at first
+  double walk = 0.0;       ///< growth of that, m/s per square root of a second
+
+  /// One that is not given follows from the other: a wind changes by its own size in 40 minutes. A filter that takes it
+  /// for constant, or for nothing at first, comes to be sure of a wrong one.
+  static Wind of(std::optional<double> sigma_m_s, std::optional<double> walk);
+  bool is_none() const { return sigma_m_s == 0.0 && walk == 0.0; }
+};
+
 /// Takes the place of what a step does not tell.
 struct VehicleNoise {
   /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was.
@@ -36,7 +47,10 @@ struct VehicleNoise {
   double odometry_share = 0.05;
   double odometry_m = 0.3;  ///< ... so much per axis
   Angle odometry_turn = Angle::degrees(0.5);
-  double wind_walk = 0.0;  ///< see PlanarMotion::drift_walk; > 0 where odometry is relative to the air
+  Wind wind;
+  /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
+  /// that stays much the same from step to step; in [0, kMostScaleRange].
+  double scale_range = 0.0;
 };
 
 enum class TrackStart { kSearch, kUniform };
@@ -100,6 +114,8 @@ struct TrackCluster {
   Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
   Angle heading_sigma;
   double radius95_m = 0.0;  ///< acceptance region: holds 95 % of the cluster
+  double scale = 1.0;       ///< of the feature maps' size, within the scale range
+  double scale_sigma = 0.0;
 };
 
 /// What became of a step's feature map.
@@ -136,7 +152,7 @@ struct StepLimits {
 
 class Tracker {
  public:
-  /// Throws InvalidInput for a prior that does not meet the map.
+  /// Throws InvalidInput for a prior that does not meet the map and for a scale range that cannot be.
   Tracker(MapView map, TrackSettings settings);
 
   /// Throws InvalidInput: "step-late" for a sequence number not above the last, "time-backwards", those of

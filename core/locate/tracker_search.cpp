@@ -31,7 +31,7 @@ bool Tracker::Step::start_by_search() {
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
-  filter_.restart_from(proposals_of(tracker_.map_, *fix), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
+  filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
                        first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
   if (fix->status == FixStatus::kFix) believe(*fix);
@@ -65,9 +65,9 @@ void Tracker::Step::recover() {
   if (agrees && fix->probability >= kProbabilityForClaim) {
     state_.claim.compared = true;
   } else if (fix->status != FixStatus::kFix) {
-    filter_.inject(proposals_of(tracker_.map_, *fix), kInjectedShare);
+    filter_.inject(proposals_of(tracker_.map_, *fix, *features_), kInjectedShare);
   } else {
-    filter_.start_from(proposals_of(tracker_.map_, *fix), 1.0 - kMostOfAFix, tracker_.region_.poses);
+    filter_.start_from(proposals_of(tracker_.map_, *fix, *features_), 1.0 - kMostOfAFix, tracker_.region_.poses);
     estimate_.measurement = Measurement::kSearched;
     forget_support();
     state_.searched = true;
@@ -84,6 +84,7 @@ void Tracker::Step::believe(const Fix& fix) {
 /// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
 std::optional<Fix> Tracker::Step::searched(const Prior& prior) {
   FixOptions options;
+  options.scale_range = settings_.vehicle.scale_range;
   options.max_search_km2 = settings_.max_search_km2;
   options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
   options.time_limit = limits_.search_time;

@@ -7,13 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include "core/locate/particle_matches.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/track_motion.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
+namespace {
+
+// The altitude's error wanders by this share of its range per square root of a second, with the relief below and the
+// air pressure.
+constexpr double kScaleWalkShare = 0.03;
+
+}  // namespace
 
 Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const StepInput& input,
                     const StepLimits& limits)
@@ -78,29 +84,40 @@ void Tracker::Step::move() {
   if (!moved()) forget_support();
 }
 
+template <MotionModel Motion>
+bool Tracker::Step::predict(const Motion& motion) {
+  const double range = settings_.vehicle.scale_range;
+  if (range == 0.0) return filter_.predict(motion);
+  const ScaleWalk scale_walk{seconds(), kScaleWalkShare * range, tracker_.region_.most_log_scale};
+  return filter_.predict([&](ParticleState& state, RandomStream& random) {
+    motion(state, random);
+    scale_walk(state, random);
+  });
+}
+
 /// False where the belief left the region and began anew.
 bool Tracker::Step::moved() {
   const VehicleNoise& vehicle = settings_.vehicle;
   if (input_.odometry) {
     const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
-    const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind_walk);
+    const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind.walk);
     carry_frames_on(*input_.odometry, told);
-    if (estimate_.missed_steps == 0) return filter_.predict(as_told);
+    if (estimate_.missed_steps == 0) return predict(as_told);
     const auto [odometry, covariance] =
         with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
-    return filter_.predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind_walk));
+    return predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind.walk));
   }
   state_.recent.clear();
   if (vehicle.planar) {
-    return filter_.predict(
-        PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind_walk});
+    return predict(
+        PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind.walk});
   }
-  return filter_.predict(ConstantVelocityMotion{seconds()});
+  return predict(ConstantVelocityMotion{seconds()});
 }
 
-/// Only where the odometry tells how the ground below goes on.
+/// Only where the odometry tells how the ground below goes on, and the frames how large it is.
 void Tracker::Step::carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance) {
-  if (settings_.vehicle.wind_walk > 0.0 || estimate_.missed_steps > 0) {
+  if (!settings_.vehicle.wind.is_none() || settings_.vehicle.scale_range > 0.0 || estimate_.missed_steps > 0) {
     state_.recent.clear();
   } else {
     state_.recent.move(odometry, covariance);
@@ -119,21 +136,24 @@ void Tracker::Step::measure() {
     return;
   }
   if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
-  const std::vector<MatchSums> sums =
-      match_particles(tracker_.map_, *features_, filter_.particles(), limits_.threads, limits_.stop);
+  const ParticleMatches matches = match_particles(tracker_.map_, *features_, filter_.particles(),
+                                                  settings_.vehicle.scale_range, limits_.threads, limits_.stop);
   const auto frame_cells = static_cast<std::int64_t>(features_->cells.observed_count());
-  if (is_unseen_by_map(sums, frame_cells)) {
+  if (is_unseen_by_map(matches.sums, frame_cells)) {
     estimate_.measurement = Measurement::kUseless;
   } else {
-    weigh(sums, frame_cells);
+    weigh(matches, frame_cells);
   }
   search_where_due();
 }
 
-void Tracker::Step::weigh(std::span<const MatchSums> sums, std::int64_t frame_cells) {
-  std::vector<double> log_likelihoods(sums.size());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    log_likelihoods[i] = settings_.measurement_model.log_likelihood(sums[i], frame_cells, features_->cell_m);
+void Tracker::Step::weigh(const ParticleMatches& matches, std::int64_t frame_cells) {
+  std::vector<double> log_likelihoods(matches.sums.size());
+  for (std::size_t i = 0; i < log_likelihoods.size(); ++i) {
+    // A frame says as much of larger ground as of smaller: its cells are larger then, and not more.
+    const double scale = matches.scales[i];
+    const auto cells = std::llround(scale * scale * static_cast<double>(frame_cells));
+    log_likelihoods[i] = settings_.measurement_model.log_likelihood(matches.sums[i], cells, features_->cell_m / scale);
   }
   const Correction correction = filter_.correct(log_likelihoods);
   estimate_.mean_likelihood = correction.mean_likelihood;

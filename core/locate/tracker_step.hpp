@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/locate/particle_matches.hpp"
 #include "core/locate/tracker.hpp"
 
 namespace roadfix {
@@ -26,11 +27,13 @@ class Tracker::Step {
 
   void move();
   bool moved();
+  template <MotionModel Motion>
+  bool predict(const Motion& motion);
   void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
   void forget_support();
 
   void measure();
-  void weigh(std::span<const MatchSums> sums, std::int64_t frame_cells);
+  void weigh(const ParticleMatches& matches, std::int64_t frame_cells);
   bool is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const;
 
   // tracker_search.cpp

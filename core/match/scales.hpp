@@ -4,15 +4,21 @@
 
 namespace roadfix {
 
+/// Natural logarithm of the largest factor of a scale range in [0, 1): the ground in a feature map may be smaller by
+/// that share, or larger by as much, from 1 - range to 1 / (1 - range).
+double most_log_scale(double range);
+
 /// Factors exp(index * step) on the feature map's size, for |index| <= reach. Reach 0: the size is as it was given.
 class Scales {
  public:
   Scales() = default;
-  /// From 1 - range to 1 / (1 - range), range in [0, 1): neighbours differ by at most a cell at the footprint's edge.
+  /// Over the range, in [0, 1); neighbours differ by at most a cell at the footprint's edge.
   static Scales for_footprint(double radius_m, double cell_m, double range);
 
   int reach() const { return reach_; }
   double factor(int index) const;
+  /// Index of the factor nearest to exp(log_factor).
+  int nearest(double log_factor) const;
   /// The same range in so many times finer steps: indices are multiplied by it.
   Scales finer(int times) const;
 

@@ -17,7 +17,9 @@ json cluster_json(const TrackCluster& cluster) {
                  {"sigma_m", cluster.sigma_m},
                  {"ellipse_heading_deg", cluster.ellipse_heading.degrees()},
                  {"heading_sigma_deg", cluster.heading_sigma.degrees()},
-                 {"radius95_m", cluster.radius95_m}});
+                 {"radius95_m", cluster.radius95_m},
+                 {"scale", cluster.scale},
+                 {"scale_sigma", cluster.scale_sigma}});
   return answer;
 }
 

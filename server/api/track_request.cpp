@@ -29,7 +29,9 @@ VehicleNoise parse_vehicle(const Fields& fields) {
     noise.planar = planar;
   }
   noise.odometry_share = fields.optional_number("odometry_share", {0.0, 1.0}).value_or(noise.odometry_share);
-  noise.wind_walk = fields.optional_number("wind_walk", {0.0, 10.0}).value_or(noise.wind_walk);
+  noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),
+                        fields.optional_number("wind_walk", {0.0, 10.0}));
+  noise.scale_range = fields.optional_number("scale_range", {0.0, kMostScaleRange}).value_or(noise.scale_range);
   return noise;
 }
 
@@ -59,7 +61,9 @@ const std::vector<std::string>& track_members() {
                                                  "turn_rate_deg_s",
                                                  "turn_rate_sigma_deg_s",
                                                  "odometry_share",
-                                                 "wind_walk"};
+                                                 "wind_sigma_m_s",
+                                                 "wind_walk",
+                                                 "scale_range"};
   return kMembers;
 }
 

@@ -141,7 +141,7 @@ void filter_step(benchmark::State& state) {
   std::vector<double> log_likelihoods(kPoses);
   for (auto _ : state) {
     filter.predict(motion);
-    const std::vector<MatchSums> sums = match_particles(view, window, filter.particles());
+    const std::vector<MatchSums> sums = match_particles(view, window, filter.particles()).sums;
     for (std::size_t i = 0; i < sums.size(); ++i)
       log_likelihoods[i] = 0.01 * model.log_likelihood(sums[i], frame_cells, 2.0);
     benchmark::DoNotOptimize(filter.correct(log_likelihoods));

@@ -21,7 +21,7 @@ const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
 /// Shows everything, sees one cell.
 class Window : public Sensor {
  public:
-  Sighting see(const GridPose&, bench::Random& random) const override {
+  Sighting see(const GridPose&, double, bench::Random& random) const override {
     return {FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0), {}};
   }
   bool shows(GridPoint) const override { return true; }
@@ -112,9 +112,9 @@ TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEverySte
   /// Remembers from where it was looked.
   class Witness : public Window {
    public:
-    Sighting see(const GridPose& pose, bench::Random& random) const override {
+    Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
       seen.push_back(pose.position);
-      return Window::see(pose, random);
+      return Window::see(pose, scale, random);
     }
     mutable std::vector<GridPoint> seen;
   };
@@ -135,6 +135,39 @@ TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEverySte
   const GridPoint twice = offset_of(4.0);
   EXPECT_GT(distance_m(once, {}), 0.0);
   EXPECT_NEAR(distance_m(twice, {2.0 * once.east_m, 2.0 * once.north_m}), 0.0, 1e-6);
+}
+
+TEST_F(Flights, OfAWrongAltitudeShowGroundOfAnotherSizeByTheSameFactorInEveryStep) {
+  class Witness : public Window {
+   public:
+    Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+      seen.push_back(scale);
+      return Window::see(pose, scale, random);
+    }
+    mutable std::vector<double> seen;
+  };
+  const auto scale_of = [&](double bias) {
+    const Witness witness;
+    plan.altitude_bias = bias;
+    const auto pilot = make_random_pilot(kBox, plan.handling);
+    fly(plan, kBox, *pilot, witness, 5, [] {});
+    EXPECT_THAT(witness.seen, ::testing::Each(witness.seen.front()));
+    return witness.seen.front();
+  };
+  EXPECT_EQ(scale_of(0.0), 1.0);
+  EXPECT_NE(scale_of(0.05), 1.0);
+  EXPECT_NEAR(scale_of(0.1) - 1.0, 2.0 * (scale_of(0.05) - 1.0), 1e-12);
+}
+
+TEST_F(Flights, OdometryDoesNotFeelTheWind) {
+  plan.odometry = {0.0, Angle(), 0.0, Angle(), 5.0};
+  const Flight flight = flown();
+  const auto blown = [&](std::size_t i) {
+    const GridPoint there = moved(flight[i - 1].truth, *flight[i].input.odometry).position;
+    return GridPoint{flight[i].truth.position.east_m - there.east_m, flight[i].truth.position.north_m - there.north_m};
+  };
+  EXPECT_GT(distance_m(blown(1), {}), 0.1);
+  for (std::size_t i = 2; i < flight.size(); ++i) EXPECT_LT(distance_m(blown(i), blown(1)), 1e-6) << "step " << i;
 }
 
 TEST_F(Flights, OfWaypointsPassCloseToEachAndEndAtTheLast) {

@@ -90,6 +90,20 @@ TEST_F(Recordings, AreReplayedAtTheirTimesAndOdometryWithoutErrorsLeadsFromPoseT
   EXPECT_EQ(flight[2].input.features->cells.at(0, 0), 40);
 }
 
+TEST_F(Recordings, HaveOdometryThatDoesNotFeelTheWind) {
+  const Recording recording = recorded(kTwoFlights)[0];
+  plan.odometry = {0.0, Angle(), 0.0, Angle(), 5.0};
+  const Flight flight = replayed(recording);
+  const auto blown_m_s = [&](std::size_t i) {
+    const GridPoint there = moved(flight[i - 1].truth, *flight[i].input.odometry).position;
+    const GridPoint at = flight[i].truth.position;
+    const double seconds = 1e-6 * static_cast<double>(flight[i].input.time_us - flight[i - 1].input.time_us);
+    return GridPoint{(at.east_m - there.east_m) / seconds, (at.north_m - there.north_m) / seconds};
+  };
+  EXPECT_GT(distance_m(blown_m_s(1), {}), 0.1);
+  EXPECT_LT(distance_m(blown_m_s(1), blown_m_s(2)), 1e-6);
+}
+
 TEST_F(Recordings, HaveOdometryErrorsAndLostFramesByTheSeedAndThePlan) {
   const Recording recording = recorded(kTwoFlights)[0];
   const auto forward = [&](std::uint64_t seed) { return replayed(recording, seed)[1].input.odometry->forward_m; };

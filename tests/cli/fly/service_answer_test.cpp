@@ -23,7 +23,9 @@ TrackEstimate estimate() {
                  {4.25, 3.5},
                  Angle::degrees(17.0),
                  Angle::degrees(0.75),
-                 9.5},
+                 9.5,
+                 1.0625,
+                 0.015625},
                 {{{37.77, 38.28}, Angle::degrees(10.0)}, 0.0625, {8.0, 6.0}, Angle(), Angle::degrees(2.0), 20.0}};
   e.cluster_count = 11;
   e.particles = 1234;
@@ -43,6 +45,7 @@ TEST(ServiceAnswers, AreReadBackAsTheyWereWritten) {
   EXPECT_EQ(read.measurement, Measurement::kRejected);
   EXPECT_EQ(read.since_accepted_s, 2.5);
   EXPECT_EQ(read.clusters.at(1).radius95_m, 20.0);
+  EXPECT_EQ(read.clusters.at(0).scale, 1.0625);
   const std::vector<GeoPose> particles = particles_of(api::particles_json(
       std::vector<GeoPose>{{{37.5, 38.5}, Angle::degrees(90.0)}, {{37.6, 38.6}, Angle::degrees(180.0)}}));
   ASSERT_EQ(particles.size(), 2U);

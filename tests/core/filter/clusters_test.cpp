@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/filter/random.hpp"
@@ -51,6 +52,15 @@ TEST(Clusters, TellSpreadAndThe95PercentRadius) {
   ASSERT_EQ(clusters.size(), 1U);
   EXPECT_NEAR(clusters[0].sigma_m(), 6.0, 0.2);
   EXPECT_NEAR(clusters[0].radius95_m, 6.0 * std::sqrt(5.991), 0.4) << "chi-square of two degrees of freedom";
+}
+
+TEST(Clusters, TellTheirScale) {
+  Particles p = particles_of({{0, 0, 0, 5, 1, 0.25}, {0, 0, 0, 5, 1, 0.75}}, 100);
+  std::fill(p.log_scale.begin() + 100, p.log_scale.end(), 0.1);
+  const auto clusters = clusters_of(p, {});
+  ASSERT_EQ(clusters.size(), 1U);
+  EXPECT_NEAR(clusters[0].log_scale, 0.075, 1e-12);
+  EXPECT_NEAR(clusters[0].log_scale_sigma, 0.1 * std::sqrt(0.25 * 0.75), 1e-12);
 }
 
 TEST(Clusters, LeaveOutWhatHasNoWeight) {

@@ -27,7 +27,7 @@ TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
               middle.heading.radians() + uniform(random, -0.1, 0.1)});
     p.weight[i] = i == 7 ? 0.0 : 1.0;
   }
-  const auto sums = match_particles(testing::view_of(map), features, p);
+  const auto sums = match_particles(testing::view_of(map), features, p).sums;
   EXPECT_EQ(sums[7].n, 0);
   double difference = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -59,10 +59,32 @@ TEST(ParticleMatches, FitBestAtTheirHeadingInEveryQuarterOfTheCompass) {
       p.set(i, {pose.position.east_m, pose.position.north_m, turned.radians()});
       p.weight[i] = 1.0;
     }
-    const auto sums = match_particles(testing::view_of(map), features, p);
+    const auto sums = match_particles(testing::view_of(map), features, p).sums;
     EXPECT_GT(*rho(sums[0]), 0.8) << heading;
     for (std::size_t i = 1; i < 4; ++i) EXPECT_LT(*rho(sums[i]), 0.4) << heading << ' ' << i;
   }
+}
+
+TEST(ParticleMatches, FitBestAtTheSizeThatTheGroundHas) {
+  const RoadGrid map = testing::street_map(51, {2.0, {300'000, -3'200'000}, 800, 700});
+  std::mt19937_64 random(14);
+  const GridPose pose{{600'701.0, 6'399'399.0}, Angle::degrees(40.0)};
+  FeatureMap features = testing::observed_at(map, pose, 120, 120, 2.0, {0.0, 0.0}, random);
+  features.cell_m = 2.0 / 1.1;  // taken from higher than was thought
+  features = resampled(features, 2.0);
+  Particles p;
+  p.resize(5);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.set(i, {pose.position.east_m, pose.position.north_m, pose.heading.radians()});
+    p.log_scale[i] = std::log(1.1) * (static_cast<double>(i) - 2.0);
+    p.weight[i] = 1.0;
+  }
+  const ParticleMatches matches = match_particles(testing::view_of(map), features, p, 0.2);
+  EXPECT_GT(*rho(matches.sums[3]), 0.7);
+  for (const std::size_t i : {0U, 1U, 2U, 4U}) EXPECT_LT(*rho(matches.sums[i]), 0.5) << i;
+  // A bin is at most two cells wide at the edge, 85 cells from the nadir.
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(std::log(matches.scales[i]), p.log_scale[i], 1.0 / 77.0) << i;
+  EXPECT_NEAR(static_cast<double>(matches.sums[3].n), 1.21 * static_cast<double>(matches.sums[2].n), 300.0);
 }
 
 TEST(ParticleMatches, AreTheSameToTheLastBitForManyAtOnceAndForEachAlone) {
@@ -81,13 +103,13 @@ TEST(ParticleMatches, AreTheSameToTheLastBitForManyAtOnceAndForEachAlone) {
     all.weight[i] = 1.0;
   }
   const MapView view = testing::view_of(map);
-  const auto together = match_particles(view, features, all);
+  const auto together = match_particles(view, features, all).sums;
   for (std::size_t i = 0; i < all.size(); ++i) {
     Particles one;
     one.resize(1);
     one.set(0, all.at(i));
     one.weight[0] = 1.0;
-    const MatchSums alone = match_particles(view, features, one)[0];
+    const MatchSums alone = match_particles(view, features, one).sums[0];
     EXPECT_EQ(together[i].n, alone.n);
     EXPECT_EQ(together[i].m, alone.m);
     EXPECT_EQ(together[i].ll, alone.ll);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
@@ -112,6 +113,54 @@ TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
     EXPECT_EQ(estimate.resets, 0U);
   }
   EXPECT_GT(farthest_m, 200.0);
+}
+
+TEST_F(Track, LearnsAnErrorOfTheAltitudeThatItIsToldToExpect) {
+  const auto end_of = [&](double range) {
+    TrackSettings rough = settings();
+    rough.vehicle.scale_range = range;
+    const Tracker tracker(view_, rough);
+    Flight flight(map_, start_, 3);
+    state_ = {};
+    TrackEstimate last;
+    for (int i = 0; i < 20; ++i) {
+      StepInput step = flight.step();
+      step.features->cell_m /= 1.12;  // the ground is larger than the vehicle thinks
+      last = advance(tracker, step);
+      EXPECT_TRUE(!last.converged || error_m(last, flight.pose()) < 20.0) << "step " << i;
+    }
+    return last;
+  };
+  const TrackEstimate told = end_of(0.2);
+  EXPECT_TRUE(told.converged);
+  EXPECT_NEAR(told.clusters[0].scale, 1.12, 0.02) << "two cells at the edge of a footprint of 180";
+  EXPECT_LT(told.clusters[0].scale_sigma, 0.02);
+  const TrackEstimate untold = end_of(0.0);
+  EXPECT_FALSE(untold.converged);
+  EXPECT_EQ(untold.clusters[0].scale, 1.0);
+  TrackSettings impossible = settings();
+  impossible.vehicle.scale_range = 0.5;
+  EXPECT_EQ(code_of([&] { Tracker(view_, impossible); }), "scale-range-out-of-range");
+}
+
+TEST_F(Track, LearnsTheWindWhereOdometryIsRelativeToTheAir) {
+  for (const auto& wind : {Wind::of(6.0, std::nullopt), Wind::of(std::nullopt, 0.1)}) {
+    TrackSettings blown = settings();
+    blown.vehicle.wind = wind;
+    const Tracker tracker(view_, blown);
+    Flight flight(map_, start_, 4);
+    state_ = {};
+    for (int i = 0; i < 30; ++i) {
+      const GridPose& pose = flight.pose();
+      flight.jump_to({{pose.position.east_m + 7.0, pose.position.north_m - 4.0}, pose.heading});
+      const TrackEstimate estimate = advance(tracker, flight.step());
+      EXPECT_TRUE(estimate.converged || i < 5) << "step " << i;
+      EXPECT_LT(error_m(estimate, flight.pose()), 12.0) << "step " << i;
+    }
+    const Particles& p = state_.filter.particles;
+    EXPECT_NEAR(std::accumulate(p.drift_east_m_s.begin(), p.drift_east_m_s.end(), 0.0) / static_cast<double>(p.size()),
+                7.0, 1.5);
+  }
 }
 
 TEST_F(Track, BeginsAnewAfterALongGap) {

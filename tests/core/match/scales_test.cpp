@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace roadfix {
 namespace {
 
@@ -21,6 +23,16 @@ TEST(Scales, ReachFromTheSmallestToItsInverseInStepsOfACellAtTheEdge) {
     EXPECT_NEAR(scales.factor(reach), 1.0 / (1.0 - range), 1e-12);
     for (int i = -reach; i < 0; ++i) EXPECT_LE(300.0 * (scales.factor(i + 1) - scales.factor(i)), 8.0);
   }
+}
+
+TEST(Scales, TheNearestOfAFactorIsTheIndexThatHasIt) {
+  const Scales scales = Scales::for_footprint(300.0, 8.0, 0.15);
+  for (int index = -scales.reach(); index <= scales.reach(); ++index) {
+    EXPECT_EQ(scales.nearest(std::log(scales.factor(index))), index);
+  }
+  EXPECT_EQ(scales.nearest(1.0), scales.reach()) << "beyond the range it is the last";
+  EXPECT_EQ(scales.nearest(-1.0), -scales.reach());
+  EXPECT_EQ(Scales().nearest(0.3), 0);
 }
 
 TEST(Scales, FinerStepsHoldTheCoarserOnes) {

@@ -102,6 +102,7 @@ Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
     within += weight;
     if (within >= 0.95 * cluster.weight) break;
   }
+  cluster.weight = std::min(cluster.weight, 1.0);  // the sum may round beyond it
   return cluster;
 }
 

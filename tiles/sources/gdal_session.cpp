@@ -96,8 +96,8 @@ std::string crs_name(const OGRSpatialReference& reference) {
 
 void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path) {
   constexpr double kWgs84M = 6378137.0;
-  constexpr double kSameM =
-      5.0;  // GRS 80, WGS 72, the sphere of web maps; those of older surveys differ by 69 m and more
+  // GRS 80, WGS 72 and the sphere of web maps; those of older surveys differ by 69 m and more.
+  constexpr double kSameM = 5.0;
   OGRErr outcome = OGRERR_NONE;
   const double axis_m = from.GetSemiMajor(&outcome);
   if (outcome != OGRERR_NONE || std::abs(axis_m - kWgs84M) < kSameM) return;

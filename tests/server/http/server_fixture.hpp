@@ -89,7 +89,11 @@ class HttpServerTest : public ::testing::Test {
     return client;
   }
   void wait_for_figure(const std::string& line) const {
-    while (metrics_.text().find(line) == std::string::npos) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (metrics_.text().find(line) == std::string::npos) {
+      ASSERT_LT(std::chrono::steady_clock::now(), late) << "there is no figure " << line;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
   std::string raw(const std::string& request) const {
     RawConnection connection(port_);

@@ -189,6 +189,16 @@ void Filter::roughen(std::span<const std::size_t> ancestors) {
   }
 }
 
+void Filter::widen(double sigma_m) {
+  ++state_.step;
+  Particles& p = state_.particles;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    RandomStream random(Draw::kRoughen, {state_.seed, state_.step, k});
+    p.east_m[k] += sigma_m * random.normal();
+    p.north_m[k] += sigma_m * random.normal();
+  }
+}
+
 void Filter::inject(std::span<const Proposal> proposals, double share) {
   if (proposals.empty()) return;
   ++state_.step;

@@ -105,6 +105,8 @@ class Filter {
 
   /// Replaces a share of the particles by draws around the proposals.
   void inject(std::span<const Proposal> proposals, double share);
+  /// Moves each particle by a normal draw of this sigma per axis, where the motion was told better than it is.
+  void widen(double sigma_m);
   /// How much worse late measurements fit than earlier ones, in [0, 1].
   double doubt() const;
 

@@ -58,8 +58,9 @@ enum class TrackStart { kSearch, kUniform };
 struct TrackSettings {
   Prior prior;  ///< of the place at the first step
   TrackStart start = TrackStart::kSearch;
-  /// Searches anew when the measurements speak against the belief, and before the first claim where no search has told
-  /// it from other places (see TrackClaim). Without it a track converges by its particles alone.
+  /// Spreads and searches anew when the measurements speak against the belief, and searches before the first claim
+  /// where no search has told it from other places (see TrackClaim). Without it a track converges by its particles
+  /// alone.
   bool recovers = true;
   FilterOptions filter;
   MeasurementModel measurement_model;

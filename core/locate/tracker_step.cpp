@@ -19,6 +19,10 @@ namespace {
 // air pressure.
 constexpr double kScaleWalkShare = 0.03;
 
+// 1 sigma per axis by which a belief spreads where a measurement speaks against it: the motion may have been worse than
+// was told.
+constexpr double kWidenedM = 4.0;
+
 }  // namespace
 
 Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const StepInput& input,
@@ -168,6 +172,7 @@ void Tracker::Step::weigh(const ParticleMatches& matches, std::int64_t frame_cel
   } else {
     estimate_.measurement = Measurement::kRejected;
     state_.claim.reject();
+    if (settings_.recovers) filter_.widen(kWidenedM);
   }
   state_.claim.weigh(std::log(correction.mean_likelihood));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -70,6 +71,19 @@ TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
   EXPECT_FALSE(blind.converged) << "a minute without sight is stale";
   EXPECT_DOUBLE_EQ(blind.since_accepted_s.value(), 61.0);
   EXPECT_GT(blind.clusters[0].sigma_m[0], 2.0 * seeing.clusters[0].sigma_m[0]);
+}
+
+TEST_F(Track, GrowsLessSureByAMeasurementThatSpeaksAgainstIt) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  fly(tracker, flight, 10);
+  StepInput next = flight.step(false);
+  const double unseeing_m = tracker.advance(state_, next).estimate.clusters[0].sigma_m[0];
+  std::mt19937_64 random(2);
+  next.features = testing::observed_at(map_, {{600'300.0, 6'399'100.0}, Angle()}, 128, 128, 2.0, {0.1, 0.1}, random);
+  const TrackEstimate contradicted = tracker.advance(state_, next).estimate;
+  EXPECT_EQ(contradicted.measurement, Measurement::kRejected);
+  EXPECT_GT(contradicted.clusters[0].sigma_m[0], std::hypot(unseeing_m, 3.0));
 }
 
 TEST_F(Track, CountsLostStepsAndWidensForThem) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;  // of what the blobs hold, too: particles have had a scale since 3
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 /// The map store's names of what SQLite may refuse, in the terms of this store.

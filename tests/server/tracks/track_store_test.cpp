@@ -133,7 +133,7 @@ TEST(TrackStore, SaysWhyItCannotBeOpened) {
   std::ofstream(folder / "noise.sqlite") << std::string(8192, 'x');
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "noise.sqlite", kPlenty); }), "track-store-corrupt");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); }), "track-store-unavailable");
-  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 3");
+  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 4");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
 }
 

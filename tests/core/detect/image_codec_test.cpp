@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -159,18 +161,18 @@ TEST(DecodeImage, TakesAJpegOfAnUnknownVersionOfJfif) {
 /// A zTXt chunk (W3C PNG 11.3.3.3) of so many spaces.
 std::vector<std::uint8_t> text_chunk(std::size_t characters) {
   const std::vector<std::uint8_t> spaces(characters, ' ');
-  std::vector<std::uint8_t> packed(compressBound(characters));
-  uLongf size = packed.size();
-  EXPECT_EQ(compress(packed.data(), &size, spaces.data(), characters), Z_OK);
-  std::vector<std::uint8_t> chunk{0, 0, 0, 0, 'z', 'T', 'X', 't', 'a', 0, 0};
-  chunk.insert(chunk.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
+  constexpr std::array<std::uint8_t, 11> kHead{0, 0, 0, 0, 'z', 'T', 'X', 't', 'a', 0, 0};
+  constexpr std::size_t kChecksum = 4;
+  uLongf packed = compressBound(characters);
+  std::vector<std::uint8_t> chunk(kHead.size() + packed + kChecksum);
+  std::ranges::copy(kHead, chunk.begin());
+  EXPECT_EQ(compress(&chunk[kHead.size()], &packed, spaces.data(), characters), Z_OK);
+  chunk.resize(kHead.size() + packed + kChecksum);
   const auto put = [](std::uint8_t* at, std::size_t number) {
     for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(number >> (24 - 8 * i));
   };
-  put(chunk.data(), chunk.size() - 8);
-  const std::size_t checksum = crc32(0, &chunk[4], static_cast<uInt>(chunk.size() - 4));
-  chunk.resize(chunk.size() + 4);
-  put(&chunk[chunk.size() - 4], checksum);
+  put(chunk.data(), chunk.size() - kChecksum - 8);
+  put(&chunk[chunk.size() - kChecksum], crc32(0, &chunk[4], static_cast<uInt>(chunk.size() - kChecksum - 4)));
   return chunk;
 }
 

@@ -77,6 +77,7 @@ TEST_F(SourceFilesTest, AFileGeodatabaseIsAFileThoughItIsAFolder) {
   std::ofstream(folder / "lines.geojson") << kLine;
   const std::string lines = (folder / "lines.geojson").string();
   const std::string geodatabase = (folder / "Roads.gdb").string();
+  GDALAllRegister();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("OpenFileGDB");
   if (driver == nullptr || driver->GetMetadataItem(GDAL_DCAP_CREATE) == nullptr) GTEST_SKIP() << "GDAL writes none";
   {

@@ -69,12 +69,6 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
   return frame;
 }
 
-/// Where a vehicle would be now without that wind.
-GridPose unblown(const GridPose& pose, GridPoint wind_m_s, double seconds) {
-  return {{pose.position.east_m - seconds * wind_m_s.east_m, pose.position.north_m - seconds * wind_m_s.north_m},
-          pose.heading};
-}
-
 }  // namespace
 
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
@@ -111,7 +105,7 @@ Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t 
     input.time_us = std::llround(1e6 * frame.time_s);
     if (before != nullptr && plan.tells_odometry) {
       const double seconds = frame.time_s - before->time_s;
-      const Odometry moved = offset_from(before->truth, unblown(frame.truth, odometry.wind_m_s(), seconds));
+      const Odometry moved = offset_from(before->truth, odometry.blown(frame.truth, -seconds));
       input.odometry = odometry.tell(moved, std::hypot(moved.forward_m, moved.right_m), seconds, motion);
     }
     if (frame_comes(plan, step, camera)) {

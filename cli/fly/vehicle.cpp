@@ -27,15 +27,18 @@ Odometry OdometrySensor::tell(const Odometry& moved, double length_m, double sec
           moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn};
 }
 
+GridPose OdometrySensor::blown(const GridPose& pose, double seconds) const {
+  return {{pose.position.east_m + seconds * wind_m_s_.east_m, pose.position.north_m + seconds * wind_m_s_.north_m},
+          pose.heading};
+}
+
 Vehicle::Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random)
     : pose_(start), handling_(handling), odometry_(errors, random) {}
 
 Odometry Vehicle::move(Angle turn, bench::Random& random) {
   const double length_m = handling_.speed_m_s * handling_.step_s;
   const Odometry step = arc(length_m, turn);
-  pose_ = moved(pose_, step);
-  pose_.position.east_m += handling_.step_s * odometry_.wind_m_s().east_m;
-  pose_.position.north_m += handling_.step_s * odometry_.wind_m_s().north_m;
+  pose_ = odometry_.blown(moved(pose_, step), handling_.step_s);
   return odometry_.tell(step, length_m, handling_.step_s, random);
 }
 

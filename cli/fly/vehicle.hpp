@@ -23,14 +23,14 @@ class OdometrySensor {
 
   /// What it says of a motion through the air of that length and duration.
   Odometry tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
-  /// Velocity of the air over the ground, east and north.
-  GridPoint wind_m_s() const { return wind_m_s_; }
+  /// Where the wind, which it does not feel, carries a vehicle in that time.
+  GridPose blown(const GridPose& pose, double seconds) const;
 
  private:
   OdometryErrors errors_;
   double scale_;
   Angle turn_drift_;
-  GridPoint wind_m_s_;
+  GridPoint wind_m_s_;  ///< velocity of the air over the ground
 };
 
 class Vehicle {

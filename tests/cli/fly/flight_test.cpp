@@ -27,6 +27,18 @@ class Window : public Sensor {
   bool shows(GridPoint) const override { return true; }
 };
 
+/// Remembers where and how it was looked.
+class Witness : public Window {
+ public:
+  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+    places.push_back(pose.position);
+    scales.push_back(scale);
+    return Window::see(pose, scale, random);
+  }
+  mutable std::vector<GridPoint> places;
+  mutable std::vector<double> scales;
+};
+
 class Flights : public ::testing::Test {
  protected:
   Flight flown(std::uint64_t seed = 1) const {
@@ -109,23 +121,14 @@ TEST_F(Flights, AKidnappedVehicleIsElsewhereAndItsOdometryDoesNotTell) {
 }
 
 TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEveryStep) {
-  /// Remembers from where it was looked.
-  class Witness : public Window {
-   public:
-    Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
-      seen.push_back(pose.position);
-      return Window::see(pose, scale, random);
-    }
-    mutable std::vector<GridPoint> seen;
-  };
   const auto offset_of = [&](double registration_m) {
     const Witness witness;
     plan.registration_m = registration_m;
     const auto pilot = make_random_pilot(kBox, plan.handling);
     const Flight flight = fly(plan, kBox, *pilot, witness, 5, [] {});
     const auto off = [&](std::size_t i) {
-      return GridPoint{witness.seen[i].east_m - flight[i].truth.position.east_m,
-                       witness.seen[i].north_m - flight[i].truth.position.north_m};
+      return GridPoint{witness.places[i].east_m - flight[i].truth.position.east_m,
+                       witness.places[i].north_m - flight[i].truth.position.north_m};
     };
     for (std::size_t i = 1; i < flight.size(); ++i) EXPECT_LT(distance_m(off(i), off(0)), 1e-6);
     return off(0);
@@ -138,21 +141,13 @@ TEST_F(Flights, SeeTheGroundWhereTheMapDoesNotSayItIsByTheSameDistanceInEverySte
 }
 
 TEST_F(Flights, OfAWrongAltitudeShowGroundOfAnotherSizeByTheSameFactorInEveryStep) {
-  class Witness : public Window {
-   public:
-    Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
-      seen.push_back(scale);
-      return Window::see(pose, scale, random);
-    }
-    mutable std::vector<double> seen;
-  };
   const auto scale_of = [&](double bias) {
     const Witness witness;
     plan.altitude_bias = bias;
     const auto pilot = make_random_pilot(kBox, plan.handling);
     fly(plan, kBox, *pilot, witness, 5, [] {});
-    EXPECT_THAT(witness.seen, ::testing::Each(witness.seen.front()));
-    return witness.seen.front();
+    EXPECT_THAT(witness.scales, ::testing::Each(witness.scales.front()));
+    return witness.scales.front();
   };
   EXPECT_EQ(scale_of(0.0), 1.0);
   EXPECT_NE(scale_of(0.05), 1.0);

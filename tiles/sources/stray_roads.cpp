@@ -102,8 +102,7 @@ std::optional<std::string> note_on_stray_roads(const RoadNetwork& network, std::
   }
   return fmt::format(
       "{} of its {} roads lie within {}, but {} count as seen, and as no road wherever none is drawn. If that is not "
-      "so, "
-      "--extent {} keeps to the smaller ground",
+      "so, --extent {} keeps to the smaller ground",
       core.boxes, boxes.size(), sides(core.box), sides(ground), extent_around(core.box, zone));
 }
 

@@ -97,22 +97,16 @@ RoadGrid halved(const RoadGrid& grid) {
   return {coarse, halved(aligned)};
 }
 
-FeatureMap resampled(const FeatureMap& map, double cell_m) {
-  assert(cell_m > 0.0);
-  const double step = cell_m / map.cell_m;
+FeatureMap resampled(const FeatureMap& map, double cell_m, double scale) {
+  assert(cell_m > 0.0 && scale > 0.0);
+  const double step = cell_m / (scale * map.cell_m);
+  if (step == 1.0) return {map.cells, cell_m, map.nadir};
   const int cols = std::max(1, static_cast<int>(std::lround(map.cells.cols() / step)));
   const int rows = std::max(1, static_cast<int>(std::lround(map.cells.rows() / step)));
   // The nadir keeps its place on the ground; it is the fixed point of the resampling.
   const CellPosition nadir{map.nadir.col / step, map.nadir.row / step};
   const Placement placement{{0.0, 0.0}, {step, 0.0}, {0.0, step}};
   return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
-}
-
-FeatureMap scaled(const FeatureMap& map, double factor) {
-  if (factor == 1.0) return map;
-  FeatureMap larger = map;
-  larger.cell_m *= factor;
-  return resampled(larger, map.cell_m);
 }
 
 FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }

@@ -13,11 +13,9 @@ CellArray halved(const CellArray& cells);
 /// The same on the lattice: the result covers the grid, aligned to cells of twice the size.
 RoadGrid halved(const RoadGrid& grid);
 
-/// The same ground in cells of another size, averaged over area when coarser, bilinear when finer.
-FeatureMap resampled(const FeatureMap& map, double cell_m);
-
-/// Its ground so many times as large, in cells of the same size.
-FeatureMap scaled(const FeatureMap& map, double factor);
+/// The same ground, `scale` times as large as the map says, in cells of another size: averaged over area when coarser,
+/// bilinear when finer, and the very cells when they need not change.
+FeatureMap resampled(const FeatureMap& map, double cell_m, double scale = 1.0);
 
 /// The feature map turned to grid north-up: `heading` is the direction of its forward edge, clockwise from grid north.
 /// The result is just large enough; corners that the map did not see are unobserved; nadir lies on a cell centre.

@@ -13,36 +13,32 @@ namespace {
 
 constexpr double kBinCells = 2.0;  // by which the edge of the footprint moves from one bin to the next
 
-/// The particles with weight whose scale is nearest to that of the index.
-std::vector<BinnedPose> poses_of(const Particles& p, const Scales& scales, int scale, const HeadingBins& bins,
-                                 double cell_m) {
-  std::vector<BinnedPose> poses;
-  poses.reserve(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.weight[i] <= 0.0 || scales.nearest(p.log_scale[i]) != scale) continue;
-    const LatticeIndex cell{static_cast<int>(std::floor(p.east_m[i] / cell_m)),
-                            static_cast<int>(std::floor(-p.north_m[i] / cell_m))};
-    const double turned = p.heading_rad[i] / bins.step().radians();
-    poses.push_back({cell, bins.wrapped(static_cast<int>(std::lround(turned))), i});
-  }
-  return poses;
-}
-
 }  // namespace
 
 ParticleMatches match_particles(const MapView& map, const FeatureMap& features, const Particles& particles,
                                 double scale_range, int threads, const std::stop_token& stop) {
+  const Particles& p = particles;
   const double cell_m = features.cell_m;
   const double radius_m = footprint_reach(features) * cell_m;
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, kBinCells * cell_m).in_quarters();
   const Scales scales = Scales::for_footprint(radius_m, kBinCells * cell_m, scale_range);
-  ParticleMatches matches{std::vector<MatchSums>(particles.size()), std::vector<double>(particles.size(), 1.0)};
-  for (int scale = -scales.reach(); scale <= scales.reach(); ++scale) {
-    std::vector<BinnedPose> poses = poses_of(particles, scales, scale, bins, cell_m);
-    if (poses.empty()) continue;
-    const double factor = scales.factor(scale);
-    for (const BinnedPose& pose : poses) matches.scales[pose.index] = factor;
-    match_binned(map, scaled(features, factor), bins, std::move(poses), threads, stop, matches.sums);
+  ParticleMatches matches{std::vector<MatchSums>(p.size()), std::vector<double>(p.size(), 1.0)};
+  std::vector<std::vector<BinnedPose>> of_scale(static_cast<std::size_t>(2 * scales.reach() + 1));
+  for (auto& poses : of_scale) poses.reserve(p.size() / of_scale.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.weight[i] <= 0.0) continue;
+    const LatticeIndex cell{static_cast<int>(std::floor(p.east_m[i] / cell_m)),
+                            static_cast<int>(std::floor(-p.north_m[i] / cell_m))};
+    const double turned = p.heading_rad[i] / bins.step().radians();
+    const int scale = scales.nearest(p.log_scale[i]);
+    matches.scales[i] = scales.factor(scale);
+    of_scale[static_cast<std::size_t>(scale + scales.reach())].push_back(
+        {cell, bins.wrapped(static_cast<int>(std::lround(turned))), i});
+  }
+  for (std::size_t k = 0; k < of_scale.size(); ++k) {
+    if (of_scale[k].empty()) continue;
+    const double factor = scales.factor(static_cast<int>(k) - scales.reach());
+    match_binned(map, resampled(features, cell_m, factor), bins, std::move(of_scale[k]), threads, stop, matches.sums);
   }
   return matches;
 }

@@ -68,7 +68,6 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
                        fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",
                                    cells_across, kMostCellsAcross));
   }
-  if (features.cell_m == cell_m) return features;
   return resampled(features, cell_m);
 }
 

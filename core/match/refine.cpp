@@ -135,9 +135,7 @@ LevelFeatures::LevelFeatures(FeatureMap features, double least_share)
 
 LevelFeatures Level::at_scale(int index) const {
   if (index == 0) return features;
-  FeatureMap scaled = source;
-  scaled.cell_m *= scales.factor(index);
-  return {resampled(scaled, cell_m()), least_share};
+  return {resampled(source, cell_m(), scales.factor(index)), least_share};
 }
 
 int Level::reach(int scale) const {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/grid/resample.hpp"
 
@@ -48,8 +47,7 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
   for (int k = 0; k <= coarsest; ++k) {
     const double cell_m = std::ldexp(finest_cell_m, k);
-    FeatureMap scaled = k == 0 && features.cell_m == cell_m ? features : resampled(features, cell_m);
-    levels_.push_back({read, features, LevelFeatures(std::move(scaled), options.min_observed_share),
+    levels_.push_back({read, features, LevelFeatures(resampled(features, cell_m), options.min_observed_share),
                        options.min_observed_share, HeadingBins(bins.count() << (coarsest - k)),
                        scales.finer(1 << (coarsest - k)), options.threads});
   }

@@ -199,6 +199,17 @@ void Filter::widen(double sigma_m) {
   }
 }
 
+void Filter::widen_drift(double sigma_m_s) {
+  ++state_.step;
+  region_.drift_sigma_m_s = sigma_m_s;
+  Particles& p = state_.particles;
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    RandomStream random(Draw::kDrift, {state_.seed, state_.step, k});
+    p.drift_east_m_s[k] += sigma_m_s * random.normal();
+    p.drift_north_m_s[k] += sigma_m_s * random.normal();
+  }
+}
+
 void Filter::inject(std::span<const Proposal> proposals, double share) {
   if (proposals.empty()) return;
   ++state_.step;

@@ -107,6 +107,8 @@ class Filter {
   void inject(std::span<const Proposal> proposals, double share);
   /// Moves each particle by a normal draw of this sigma per axis, where the motion was told better than it is.
   void widen(double sigma_m);
+  /// Changes the drift of each particle by a normal draw of this sigma per axis, and draws new ones with as much.
+  void widen_drift(double sigma_m_s);
   /// How much worse late measurements fit than earlier ones, in [0, 1].
   double doubt() const;
 

@@ -9,7 +9,7 @@
 namespace roadfix {
 
 /// What a stream is drawn for; streams of different purposes are independent.
-enum class Draw : std::uint64_t { kStart = 1, kMotion, kResample, kInject, kChoice, kRoughen };
+enum class Draw : std::uint64_t { kStart = 1, kMotion, kResample, kInject, kChoice, kRoughen, kDrift };
 
 class RandomStream {
  public:

@@ -7,6 +7,16 @@
 #include "core/match/footprint.hpp"
 
 namespace roadfix {
+namespace {
+
+std::optional<Prior> prior_within(const MapView& map, const GridCircle& circle) {
+  if (!contains(circle, nearest(map.extent, circle.centre))) return std::nullopt;
+  Prior prior;
+  prior.circle = GeoCircle{map.zone.unproject(circle.centre), circle.radius_m + 1.0};
+  return prior;
+}
+
+}  // namespace
 
 bool is_same_place(const GridPose& a, const GridPose& b) {
   constexpr double kNearM = 25.0;
@@ -20,11 +30,12 @@ std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
     const GridPoint at{p.east_m[i], p.north_m[i]};
     box = united(box, {at, at});
   }
-  const GridPoint centre = box.centre();
-  const double radius_m = distance_m(box.min, box.max) / 2.0;
-  if (!contains({centre, radius_m}, nearest(map.extent, centre))) return std::nullopt;
-  Prior prior;
-  prior.circle = GeoCircle{map.zone.unproject(centre), radius_m + 1.0};
+  return prior_within(map, {box.centre(), distance_m(box.min, box.max) / 2.0});
+}
+
+std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double radius_m, Angle heading_half_width) {
+  std::optional<Prior> prior = prior_within(map, {pose.position, radius_m});
+  if (prior) prior->heading = HeadingRange{on_earth(pose, map.zone).heading, heading_half_width};
   return prior;
 }
 

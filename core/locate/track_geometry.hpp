@@ -16,6 +16,9 @@ bool is_same_place(const GridPose& a, const GridPose& b);
 /// A circle around all that the particles hold for possible; nullopt where that is beyond the map.
 std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 
+/// All within that distance and heading of a pose; nullopt where that is beyond the map.
+std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double radius_m, Angle heading_half_width);
+
 /// Modes of a search for the feature map as places to draw from; wider than they say, since particles move on before
 /// they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);

@@ -105,6 +105,8 @@ struct TrackerState {
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
   /// before a kidnapping is not laid with what is seen after it.
   RecentFrames recent;
+  std::optional<std::int64_t> looked_time_us;  ///< of the last search around the claimed place
+  bool drifts = false;                         ///< one found it elsewhere: a wind is learned though none was told
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };
 
@@ -136,6 +138,7 @@ struct TrackEstimate {
   double mean_likelihood = 0.0;  ///< of the measurement under the belief before it
   double doubt = 0.0;
   std::optional<double> since_accepted_s;
+  bool drifts = false;            ///< the odometry was found wrong, and a drift of it is learned
   std::int64_t missed_steps = 0;  ///< sequence numbers left out before this step
   static constexpr std::size_t kMostClusters = 8;
 };

@@ -27,7 +27,8 @@ bool Tracker::Step::start_by_search() {
   const std::optional<Prior> prior = first ? settings_.prior : prior_around(tracker_.map_, filter_.particles());
   if (!prior) return false;
   state_.searched = true;
-  const std::optional<Fix> fix = searched(*prior);
+  state_.last_search = state_.measured;
+  const std::optional<Fix> fix = searched(state_.recent.laid_around(*features_), *prior, settings_.vehicle.scale_range);
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
@@ -54,11 +55,13 @@ bool Tracker::Step::wants_search() const {
 
 void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
-  std::optional<Fix> fix = searched({});
+  state_.last_search = state_.measured;
+  const FeatureMap seen = state_.recent.laid_around(*features_);
+  std::optional<Fix> fix = searched(seen, {}, settings_.vehicle.scale_range);
   if (!fix) {
     Prior near;
     near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = searched(near);
+    fix = searched(seen, near, settings_.vehicle.scale_range);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
@@ -78,21 +81,21 @@ void Tracker::Step::recover() {
 void Tracker::Step::believe(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
+  state_.looked_time_us = input_.time_us;
 }
 
 /// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it
 /// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
-std::optional<Fix> Tracker::Step::searched(const Prior& prior) {
+std::optional<Fix> Tracker::Step::searched(const FeatureMap& features, const Prior& prior, double scale_range) {
   FixOptions options;
-  options.scale_range = settings_.vehicle.scale_range;
+  options.scale_range = scale_range;
   options.max_search_km2 = settings_.max_search_km2;
   options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
   options.time_limit = limits_.search_time;
   options.stop = limits_.stop;
   options.calibration = settings_.calibration;
-  state_.last_search = state_.measured;
   try {
-    Fix fix = locate(tracker_.map_, state_.recent.laid_around(*features_), prior, options);
+    Fix fix = locate(tracker_.map_, features, prior, options);
     if (fix.complete) return fix;
     // What it has depends on the machine, and a track must come out the same.
     if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);

@@ -23,6 +23,9 @@ constexpr double kScaleWalkShare = 0.03;
 // was told.
 constexpr double kWidenedM = 4.0;
 
+// 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told.
+constexpr double kFoundWindMS = 5.0;
+
 }  // namespace
 
 Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const StepInput& input,
@@ -32,8 +35,8 @@ Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const St
       input_(input),
       limits_(limits),
       state_(before),
-      filter_(before.started ? Filter(settings_.filter, tracker.region_, std::move(state_.filter), limits.threads)
-                             : Filter(settings_.filter, tracker.region_, settings_.seed, limits.threads)) {}
+      filter_(before.started ? Filter(settings_.filter, region(), std::move(state_.filter), limits.threads)
+                             : Filter(settings_.filter, region(), settings_.seed, limits.threads)) {}
 
 StepResult Tracker::Step::run() {
   require_in_order();
@@ -99,29 +102,42 @@ bool Tracker::Step::predict(const Motion& motion) {
   });
 }
 
+Wind Tracker::Step::wind() const {
+  const Wind& told = settings_.vehicle.wind;
+  if (!state_.drifts) return told;
+  const Wind found = Wind::of(kFoundWindMS, std::nullopt);
+  return {std::max(told.sigma_m_s, found.sigma_m_s), std::max(told.walk, found.walk)};
+}
+
+AcceptanceRegion Tracker::Step::region() const {
+  AcceptanceRegion region = tracker_.region_;
+  region.drift_sigma_m_s = wind().sigma_m_s;
+  return region;
+}
+
 /// False where the belief left the region and began anew.
 bool Tracker::Step::moved() {
   const VehicleNoise& vehicle = settings_.vehicle;
+  const double wind_walk = wind().walk;
   if (input_.odometry) {
     const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
-    const OdometryMotion as_told(*input_.odometry, told, seconds(), vehicle.wind.walk);
+    const OdometryMotion as_told(*input_.odometry, told, seconds(), wind_walk);
     carry_frames_on(*input_.odometry, told);
     if (estimate_.missed_steps == 0) return predict(as_told);
     const auto [odometry, covariance] =
         with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
-    return predict(OdometryMotion(odometry, covariance, seconds(), vehicle.wind.walk));
+    return predict(OdometryMotion(odometry, covariance, seconds(), wind_walk));
   }
   state_.recent.clear();
   if (vehicle.planar) {
-    return predict(
-        PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), vehicle.wind.walk});
+    return predict(PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), wind_walk});
   }
   return predict(ConstantVelocityMotion{seconds()});
 }
 
 /// Only where the odometry tells how the ground below goes on, and the frames how large it is.
 void Tracker::Step::carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance) {
-  if (!settings_.vehicle.wind.is_none() || settings_.vehicle.scale_range > 0.0 || estimate_.missed_steps > 0) {
+  if (!wind().is_none() || settings_.vehicle.scale_range > 0.0 || estimate_.missed_steps > 0) {
     state_.recent.clear();
   } else {
     state_.recent.move(odometry, covariance);
@@ -148,6 +164,7 @@ void Tracker::Step::measure() {
   } else {
     weigh(matches, frame_cells);
   }
+  look_around_where_due();
   search_where_due();
 }
 
@@ -199,6 +216,7 @@ void Tracker::Step::describe() {
   estimate_.resets = filter_.state().resets;
   estimate_.doubt = filter_.doubt();
   estimate_.since_accepted_s = since_accepted_s();
+  estimate_.drifts = state_.drifts;
   estimate_.converged = has_converged(clusters.front());
 }
 

@@ -27,6 +27,8 @@ class Tracker::Step {
 
   void move();
   bool moved();
+  Wind wind() const;
+  AcceptanceRegion region() const;
   template <MotionModel Motion>
   bool predict(const Motion& motion);
   void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
@@ -43,7 +45,11 @@ class Tracker::Step {
   bool wants_search() const;
   void recover();
   void believe(const Fix& fix);
-  std::optional<Fix> searched(const Prior& prior);
+  std::optional<Fix> searched(const FeatureMap& features, const Prior& prior, double scale_range);
+
+  // tracker_look.cpp
+  void look_around_where_due();
+  void look_around();
 
   void describe();
   bool has_converged(const Cluster& best) const;

@@ -23,6 +23,12 @@ json cluster_json(const TrackCluster& cluster) {
   return answer;
 }
 
+json json_of(std::optional<std::int64_t> time_us) { return time_us ? json(*time_us) : json(); }
+
+std::optional<std::int64_t> time_of(const json& time_us) {
+  return time_us.is_null() ? std::nullopt : std::optional(time_us.get<std::int64_t>());
+}
+
 }  // namespace
 
 json to_json(const TrackEstimate& estimate) {
@@ -39,6 +45,7 @@ json to_json(const TrackEstimate& estimate) {
   answer["mean_likelihood"] = estimate.mean_likelihood;
   answer["doubt"] = estimate.doubt;
   answer["since_accepted_s"] = estimate.since_accepted_s ? json(*estimate.since_accepted_s) : json();
+  answer["drifts"] = estimate.drifts;
   answer["missed_steps"] = estimate.missed_steps;
   return answer;
 }
@@ -94,7 +101,9 @@ json counters_json(const TrackerState& state) {
           {"last_search", state.last_search},
           {"supported", state.claim.supported},
           {"evidence", state.claim.log_odds},
-          {"accepted_time_us", state.accepted_time_us ? json(*state.accepted_time_us) : json()}};
+          {"accepted_time_us", json_of(state.accepted_time_us)},
+          {"looked_time_us", json_of(state.looked_time_us)},
+          {"drifts", state.drifts}};
 }
 
 TrackerState state_of(const json& counters, FilterState filter) {
@@ -110,9 +119,10 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.last_search = counters.at("last_search");
     state.claim.supported = counters.at("supported");
     state.claim.log_odds = counters.at("evidence");
-    if (!counters.at("accepted_time_us").is_null()) {
-      state.accepted_time_us = counters.at("accepted_time_us").get<std::int64_t>();
-    }
+    state.accepted_time_us = time_of(counters.at("accepted_time_us"));
+    // Programs from before did not look around.
+    state.looked_time_us = time_of(counters.value("looked_time_us", json()));
+    state.drifts = counters.value("drifts", false);
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
                                                  error.what() + "): delete the track and begin a new one");

@@ -52,6 +52,7 @@ export class Tracks {
       ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
       ['places', String(step.cluster_count)],
       ['resets', String(step.resets)],
+      ['odometry', step.drifts ? 'drifts: tell its covariance, or a wind' : 'as it says'],
     ]));
     if (step.pose) this.path.addLatLng([step.pose.lat, step.pose.lon]);
     this.estimate.clearLayers();

@@ -1,0 +1,92 @@
+// What a track makes of odometry that is worse than it says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/locate/tracker.hpp"
+#include "tests/core/locate/track_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::Flight;
+using testing::Track;
+
+/// Flights over the town whose odometry does not feel what moves the vehicle besides.
+class TrackOfAVehicleThatDrifts : public Track {
+ protected:
+  struct Outcome {
+    int claims = 0;
+    int false_claims = 0;          ///< more than 25 m off
+    double largest_error_m = 0.0;  ///< of the last half
+    bool drifts = false;
+  };
+
+  Outcome flown(const TrackSettings& s, GridPoint unfelt_m, std::uint64_t seed, int steps = 40) {
+    const Tracker tracker(view_, s);
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    Outcome outcome;
+    for (int i = 0; i < steps; ++i) {
+      const GridPose& pose = flight.pose();
+      flight.jump_to(
+          {{pose.position.east_m + unfelt_m.east_m, pose.position.north_m + unfelt_m.north_m}, pose.heading});
+      const TrackEstimate estimate = advance(tracker, flight.step());
+      const double error = error_m(estimate, flight.pose());
+      outcome.claims += estimate.converged ? 1 : 0;
+      outcome.false_claims += estimate.converged && error > 25.0 ? 1 : 0;
+      if (i >= steps / 2) outcome.largest_error_m = std::max(outcome.largest_error_m, error);
+      outcome.drifts = estimate.drifts;
+    }
+    return outcome;
+  }
+};
+
+TEST_F(TrackOfAVehicleThatDrifts, LearnsTheDriftThoughNoneWasTold) {
+  int claims = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    const Outcome outcome = flown(settings(), {5.0, -3.0}, seed);
+    claims += outcome.claims;
+    EXPECT_TRUE(outcome.drifts) << "seed " << seed;
+    EXPECT_EQ(outcome.false_claims, 0) << "seed " << seed;
+    EXPECT_LT(outcome.largest_error_m, 15.0) << "seed " << seed;
+  }
+  EXPECT_GE(claims, 100) << "of 160 steps";
+}
+
+TEST_F(TrackOfAVehicleThatDrifts, LearnsALargerOneThanWasTold) {
+  TrackSettings told = settings();
+  told.vehicle.wind = Wind::of(0.5, std::nullopt);
+  const Outcome outcome = flown(told, {7.0, 4.0}, 4);
+  EXPECT_TRUE(outcome.drifts);
+  EXPECT_LT(outcome.largest_error_m, 15.0);
+}
+
+TEST_F(TrackOfAVehicleThatDrifts, TakesOdometryThatIsAsItSaysAtItsWord) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    EXPECT_FALSE(flown(settings(), {}, seed).drifts) << "seed " << seed;
+  }
+}
+
+TEST_F(TrackOfAVehicleThatDrifts, IsNotNoticedByThePapersFilter) {
+  EXPECT_FALSE(flown(TrackSettings::paper(1000), {5.0, -3.0}, 1).drifts);
+}
+
+TEST_F(Track, LooksAroundEveryThreeSecondsWhereItIsSureOfItsPlace) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  std::vector<std::int64_t> looks_s;
+  fly(tracker, flight, 30, [&](int, const TrackEstimate&) {
+    const std::int64_t look_s = state_.looked_time_us.value_or(0) / 1'000'000;
+    if (look_s > 0 && (looks_s.empty() || look_s != looks_s.back())) looks_s.push_back(look_s);
+  });
+  ASSERT_GE(looks_s.size(), 4U);
+  for (std::size_t i = 1; i < looks_s.size(); ++i) EXPECT_EQ(looks_s[i] - looks_s[i - 1], 3) << "look " << i;
+  for (int i = 0; i < 5; ++i) advance(tracker, flight.step(false));
+  EXPECT_EQ(state_.looked_time_us, looks_s.back() * 1'000'000) << "there was nothing to look at";
+}
+
+}  // namespace
+}  // namespace roadfix

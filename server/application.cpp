@@ -40,7 +40,7 @@ struct Application::Parts {
                   [start = std::chrono::system_clock::now()] {
                     return std::chrono::duration<double>(start.time_since_epoch()).count();
                   });
-    metrics.gauge("roadfix_tracks_available", "1 where the store of the tracks can be opened, else 0.",
+    metrics.gauge("roadfix_tracks_available", "1 where the store of the tracks is open and took the last step, else 0.",
                   [this] { return tracks.problem() ? 0.0 : 1.0; });
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",

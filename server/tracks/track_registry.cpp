@@ -78,11 +78,10 @@ TrackSettings TrackRegistry::calibrated(TrackSettings settings) const {
 
 std::optional<std::string> TrackRegistry::problem() const {
   try {
-    store();
+    return store().problem();
   } catch (const Error& error) {
     return error.what();
   }
-  return std::nullopt;
 }
 
 void TrackRegistry::stop() {

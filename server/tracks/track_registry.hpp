@@ -41,6 +41,7 @@ class TrackRegistry {
                 const api::Limits& request_limits, std::shared_ptr<const Calibration> calibration = nullptr);
 
   const TrackLimits& limits() const { return limits_; }
+  /// Why tracks cannot be kept now, as far as the last step told.
   std::optional<std::string> problem() const;
   /// Ends the streams of events.
   void stop();

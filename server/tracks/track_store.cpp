@@ -92,15 +92,31 @@ class TrackStore::Impl {
     try {
       return work();
     } catch (const Error& error) {
-      rename_failure(path_, error);
+      fail(error);
     }
   }
   sqlite::Connection& connection() { return *connection_; }
+  /// Of work that runs: it wrote, so that what failed before is over.
+  void has_written() { problem_.reset(); }
+  std::optional<std::string> problem() const {
+    const std::lock_guard lock(mutex_);
+    return problem_;
+  }
 
  private:
+  [[noreturn]] void fail(const Error& error) {
+    try {
+      rename_failure(path_, error);
+    } catch (const Error& renamed) {
+      problem_ = renamed.what();
+      throw;
+    }
+  }
+
   std::filesystem::path path_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;
+  std::optional<std::string> problem_;
 };
 
 TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes)
@@ -108,12 +124,15 @@ TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes
 
 TrackStore::~TrackStore() = default;
 
+std::optional<std::string> TrackStore::problem() const { return impl_->problem(); }
+
 void TrackStore::add(const StoredTrack& t) {
   impl_->with([&] {
     sqlite::Statement(impl_->connection(),
                       fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
         .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, t.ended)
         .run();
+    impl_->has_written();
   });
 }
 
@@ -168,6 +187,7 @@ bool TrackStore::add_step(const std::string& id, std::int64_t now_us, const Stor
         .with(id, step.sequence, step.digest, step.answer)
         .run();
     transaction.commit();
+    impl_->has_written();
     return true;
   });
 }
@@ -214,6 +234,7 @@ void TrackStore::end(const std::string& id, const std::string& how) {
         .with(kEndedKept)
         .run();
     transaction.commit();
+    impl_->has_written();
   });
 }
 

@@ -46,6 +46,9 @@ class TrackStore {
   TrackStore(const TrackStore&) = delete;
   TrackStore& operator=(const TrackStore&) = delete;
 
+  /// What failed since a track or a step was last written; nullopt where nothing did.
+  std::optional<std::string> problem() const;
+
   void add(const StoredTrack& track);
   std::optional<StoredTrack> find(const std::string& id) const;
   StoredState state(const std::string& id) const;

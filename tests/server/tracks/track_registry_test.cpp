@@ -1,5 +1,6 @@
 #include "server/tracks/track_registry.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -90,8 +91,10 @@ TEST_F(TrackRegistryTest, IsAsItWasAfterAStepThatTheFullStoreRefused) {
   ASSERT_EQ(refusal, "track-store-full");
   const auto refused = static_cast<std::int64_t>(next - 1);
   EXPECT_EQ(tracks->last_step(id)->sequence, refused - 1);
+  EXPECT_THAT(tracks->problem(), ::testing::Optional(::testing::HasSubstr("no space left")));
   tracks->finish(other);
   EXPECT_EQ(take(*tracks, id, refused), expected[next - 1]);
+  EXPECT_FALSE(tracks->problem());
 }
 
 TEST_F(TrackRegistryTest, SaysThatTheStoredStateIsDamaged) {

@@ -1,0 +1,62 @@
+#include "server/api/track_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/code_of.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using testing::code_of;
+
+TrackerState flown() {
+  TrackerState state;
+  state.started = true;
+  state.searched = true;
+  state.sequence = 41;
+  state.time_us = 42'000'000;
+  state.measured = 40;
+  state.last_search = 11;
+  state.claim = {4, 7.5, true};
+  state.accepted_time_us = 42'000'000;
+  state.looked_time_us = 40'000'000;
+  state.drifts = true;
+  return state;
+}
+
+TEST(TrackCounters, ComeBackAsTheyWere) {
+  EXPECT_TRUE(state_of(counters_json(flown()), {}) == flown());
+  TrackerState blind = flown();
+  blind.accepted_time_us.reset();
+  blind.looked_time_us.reset();
+  EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
+}
+
+TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
+  nlohmann::json before = counters_json(flown());
+  before.erase("looked_time_us");
+  before.erase("drifts");
+  const TrackerState state = state_of(before, {});
+  EXPECT_FALSE(state.looked_time_us);
+  EXPECT_FALSE(state.drifts);
+  EXPECT_EQ(state.sequence, 41);
+}
+
+TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
+  const nlohmann::json good = counters_json(flown());
+  for (const std::string name : {"sequence", "measured", "evidence", "accepted_time_us"}) {
+    nlohmann::json damaged = good;
+    damaged.erase(name);
+    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
+  }
+  for (const std::string name : {"searched", "accepted_time_us", "looked_time_us", "drifts"}) {
+    nlohmann::json damaged = good;
+    damaged[name] = "soon";
+    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
+  }
+}
+
+}  // namespace
+}  // namespace roadfix::api

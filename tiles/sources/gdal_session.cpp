@@ -14,6 +14,8 @@ namespace {
 
 constexpr GIntBig kCacheBytes = GIntBig{384} << 20;
 
+thread_local GdalMessages* innermost = nullptr;
+
 }  // namespace
 
 void require_gdal() {
@@ -32,12 +34,21 @@ void require_gdal() {
   });
 }
 
-GdalMessages::GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::collect, this); }
-GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+GdalMessages::GdalMessages() : outer_(innermost) {
+  innermost = this;
+  CPLPushErrorHandlerEx(&GdalMessages::collect, this);
+}
+
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+  innermost = outer_;
+}
 
 void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
   if (severity < CE_Failure) return;
-  static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->last_ = message;
+  for (auto* m = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData()); m != nullptr; m = m->outer_) {
+    m->last_ = message;
+  }
 }
 
 std::string GdalMessages::text() const { return last_.empty() ? std::string(kNone) : last_; }

@@ -16,7 +16,7 @@ namespace roadfix {
 /// Registers the drivers and sets the options that make damaged files an error. Cheap when repeated.
 void require_gdal();
 
-/// Collects what GDAL complains about on this thread instead of printing it.
+/// Collects what GDAL complains about on this thread, while it lives, instead of printing it.
 class GdalMessages {
  public:
   GdalMessages();
@@ -30,6 +30,7 @@ class GdalMessages {
 
  private:
   static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum number, const char* message);
+  GdalMessages* outer_;
   std::string last_;
 };
 

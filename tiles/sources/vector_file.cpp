@@ -28,6 +28,22 @@ DatasetPtr open_vector(const std::string& path, const std::optional<VectorTile>&
   return open_dataset(path, GDAL_OF_VECTOR, options.List());
 }
 
+/// GDAL takes a GeoJSON file that names a reference system which PROJ does not know for WGS 84, and says so in passing.
+DatasetPtr open_in_known_crs(const std::string& path, const std::optional<VectorTile>& tile,
+                             const VectorOptions& options) {
+  const GdalMessages messages;
+  DatasetPtr dataset = open_vector(path, tile);
+  const std::string said = messages.text();
+  if (options.crs.empty() && said.starts_with("PROJ: ") && said.ends_with("crs not found")) {
+    throw InvalidInput(
+        "crs-unknown",
+        fmt::format("{}: it names a reference system that is not known ({}): give its own with --crs, for "
+                    "example --crs EPSG:32637",
+                    path, said));
+  }
+  return dataset;
+}
+
 std::vector<GridPoint> ring_on_plane(const OGRLinearRing& ring, OGRCoordinateTransformation& to_plane,
                                      const std::string& path) {
   std::vector<GridPoint> result;
@@ -72,7 +88,7 @@ std::optional<VectorTile> vector_tile_of(const std::string& path) {
 }
 
 VectorFile::VectorFile(const std::string& path, const VectorOptions& options)
-    : path_(path), options_(options), tile_(vector_tile_of(path)), dataset_(open_vector(path, tile_)) {
+    : path_(path), options_(options), tile_(vector_tile_of(path)), dataset_(open_in_known_crs(path, tile_, options)) {
   const bool osm = EQUAL(dataset_->GetDriverName(), "OSM");
   for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
     OGRLayer* layer = dataset_->GetLayer(i);

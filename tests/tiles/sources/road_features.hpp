@@ -37,9 +37,10 @@ inline std::string extent_around_centre(double half_m) {
 
 class RoadFeatures : public ::testing::Test {
  protected:
-  std::string geojson(const std::vector<std::string>& features) {
+  /// `members` of the collection stand before its features, each with its comma.
+  std::string geojson(const std::vector<std::string>& features, const std::string& members = "") {
     std::ofstream file(folder / "roads.geojson");
-    file << R"({"type":"FeatureCollection","features":[)";
+    file << R"({"type":"FeatureCollection",)" << members << R"("features":[)";
     for (std::size_t i = 0; i < features.size(); ++i) file << (i > 0 ? "," : "") << features[i];
     file << "]}";
     return (folder / "roads.geojson").string();

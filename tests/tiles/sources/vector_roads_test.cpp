@@ -100,6 +100,20 @@ TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
   EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, options); }), "datum-unknown");
 }
 
+TEST_F(VectorRoads, OfAReferenceSystemThatNobodyKnowsAreNotTakenForWgs84) {
+  const std::string road = feature(R"("highway":"primary")", at(-50, -50), at(50, 50));
+  for (const std::string name : {"urn:ogc:def:crs:EPSG::999999", "EPSG:42 30"}) {
+    const std::string path = geojson({road}, R"("crs":{"type":"name","properties":{"name":")" + name + R"("}},)");
+    EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, {}); }), "crs-unknown") << name;
+    VectorOptions told;
+    told.crs = "EPSG:4326";
+    EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, told); }), "no error") << name;
+  }
+  const std::string known =
+      geojson({road}, R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},)");
+  EXPECT_EQ(testing::code_of([&] { centre_of_roads({known}, {}); }), "no error");
+}
+
 TEST_F(VectorRoads, EmptyLinesLieNowhereAndStretchNothing) {
   const std::string path = geojson(
       {feature(R"("highway":"primary")", at(-50, -50), at(50, 50)),

@@ -198,15 +198,17 @@ TEST(Filter, InjectsProposalsOfASearch) {
   EXPECT_NEAR(clusters[1].mean.position.east_m, 800.0, 1.0);
 }
 
+/// About 0.
+double sigma_of(const std::vector<double>& values) {
+  double sum2 = 0.0;
+  for (const double v : values) sum2 += v * v;
+  return std::sqrt(sum2 / static_cast<double>(values.size()));
+}
+
 TEST(Filter, DrawsScaleAndDriftOfNewParticlesAndKeepsTheScaleWithinItsRange) {
   FilterOptions options;
   options.injected_share = 0.0;
   Filter filter(options, {kSquare, 0.0, 0.1, 4.0}, 5);
-  const auto sigma_of = [](const std::vector<double>& values) {
-    double sum2 = 0.0;
-    for (const double v : values) sum2 += v * v;
-    return std::sqrt(sum2 / static_cast<double>(values.size()));
-  };
   const Particles& p = filter.particles();
   // Of 10,000 draws a standard deviation is known to 0.7 %; five times that is allowed.
   filter.start_uniformly(kSquare);
@@ -221,6 +223,19 @@ TEST(Filter, DrawsScaleAndDriftOfNewParticlesAndKeepsTheScaleWithinItsRange) {
     filter.predict(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 1.0});
     EXPECT_TRUE(filter.correct(seen_at(p, {300.0, 300.0}, 3.0)).usable);
   }
+}
+
+TEST(Filter, WidensTheDriftOfItsParticlesAndDrawsNewOnesWithAsMuch) {
+  Filter filter({}, {kSquare}, 5);
+  const Particles& p = filter.particles();
+  filter.start_uniformly(kSquare);
+  ASSERT_EQ(sigma_of(p.drift_east_m_s), 0.0);
+  filter.widen_drift(3.0);
+  EXPECT_NEAR(sigma_of(p.drift_east_m_s), 3.0, 0.11);
+  filter.widen_drift(4.0);
+  EXPECT_NEAR(sigma_of(p.drift_north_m_s), 5.0, 0.18) << "to what they had";
+  filter.start_uniformly(kSquare);
+  EXPECT_NEAR(sigma_of(p.drift_north_m_s), 4.0, 0.14);
 }
 
 TEST(FilterState, OfTheVersionBeforeHasEveryScaleAsItWasTold) {

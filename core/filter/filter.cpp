@@ -190,23 +190,20 @@ void Filter::roughen(std::span<const std::size_t> ancestors) {
 }
 
 void Filter::widen(double sigma_m) {
-  ++state_.step;
-  Particles& p = state_.particles;
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    RandomStream random(Draw::kRoughen, {state_.seed, state_.step, k});
-    p.east_m[k] += sigma_m * random.normal();
-    p.north_m[k] += sigma_m * random.normal();
-  }
+  scatter(state_.particles.east_m, state_.particles.north_m, sigma_m, Draw::kRoughen);
 }
 
 void Filter::widen_drift(double sigma_m_s) {
-  ++state_.step;
   region_.drift_sigma_m_s = sigma_m_s;
-  Particles& p = state_.particles;
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    RandomStream random(Draw::kDrift, {state_.seed, state_.step, k});
-    p.drift_east_m_s[k] += sigma_m_s * random.normal();
-    p.drift_north_m_s[k] += sigma_m_s * random.normal();
+  scatter(state_.particles.drift_east_m_s, state_.particles.drift_north_m_s, sigma_m_s, Draw::kDrift);
+}
+
+void Filter::scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose) {
+  ++state_.step;
+  for (std::size_t k = 0; k < east.size(); ++k) {
+    RandomStream random(purpose, {state_.seed, state_.step, k});
+    east[k] += sigma * random.normal();
+    north[k] += sigma * random.normal();
   }
 }
 

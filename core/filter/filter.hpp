@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/filter/motion.hpp"
 #include "core/filter/particles.hpp"
@@ -120,6 +121,8 @@ class Filter {
   bool keep_within_region();
   void resample();
   void roughen(std::span<const std::size_t> ancestors);
+  /// Of the particles' columns.
+  void scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose);
   double share_to_inject() const;
   template <typename DrawState>
   void replace_some(std::size_t count, DrawState draw);

@@ -27,8 +27,7 @@ bool Tracker::Step::start_by_search() {
   const std::optional<Prior> prior = first ? settings_.prior : prior_around(tracker_.map_, filter_.particles());
   if (!prior) return false;
   state_.searched = true;
-  state_.last_search = state_.measured;
-  const std::optional<Fix> fix = searched(state_.recent.laid_around(*features_), *prior, settings_.vehicle.scale_range);
+  const std::optional<Fix> fix = searched(*prior);
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
@@ -55,13 +54,11 @@ bool Tracker::Step::wants_search() const {
 
 void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
-  state_.last_search = state_.measured;
-  const FeatureMap seen = state_.recent.laid_around(*features_);
-  std::optional<Fix> fix = searched(seen, {}, settings_.vehicle.scale_range);
+  std::optional<Fix> fix = searched({});
   if (!fix) {
     Prior near;
     near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = searched(seen, near, settings_.vehicle.scale_range);
+    fix = searched(near);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
@@ -82,6 +79,11 @@ void Tracker::Step::believe(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
   state_.looked_time_us = input_.time_us;
+}
+
+std::optional<Fix> Tracker::Step::searched(const Prior& prior) {
+  state_.last_search = state_.measured;
+  return searched(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
 }
 
 /// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it

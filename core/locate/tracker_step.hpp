@@ -45,6 +45,7 @@ class Tracker::Step {
   bool wants_search() const;
   void recover();
   void believe(const Fix& fix);
+  std::optional<Fix> searched(const Prior& prior);
   std::optional<Fix> searched(const FeatureMap& features, const Prior& prior, double scale_range);
 
   // tracker_look.cpp

@@ -36,7 +36,7 @@ void require_gdal() {
 
 GdalMessages::GdalMessages() : outer_(innermost) {
   innermost = this;
-  CPLPushErrorHandlerEx(&GdalMessages::collect, this);
+  CPLPushErrorHandler(&GdalMessages::collect);
 }
 
 GdalMessages::~GdalMessages() {
@@ -46,9 +46,7 @@ GdalMessages::~GdalMessages() {
 
 void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char* message) {
   if (severity < CE_Failure) return;
-  for (auto* m = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData()); m != nullptr; m = m->outer_) {
-    m->last_ = message;
-  }
+  for (GdalMessages* m = innermost; m != nullptr; m = m->outer_) m->last_ = message;
 }
 
 std::string GdalMessages::text() const { return last_.empty() ? std::string(kNone) : last_; }

@@ -13,14 +13,15 @@ int tiles_along(int cells, int patch, int overlap, int side) {
   return (places + step - 1) / step;
 }
 
-/// The side of the tiles that take the least work.
+/// The side of the tiles that take the least work. One that the patch all but fills holds next to no places, and would
+/// take a tile for each few of them.
 int best_side(const FloatPlane& plane, int patch, int overlap) {
-  constexpr int kLongest = 512;  // unless the patch asks for more
+  const int longest = std::max(512, 2 * (patch + overlap));
   // Measured: what a cell of a tile costs grows with the tile's side about as this plus the side, as caches run over.
   constexpr double kCellCost = 160.0;
   int best = 0;
   double least = 0.0;
-  for (int side = FourierTransform::kLeastSide; best == 0 || side <= kLongest; side += kStripCols) {
+  for (int side = FourierTransform::kLeastSide; best == 0 || side <= longest; side += kStripCols) {
     if (!FourierTransform::is_side(side) || side < patch + overlap) continue;
     const double tiles =
         double{1} * tiles_along(plane.cols, patch, overlap, side) * tiles_along(plane.rows, patch, overlap, side);

@@ -69,6 +69,13 @@ TEST(Correlator, SumsPairsOfPatchesAndPairsOfPlanesAsPlainLoopsDo) {
   }
 }
 
+TEST(Correlator, TakesFewTilesAlsoForAPatchThatAllButFillsASide) {
+  for (const int patch : {250, 381, 509, 765, 1021}) {
+    const FloatPlane plane(patch + 200, patch + 200);
+    EXPECT_LE(Correlator(plane, {}, patch, 2).tiles(), 4U) << patch;
+  }
+}
+
 TEST(Correlator, KnowsTheSumsWhereAllCellsAreAlike) {
   std::mt19937_64 random(2);
   for (const bool pair : {false, true}) {

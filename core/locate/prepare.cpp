@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLargestSideM = 20'000.0;
 constexpr int kMostCellsAcross = 8192;
+constexpr double kMostSidesOff = 10.0;  // a telephoto camera looks less far ahead
 
 void require_usable(const FeatureMap& features) {
   if (features.cells.empty()) {
@@ -30,11 +31,22 @@ void require_usable(const FeatureMap& features) {
                        fmt::format("the feature map spans {:.6g} m, more than {:.0f} m: check its cell size ({} m)",
                                    side_m, kLargestSideM, features.cell_m));
   }
-  const double off_m = features.cell_m * std::hypot(features.nadir.col - features.cells.cols() / 2.0,
-                                                    features.nadir.row - features.cells.rows() / 2.0);
-  if (!(off_m <= kLargestSideM)) {
-    throw InvalidInput("nadir-out-of-range", "the point below the UAV lies too far from its feature map");
-  }
+}
+
+/// The map is read as far around a pose as the feature map lies from its nadir. Of a small one far off that would be
+/// gigabytes.
+void require_nadir_near(const FeatureMap& features, double cell_m) {
+  const double cols = features.cells.cols();
+  const double rows = features.cells.rows();
+  const double off = std::hypot(features.nadir.col - cols / 2.0, features.nadir.row - rows / 2.0);
+  const double most_off = kMostSidesOff * std::max(cols, rows);
+  const double most_reach = kMostCellsAcross * cell_m / features.cell_m;
+  if (off <= most_off && off + 0.5 * std::hypot(cols, rows) <= most_reach) return;
+  throw InvalidInput("nadir-out-of-range",
+                     fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
+                                 "{} cells: check nadir_col and nadir_row, at most ten times the longer side is "
+                                 "allowed, and {} cells of the map to the farthest corner",
+                                 off, cols, rows, kMostCellsAcross));
 }
 
 GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
@@ -68,6 +80,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
                        fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",
                                    cells_across, kMostCellsAcross));
   }
+  require_nadir_near(features, cell_m);
   return resampled(features, cell_m);
 }
 

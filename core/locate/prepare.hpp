@@ -7,7 +7,7 @@
 namespace roadfix {
 
 /// Cells of the map or one of its overviews, the coarsest that still holds what the feature map shows.
-/// Throws InvalidInput for an empty feature map and one of a size that makes no sense.
+/// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
 /// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMostScaleRange.

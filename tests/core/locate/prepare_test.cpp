@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -38,6 +40,22 @@ TEST(RegionOf, TakesBoxesOnEitherSideOfTheAntimeridian) {
   const double antimeridian_m = map.zone.project({-18.0, 180.0}).east_m;
   EXPECT_LT(region(map, {{-19.0, 179.0}, {-17.0, 180.0}}).max.east_m, antimeridian_m + 1000.0);
   EXPECT_GT(region(map, {{-19.0, -180.0}, {-17.0, -179.0}}).min.east_m, antimeridian_m - 1000.0);
+}
+
+TEST(InCellsOf, TakesANadirAsFarOffAsATelephotoCameraLooksAndNoFarther) {
+  MapView map = map_of(32637, {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}});
+  map.cell_m = 0.25;
+  const auto code = [&](int side, double nadir_row) {
+    FeatureMap features = FeatureMap::centred(CellArray(side, side, kNoRoad), map.cell_m);
+    features.nadir.row = nadir_row;
+    return testing::code_of([&] { in_cells_of(map, features); });
+  };
+  EXPECT_EQ(code(100, 1050.0), "no error");
+  EXPECT_EQ(code(100, 1051.0), "nadir-out-of-range");
+  EXPECT_EQ(code(100, -951.0), "nadir-out-of-range");
+  EXPECT_EQ(code(100, std::nan("")), "nadir-out-of-range");
+  EXPECT_EQ(code(2000, 7700.0), "no error");
+  EXPECT_EQ(code(2000, 7800.0), "nadir-out-of-range") << "more cells of the map than are read around a pose";
 }
 
 }  // namespace

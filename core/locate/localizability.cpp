@@ -12,12 +12,18 @@ namespace {
 
 constexpr double kSmallestM = 20.0;
 constexpr double kLargestM = 5000.0;
+constexpr double kMostCellsAcross = 4096.0;  // in finer cells large footprints would take gigabytes
 
+/// Of the map, or where a footprint has too many of them, of an overview.
+double cell_for(const MapView& map, double footprint_m) {
+  double cell_m = map.cell_m;
+  while (footprint_m > kMostCellsAcross * cell_m) cell_m *= 2.0;
+  return cell_m;
+}
+
+/// Cells enough for the footprint at any error of scale and tilt.
 RoadGrid around(const MapView& map, GridPoint centre, double footprint_m) {
-  // Grid cells enough for the footprint at any error of scale and tilt.
-  const double reach = footprint_m;
-  return map.read(GridGeometry::covering(
-      {{centre.east_m - reach, centre.north_m - reach}, {centre.east_m + reach, centre.north_m + reach}}, map.cell_m));
+  return map.read(GridGeometry::covering(grown({centre, centre}, footprint_m), cell_for(map, footprint_m)));
 }
 
 double road_share(const CellArray& cells) {
@@ -28,8 +34,8 @@ double road_share(const CellArray& cells) {
 }
 
 /// Within two standard deviations, or four cells where those are more.
-bool is_at(const FixMode& mode, GridPoint place, const MapView& map) {
-  return distance_m(map.zone.project(mode.pose.position), place) <= std::max(4.0 * map.cell_m, 2.0 * mode.sigma_m[0]);
+bool is_at(const FixMode& mode, GridPoint place, const UtmZone& zone, double cell_m) {
+  return distance_m(zone.project(mode.pose.position), place) <= std::max(4.0 * cell_m, 2.0 * mode.sigma_m[0]);
 }
 
 }  // namespace
@@ -40,8 +46,9 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
                        fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestM, kLargestM));
   }
   const GridPoint place = map.zone.project(query.position);
-  const int cells = std::max(1, static_cast<int>(std::lround(query.footprint_m / map.cell_m)));
   const RoadGrid ground = around(map, place, query.footprint_m);
+  const double cell_m = ground.geometry.cell_m;
+  const int cells = std::max(1, static_cast<int>(std::lround(query.footprint_m / cell_m)));
   std::mt19937_64 random(1);  // a place has one answer
   const FeatureMap as_mapped = simulate_features(ground, {place, {}}, cells, cells, {}, random);
   const FeatureMap seen = simulate_features(ground, {place, {}}, cells, cells, query.quality, random);
@@ -53,7 +60,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   result.road_share = road_share(as_mapped.cells);
   result.observed_share =
       static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());
-  const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map);
+  const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map.zone, cell_m);
   if (found) {
     result.status = fix.status;
     result.reason = fix.reason;
@@ -62,7 +69,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
     result.reason = fix.modes.empty() || !fix.complete ? fix.reason : "wrong-place";
   }
   std::ranges::copy_if(fix.modes, std::back_inserter(result.alike),
-                       [&](const FixMode& mode) { return !is_at(mode, place, map); });
+                       [&](const FixMode& mode) { return !is_at(mode, place, map.zone, cell_m); });
   return result;
 }
 

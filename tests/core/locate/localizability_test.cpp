@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "core/units/error.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
@@ -53,6 +56,17 @@ TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
   const Localizability place = localizability(nothing, centre_of(nothing, 200.0));
   EXPECT_EQ(place.reason, "footprint-unobserved");
   EXPECT_EQ(place.observed_share, 0.0);
+}
+
+TEST(Localizability, LooksAtLargeFootprintsInCoarserCellsThanThoseOfAFineMap) {
+  MapView view = view_of({{0.25, {2'400'000, -25'600'000}, 1, 1}, CellArray(1, 1)});
+  std::int64_t most_cells = 0;
+  view.read = [&](const GridGeometry& geometry) {
+    most_cells = std::max(most_cells, std::int64_t{geometry.cols} * geometry.rows);
+    return RoadGrid{geometry, CellArray(1, 1)};  // beyond its cells it is unobserved, too
+  };
+  EXPECT_EQ(localizability(view, centre_of(view, 5000.0)).reason, "footprint-unobserved");
+  EXPECT_LE(most_cells, 8192 * 8192 + 1);
 }
 
 TEST(Localizability, RefusesAFootprintOfNoSize) {

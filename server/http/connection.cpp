@@ -51,8 +51,14 @@ Connection::~Connection() {
 bool Connection::wait(milliseconds time) {
   if (begin_ < end_) return true;
   if (!poll_for(socket_, POLLIN, time)) return false;
-  deadline_ = Clock::now() + limits_.head;
+  begin(limits_.head);
   return fill();
+}
+
+void Connection::begin(milliseconds time) {
+  begun_ = Clock::now();
+  received_ = 0;
+  deadline_ = begun_ + time;
 }
 
 bool Connection::peer_has_left() const {
@@ -65,16 +71,12 @@ void Connection::begin_head() {
   in_head_ = true;
   head_bytes_ = 0;
   failure_ = Failure::kNone;
-  begun_ = Clock::now();
-  received_ = 0;
-  deadline_ = begun_ + limits_.head;
+  begin(limits_.head);
 }
 
 void Connection::begin_body() {
   in_head_ = false;
-  begun_ = Clock::now();
-  received_ = 0;
-  deadline_ = begun_ + limits_.body;
+  begin(limits_.body);
 }
 
 void Connection::linger() {

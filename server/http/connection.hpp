@@ -54,6 +54,8 @@ class Connection : public httplib::Stream {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// From now on the peer has that long, and its pace is counted.
+  void begin(std::chrono::milliseconds time);
   bool fill();
   /// Waits at most `time`, or until the peer holds up others; `bytes` have passed since `since`.
   bool wait_for(short events, std::chrono::milliseconds time, Clock::time_point since, std::size_t bytes) const;

@@ -51,6 +51,20 @@ TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
   EXPECT_THAT(slow.read_all(), ::testing::EndsWith("\r\n\r\n5"));
 }
 
+TEST_F(HttpServerTimes, CountsNoTimeOfItsOwnAgainstTheSenderOfTheNextRequest) {
+  settings_.threads = 1;
+  settings_.crowded_time = 1ms;
+  const auto server = started();
+  testing::RawConnection patient(port_);
+  patient.send("POST /wait HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n");
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  patient.send("GET /echo?text=next HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  const testing::RawConnection queued(port_);
+  std::this_thread::sleep_for(20ms);
+  go_ = true;
+  EXPECT_THAT(patient.read_all(), ::testing::EndsWith("\r\n\r\nnext"));
+}
+
 TEST_F(HttpServerTimes, ClosesConnectionsThatStayIdle) {
   settings_.idle_time = 100ms;
   const auto server = started();

@@ -5,11 +5,17 @@
 namespace roadfix::server {
 
 LiveTrack::LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& settings, TrackerState state)
-    : map_(std::move(map)), tracker_(map_->view, settings), state_(std::move(state)) {}
+    : map_(std::move(map)),
+      tracker_(map_->view, settings),
+      state_(std::make_shared<const TrackerState>(std::move(state))) {}
 
 std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
-  const std::lock_guard lock(mutex_);
-  return state_.started ? tracker_.particles(state_, count) : std::vector<GeoPose>();
+  std::shared_ptr<const TrackerState> last;
+  {
+    const std::lock_guard lock(state_mutex_);
+    last = state_;
+  }
+  return last->started ? tracker_.particles(*last, count) : std::vector<GeoPose>();
 }
 
 LiveTrack::Turn::Turn(LiveTrack& track, std::int64_t sequence, std::chrono::milliseconds patience)
@@ -26,8 +32,10 @@ LiveTrack::Turn::~Turn() {
 }
 
 void LiveTrack::Turn::settle(TrackerState state) {
-  track_.state_ = std::move(state);
+  auto settled = std::make_shared<const TrackerState>(std::move(state));
   track_.doubtful_ = false;
+  const std::lock_guard lock(track_.state_mutex_);
+  track_.state_.swap(settled);
 }
 
 }  // namespace roadfix::server

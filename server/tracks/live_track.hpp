@@ -19,7 +19,7 @@ class LiveTrack {
   LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& settings, TrackerState state = {});
 
   const Tracker& tracker() const { return tracker_; }
-  /// Thinned to at most `count`; none before the first step.
+  /// After the last step, thinned to at most `count`; none before the first one. Waits for no step that is under way.
   std::vector<GeoPose> particles(std::size_t count) const;
 
   class Turn;
@@ -27,11 +27,12 @@ class LiveTrack {
  private:
   const std::shared_ptr<const ServedMap> map_;
   const Tracker tracker_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;  ///< held for as long as a step takes
   std::condition_variable turn_ended_;
   std::multiset<std::int64_t> waiting_;  ///< sequence numbers of the steps that are here
-  TrackerState state_;
   bool doubtful_ = false;
+  mutable std::mutex state_mutex_;
+  std::shared_ptr<const TrackerState> state_;  ///< changed by the step whose turn it is
 };
 
 /// Steps of a track take turns, the lowest sequence number first.
@@ -43,7 +44,7 @@ class LiveTrack::Turn {
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
-  const TrackerState& state() const { return track_.state_; }
+  const TrackerState& state() const { return *track_.state_; }
   /// Whether the store alone knows if the last step was taken.
   bool is_doubtful() const { return track_.doubtful_; }
   /// Until settle(), should the store fail.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -208,6 +210,17 @@ TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
   tracks->finish(id);
   EXPECT_EQ(stream->next()->ended, "finished");
   tracks->stop();
+}
+
+TEST_F(TrackRegistryTest, ShowsParticlesWhileAStepIsUnderWay) {
+  const auto map = maps_.find("town");
+  LiveTrack track(map, {});
+  std::optional<LiveTrack::Turn> step(std::in_place, track, 0, std::chrono::milliseconds(0));
+  step->settle(track.tracker().advance(step->state(), step_of(0)).state);
+  auto shown = std::async(std::launch::async, [&] { return track.particles(100).size(); });
+  EXPECT_EQ(shown.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  step.reset();
+  EXPECT_EQ(shown.get(), 100U);
 }
 
 TEST_F(TrackRegistryTest, TakesStepsOfSeveralThreadsInOrder) {

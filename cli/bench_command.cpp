@@ -17,6 +17,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
+#include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
@@ -101,7 +102,9 @@ nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest&
           {"cell_m", arguments.cell_m}};
 }
 
-void write_json(const nlohmann::json& document, const std::string& file) { write_file(file, document.dump(1) + '\n'); }
+void write_json(const nlohmann::json& document, const std::string& file) {
+  write_file(file, json_text(document, 1) + '\n');
+}
 
 void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& honesty, const std::string& folder) {
   std::filesystem::create_directories(folder);

@@ -13,6 +13,7 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/frame_options.hpp"
+#include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "core/detect/image_codec.hpp"
@@ -93,7 +94,7 @@ void run_detect(const DetectOptions& options) {
                         {"time_ms", time.count()}};
   if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
   if (options.json) {
-    fmt::print("{}\n", answer.dump());
+    fmt::print("{}\n", json_text(answer));
   } else {
     fmt::print("{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n{}\n",
                options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(),

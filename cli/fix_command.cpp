@@ -11,6 +11,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "core/locate/fix.hpp"
@@ -94,7 +95,7 @@ void run_fix(const Options& options) {
   fix_options.proof_time = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.proof_s));
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
   if (options.as_json) {
-    fmt::print("{}\n", api::to_json(fix, input.detect_time).dump(2));
+    fmt::print("{}\n", json_text(api::to_json(fix, input.detect_time), 2));
   } else {
     print_text(fix);
   }

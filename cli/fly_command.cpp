@@ -13,6 +13,7 @@
 #include "cli/fly/screening.hpp"
 #include "cli/fly/service_localizer.hpp"
 #include "cli/fly_ground.hpp"
+#include "cli/json_text.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 
@@ -62,7 +63,7 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
       for (auto& feature : fly::geojson_features(result.filter, run, zone)) features.push_back(std::move(feature));
     }
   }
-  write_file(options.geojson_file, json{{"type", "FeatureCollection"}, {"features", features}}.dump());
+  write_file(options.geojson_file, json_text({{"type", "FeatureCollection"}, {"features", features}}));
 }
 
 fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
@@ -115,7 +116,7 @@ void run_fly(const FlyOptions& options) {
              map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
   if (!options.json_file.empty()) {
-    write_file(options.json_file, document(options, ground, results, events).dump(1) + '\n');
+    write_file(options.json_file, json_text(document(options, ground, results, events), 1) + '\n');
   }
 }
 

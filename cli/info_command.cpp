@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/json_text.hpp"
 #include "core/geodesy/geo_box.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/store/map_reader.hpp"
@@ -60,7 +61,7 @@ void print_json(const std::string& path, const MapInfo& info) {
                        {"extent_m", extent},
                        {"bbox", bbox_of(info)},
                        {"sources", sources}};
-  fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(answer, 2));
 }
 
 void print_extent(const MapInfo& info) {

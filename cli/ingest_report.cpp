@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "cli/json_text.hpp"
+
 namespace roadfix::cli {
 
 nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& summary, std::int64_t blocks,
@@ -36,11 +38,11 @@ void print_plan(nlohmann::json json, bool as_json) {
   constexpr double kBytesPerBlock = 30'000.0;  // evidence and fused tile with overviews, of a city
   json["expected_bytes"] = static_cast<std::int64_t>(kBytesPerBlock * json["blocks"].get<double>());
   if (as_json) {
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
     return;
   }
   for (const auto& [key, value] : json.items()) {
-    fmt::print("{:14} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    fmt::print("{:14} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value));
   }
 }
 
@@ -57,7 +59,7 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
   const double rate = report.reading_s > 0.0 ? amount / report.reading_s : 0.0;
   json[lines ? "features_per_s" : "megapixels_per_s"] = rate;
   if (as_json) {
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
     return;
   }
   fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} {}/s), {:.1f} s fusing\n",

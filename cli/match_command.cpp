@@ -12,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/json_text.hpp"
 #include "cli/terminal.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
@@ -90,7 +91,7 @@ void run_match(const Options& options) {
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.features, poses, match_options);
   if (options.as_json) {
-    fmt::print("{}\n", nlohmann::json{{"matches", api::to_json(scores)}}.dump(2));
+    fmt::print("{}\n", json_text({{"matches", api::to_json(scores)}}, 2));
   } else {
     print_text(poses, scores);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/json_text.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_verifier.hpp"
@@ -36,7 +37,7 @@ void print_json(const std::string& path, const MapVerdict& verdict) {
                        {"unfinished_sources", unfinished},
                        {"tiles_to_fuse", verdict.tiles_to_fuse},
                        {"problems", problems}};
-  fmt::print("{}\n", answer.dump(2, ' ', false, json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(answer, 2));
 }
 
 void print_text(const std::string& path, const MapVerdict& verdict) {

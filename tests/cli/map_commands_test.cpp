@@ -54,6 +54,15 @@ TEST_F(MapCommands, InfoTellsWhatTheMapHolds) {
   }
 }
 
+TEST_F(MapCommands, AnswersInJsonOfFilesWhoseNamesAreNoUtf8) {
+  const std::string source = folder / "m\xfc.tif";
+  ASSERT_EQ(roadfix("export " + path.string() + " '" + source + "'").code, 0);
+  const std::string target = folder / "n.gpkg";
+  const ProgramResult result = roadfix("ingest '" + source + "' --as roads --json --map " + target);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["source"], "m\xef\xbf\xbd");
+}
+
 TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
   sqlite::Connection(path, sqlite::Access::kReadWrite)

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "core/units/splitmix.hpp"
 
@@ -115,12 +116,8 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
 }  // namespace
 
 std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& name, const MapSettings& settings) {
-  constexpr double kEastM = 1e6;  // of the lattice's 2^20 m: beyond there is no latitude and longitude, see UtmZone
-  constexpr double kLatticeNorthM = 10.0 * (1 << 20);
   constexpr double kMaxBlocks = 1e6;
-  GridBox box = source.extent();
-  box.min = {std::max(box.min.east_m, 0.0), std::max(box.min.north_m, 0.0)};
-  box.max = {std::min(box.max.east_m, kEastM), std::min(box.max.north_m, kLatticeNorthM)};
+  const GridBox box = intersection(source.extent(), {kLattice.min, {kEastmostM, kLattice.max.north_m}});
   if (box.empty()) outside_map(name, settings);
   const double tile_m = kTileCells * settings.cell_m;
   if (box.width_m() / tile_m * box.height_m() / tile_m > kMaxBlocks) {
@@ -133,7 +130,7 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
   std::vector<TileIndex> blocks = tiles_covering(GridGeometry::covering(box, settings.cell_m));
   std::erase_if(blocks, [&](TileIndex tile) {
     const GridBox ground = tile_geometry(tile, settings.cell_m).box();
-    return ground.max.east_m > kEastM || !source.touches(ground);
+    return ground.max.east_m > kEastmostM || !source.touches(ground);
   });
   if (blocks.empty()) outside_map(name, settings);
   return blocks;

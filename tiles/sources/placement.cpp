@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -117,10 +118,7 @@ GridBox Placement::footprint() const {
     box.min = {std::min(box.min.east_m, p.x), std::min(box.min.north_m, p.y)};
     box.max = {std::max(box.max.east_m, p.x), std::max(box.max.north_m, p.y)};
   }
-  constexpr double kLatticeM = 10.0 * (1 << 20);
-  const bool on_lattice = !box.empty() && box.max.east_m > 0.0 && box.min.east_m < kLatticeM / 10.0 &&
-                          box.max.north_m > 0.0 && box.min.north_m < kLatticeM;
-  if (!on_lattice) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
+  if (box.empty() || !box.overlaps(kLattice)) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
   return box;
 }
 

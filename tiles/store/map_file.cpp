@@ -8,6 +8,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -49,7 +50,7 @@ void insert_settings(Connection& map, const MapSettings& settings) {
       .with(epsg)
       .run();
   Statement(map, "INSERT INTO gpkg_tile_matrix_set VALUES ('road_probability', ?1, 0, 0, ?2, ?3)")
-      .with(epsg, kLatticeWidthM, kLatticeHeightM)
+      .with(epsg, kLattice.max.east_m, kLattice.max.north_m)
       .run();
   Statement level(map, "INSERT INTO gpkg_tile_matrix VALUES ('road_probability', ?1, ?2, ?3, ?4, ?4, ?5, ?5)");
   for (int zoom = kCoarsestZoom; zoom <= zoom_of(settings.cell_m); ++zoom) {
@@ -165,8 +166,7 @@ void look_into(Connection& map) {
 
 GridBox extent_of(Connection& map, const Statement& row) {
   const GridBox box{{row.real(0), row.real(1)}, {row.real(2), row.real(3)}};
-  const GridBox lattice{{0.0, 0.0}, {kLatticeWidthM, kLatticeHeightM}};
-  if (!box.empty() && lattice.contains(box.min) && lattice.contains(box.max)) return box;
+  if (!box.empty() && kLattice.contains(box.min) && kLattice.contains(box.max)) return box;
   throw CorruptData("map-corrupt",
                     fmt::format("{}: gpkg_contents gives an extent that no map can have. Restore the map "
                                 "from a copy",

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -89,7 +90,7 @@ class Verifier {
     Statement set(map_,
                   "SELECT count(*) FROM gpkg_tile_matrix_set WHERE table_name = 'road_probability' AND srs_id = ?1 AND "
                   "min_x = 0 AND min_y = 0 AND max_x = ?2 AND max_y = ?3");
-    set.with(settings_.zone.epsg(), kLatticeWidthM, kLatticeHeightM).step();
+    set.with(settings_.zone.epsg(), kLattice.max.east_m, kLattice.max.north_m).step();
     bool right = set.integer(0) == 1;
     Statement level(
         map_,

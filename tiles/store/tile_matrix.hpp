@@ -1,9 +1,9 @@
 // The pyramid of a map file: one fixed lattice for every map of a zone (OGC tile matrix set), so that tile indices are
 // shared and maps grow without renumbering.
 //
-// x in [0, 2^20] m, y in [0, 10 * 2^20] m of the UTM zone; zoom level z has cells of 2^(12 - z) m and 2^z x 10 * 2^z
-// tiles of 256 x 256 cells. The file counts tile rows from the northern edge of the lattice, TileIndex from north = 0:
-// tile_row = TileIndex::row + 10 * 2^z.
+// It covers kLattice (core/grid/lattice.hpp): zoom level z has cells of 2^(12 - z) m and 2^z x 10 * 2^z tiles of 256 x
+// 256 cells. The file counts tile rows from the northern edge of the lattice, TileIndex from north = 0: tile_row =
+// TileIndex::row + 10 * 2^z.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,6 @@
 
 namespace roadfix {
 
-inline constexpr double kLatticeWidthM = 1 << 20;
-inline constexpr double kLatticeHeightM = 10.0 * (1 << 20);
 /// Overviews go up to cells of 256 m, tiles of 65 km: a handful of tiles for any map.
 inline constexpr int kCoarsestZoom = 4;
 

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "core/grid/lattice.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -12,8 +13,8 @@ namespace {
 TEST(TileMatrix, ZoomLevelsHalveTheCellAndFillTheLattice) {
   for (int zoom = 0; zoom <= 14; ++zoom) {
     EXPECT_EQ(zoom_of(cell_of_zoom(zoom)), zoom);
-    EXPECT_EQ(matrix_width(zoom) * kTileCells * cell_of_zoom(zoom), kLatticeWidthM);
-    EXPECT_EQ(matrix_height(zoom) * kTileCells * cell_of_zoom(zoom), kLatticeHeightM);
+    EXPECT_EQ(matrix_width(zoom) * kTileCells * cell_of_zoom(zoom), kLattice.max.east_m);
+    EXPECT_EQ(matrix_height(zoom) * kTileCells * cell_of_zoom(zoom), kLattice.max.north_m);
   }
   EXPECT_EQ(zoom_of(kMinCellM), 14);
   EXPECT_EQ(zoom_of(kMaxCellM), 8);
@@ -23,7 +24,7 @@ TEST(TileMatrix, RowsAreCountedFromTheNorthernEdge) {
   const int zoom = 11;
   EXPECT_EQ(tile_row({0, -matrix_height(zoom)}, zoom), 0);
   EXPECT_EQ(tile_row({0, -1}, zoom), matrix_height(zoom) - 1);
-  EXPECT_EQ(tile_geometry({0, -matrix_height(zoom)}, 2.0).box().max.north_m, kLatticeHeightM);
+  EXPECT_EQ(tile_geometry({0, -matrix_height(zoom)}, 2.0).box().max.north_m, kLattice.max.north_m);
   EXPECT_EQ(index_row(tile_row({3, -77}, zoom), zoom), -77);
 }
 

@@ -33,9 +33,19 @@ GridBox box_around(const GridPose& pose, double width_m, double height_m, double
   return {{p.east_m - east, p.north_m - north}, {p.east_m + east, p.north_m + north}};
 }
 
-bool overlap(const GridBox& a, const GridBox& b) {
-  return a.min.east_m < b.max.east_m && b.min.east_m < a.max.east_m && a.min.north_m < b.max.north_m &&
-         b.min.north_m < a.max.north_m;
+/// What of the map lies within the box. Around a long window on a slant that is far more than the window itself.
+RoadGrid ground_within(const MapView& map, const GridBox& box, double source_m, const Limits& limits) {
+  constexpr double kMostRead = 16.0;  // cells for each that may be asked for; of a square on a slant at most 8
+  const GridBox needed = intersection(box, grown(map.extent, source_m));
+  const double cols = needed.width_m() / source_m;
+  const double rows = needed.height_m() / source_m;
+  if (cols * rows > kMostRead * static_cast<double>(limits.cells)) {
+    throw LimitExceeded("too-many-cells",
+                        fmt::format("the window lies on a slant, and {:.0f} x {:.0f} cells of the map around it would "
+                                    "have to be read: ask for parts of it",
+                                    cols, rows));
+  }
+  return map.read(GridGeometry::covering(needed, source_m));
 }
 
 /// A centre from which a window of so many cells ends on the lattice.
@@ -98,14 +108,13 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
   } else if (source_m == cell_m) {
     pose.position = {snapped(pose.position.east_m, n_cols, cell_m), snapped(pose.position.north_m, n_rows, cell_m)};
   }
-  if (!overlap(box_around(pose, cols * cell_m, rows * cell_m, 0.0), map.extent)) {
+  if (!box_around(pose, cols * cell_m, rows * cell_m, 0.0).overlaps(map.extent)) {
     throw InvalidInput(
         "window-outside-map",
         fmt::format("the window does not meet the map {}: GET /v1/maps/{} has its extent", map.name, map.name));
   }
-  const GridBox needed = box_around(pose, cols * cell_m, rows * cell_m, 2.0 * source_m);
-  const RoadGrid grid = map.read(GridGeometry::covering(needed, source_m));
-  return {cut_out(grid, pose, n_cols, n_rows, cell_m),
+  const GridBox around = box_around(pose, cols * cell_m, rows * cell_m, 2.0 * source_m);
+  return {cut_out(ground_within(map, around, source_m, limits), pose, n_cols, n_rows, cell_m),
           pose,
           {map.zone.unproject(pose.position), map.zone.true_from_grid(pose.heading, pose.position)},
           map.zone,

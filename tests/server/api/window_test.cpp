@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/units/error.hpp"
 #include "tests/support/ascii_map.hpp"
+#include "tests/support/code_of.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -43,6 +45,23 @@ TEST(Window, AlongTheGridGivesTheMapsOwnCellsAndTheNearestSuchCentre) {
   EXPECT_EQ(to_ascii(window.cells.cells), to_ascii(from_ascii(kPicture)));
   EXPECT_NEAR(window.grid_pose.position.east_m, 434010.0, 1e-6);
   EXPECT_NEAR(window.grid_pose.position.north_m, 4179994.0, 1e-6);
+}
+
+TEST(Window, ReadsNoMoreOfTheMapThanALongWindowOnASlantMeets) {
+  MapView map = map_of(kPicture);
+  const auto read = [&](const GridBox& extent, double width_m) {
+    double most_cells = 0.0;
+    map.extent = extent;
+    map.read = [&](const GridGeometry& asked) {
+      most_cells = std::max(most_cells, double{1} * asked.cols * asked.rows);
+      return RoadGrid{asked, CellArray(1, 1)};  // beyond its cells it is unobserved, too
+    };
+    cut_window(map, {at(434010.0, 4179994.0), Angle::degrees(45.0), width_m, 2.0, std::nullopt}, {});
+    return most_cells;
+  };
+  EXPECT_LT(read(map.extent, 100'000.0), 200.0);
+  EXPECT_EQ(roadfix::testing::code_of([&] { read(grown(map.extent, 100'000.0), 100'000.0); }), "too-many-cells");
+  EXPECT_GT(read(grown(map.extent, 10'000.0), 10'000.0), 1e7);
 }
 
 TEST(Window, HasATransformThatPutsItsCornersOnTheGroundTheyShow) {

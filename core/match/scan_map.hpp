@@ -35,7 +35,9 @@ class ScanMap {
   Correlator values_, block_observed_, block_values_;
 };
 
-/// Cells along the edge of a block that is small against the footprint.
+inline constexpr int kMostScanBlock = 4;
+
+/// Cells along the edge of a block that is small against the footprint, 1 to kMostScanBlock.
 int scan_block(const FeatureMap& features);
 
 }  // namespace roadfix

@@ -65,7 +65,9 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   const GridGeometry& positions = asked.positions;
   const GridGeometry window = framed(positions, reach);
   const int block = scan_block(coarse.features.map);
-  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block},
+  // Its cells are means of the finest ones, which are not as fine in every search.
+  const int block_of_levels = block + kMostScanBlock * levels_.coarsest();
+  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block_of_levels},
                                           [&] { return ScanMap(coarse.read(window), reach, block); });
   const Deadline end = deadline.after(kScanTimeShare);
   std::vector<LatticePose> inside;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
@@ -57,6 +58,23 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   EXPECT_EQ(fix.map_name, view_.name);
   EXPECT_NEAR(fix.searched_km2, 2.4 * 1.8, 1e-6);
   EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
+}
+
+TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  Prior prior;
+  prior.circle = GeoCircle{geo(truth).position, 200.0};
+  FixOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.2, 0.2}, random_);
+  const Fix alone = locate(view_, features, prior, options);
+  view_.searches = std::make_shared<SearchCache>(std::size_t{1} << 30);
+  locate(view_, resampled(features, 4.0), prior, options);
+  const Fix after = locate(view_, features, prior, options);
+  EXPECT_EQ(after.figures->lead, alone.figures->lead);
+  EXPECT_EQ(after.probability, alone.probability);
+  EXPECT_EQ(after.proof->bound, alone.proof->bound);
+  EXPECT_EQ(after.proof->excluded_share, alone.proof->excluded_share);
 }
 
 TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {

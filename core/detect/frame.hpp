@@ -45,14 +45,18 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
 
 /// Pixels wider than most roads do not show them, and a picture of such pixels is mostly a mistaken number.
 inline constexpr double kCoarsestGsdM = 5.0;
-/// Throws InvalidInput ("frame-too-coarse") above kCoarsestGsdM.
+/// Finer ones are a mistaken number as well: a large frame of them shows less than a road is wide, and detectors need
+/// room for a whole pixel of their own around it.
+inline constexpr double kFinestGsdM = 0.001;
+/// Throws InvalidInput ("frame-too-coarse", "frame-too-fine") beyond these.
 void require_roads_visible(double gsd_m);
 
 /// Ground sample distance straight below the UAV with the camera level.
 double nominal_gsd_m(const FrameCamera& camera, cv::Size size);
 
 /// rectify() up to 3 km from the nadir point, farther than which ground is seen too flat to tell a road, in pixels that
-/// the detector makes use of. What frame.gsd_m says is not looked at. Throws "frame-too-coarse" too.
+/// the detector makes use of. What frame.gsd_m says is not looked at. Throws "frame-too-coarse" and "frame-too-fine"
+/// too.
 GroundView ground_seen(const GroundImage& frame, const FrameCamera& camera, const RoadDetector& detector,
                        double max_pixels);
 

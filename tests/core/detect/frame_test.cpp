@@ -107,9 +107,12 @@ TEST(Rectify, WithTheHorizonInViewOnlyTheRangeIsObserved) {
   }
 }
 
-TEST(Frame, WithPixelsWiderThanRoadsIsRefused) {
-  EXPECT_NO_THROW(require_roads_visible(kCoarsestGsdM));
-  EXPECT_THROW(require_roads_visible(1.01 * kCoarsestGsdM), InvalidInput);
+TEST(Frame, WithPixelsWiderThanRoadsOrFinerThanAnyIsRefused) {
+  const auto code = [](double gsd_m) { return testing::code_of([&] { require_roads_visible(gsd_m); }); };
+  EXPECT_EQ(code(kCoarsestGsdM), "no error");
+  EXPECT_EQ(code(1.01 * kCoarsestGsdM), "frame-too-coarse");
+  EXPECT_EQ(code(kFinestGsdM), "no error");
+  EXPECT_EQ(code(0.99 * kFinestGsdM), "frame-too-fine");
 }
 
 /// Works best at pixels of half a metre.

@@ -131,7 +131,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.map_name = map.name;
   fix.map_version = map.version;
   const FeatureMap compared = compared_cells(cells);
-  if (hopeless(cells, fix) || hopeless(compared, fix)) return fix;
+  // As it was given, too: of one smaller than a cell of the map next to nothing is left.
+  if (hopeless(features, fix) || hopeless(cells, fix) || hopeless(compared, fix)) return fix;
 
   const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region,
                                     search_options_of(options, map, started));

@@ -165,6 +165,7 @@ TEST_F(Locate, NeverPlacesAPatchOfGroundAsSmallAsAYard) {
   CellArray mostly_dark(200, 200);
   paste(cut_out(map_, pose_within(view_.extent, 300.0, random_), 20, 20, 2.0).cells, mostly_dark, 90, 90);
   EXPECT_EQ(locate(view_, FeatureMap::centred(std::move(mostly_dark), 2.0), {}, {}).reason, "footprint-too-small");
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(30, 30, kRoad), 0.01), {}, {}).reason, "footprint-too-small");
 }
 
 TEST_F(Locate, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {

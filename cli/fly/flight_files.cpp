@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core/locate/ellipse.hpp"
+
 namespace roadfix::fly {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kEllipse95 = 2.4477;  // sqrt of chi^2 with 2 degrees of freedom
 
 struct Covariance {
   double ee = 0.0;
@@ -46,8 +46,8 @@ json ellipse(const Record& record, const UtmZone& zone) {
   for (int i = 0; i <= kCorners; ++i) {
     // Against the clock, as GeoJSON wants its outer rings.
     const double t = -2.0 * std::numbers::pi * (i % kCorners) / kCorners;
-    const double along = kEllipse95 * sigma[0] * std::cos(t);
-    const double across = kEllipse95 * sigma[1] * std::sin(t);
+    const double along = kSigmasOf95 * sigma[0] * std::cos(t);
+    const double across = kSigmasOf95 * sigma[1] * std::sin(t);
     ring.push_back(place({record.best.position.east_m + along * sin(axis) + across * cos(axis),
                           record.best.position.north_m + along * cos(axis) - across * sin(axis)},
                          zone));

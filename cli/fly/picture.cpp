@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "cli/bench/panels.hpp"
+#include "core/locate/ellipse.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -49,7 +50,6 @@ void draw_pose(cv::Mat& picture, const Backdrop& backdrop, const GridPose& pose,
 }
 
 void draw_estimate(cv::Mat& picture, const Backdrop& backdrop, const UtmZone& zone, const Record& record) {
-  constexpr double kEllipse95 = 2.4477;
   const TrackCluster& best = record.estimate.clusters.front();
   const cv::Point2d at = backdrop.at(record.best.position);
   const double radius = std::max(best.radius95_m / backdrop.m_per_px, 3.0);
@@ -57,8 +57,8 @@ void draw_estimate(cv::Mat& picture, const Backdrop& backdrop, const UtmZone& zo
     cv::circle(picture, fine(at), fine({radius, 0}).x, c, t, cv::LINE_AA, kShift);
   });
   const double axis_deg = zone.grid_from_true(best.ellipse_heading, record.best.position).degrees();
-  const cv::Size2d half(std::max(kEllipse95 * best.sigma_m[0] / backdrop.m_per_px, 2.0),
-                        std::max(kEllipse95 * best.sigma_m[1] / backdrop.m_per_px, 2.0));
+  const cv::Size2d half(std::max(kSigmasOf95 * best.sigma_m[0] / backdrop.m_per_px, 2.0),
+                        std::max(kSigmasOf95 * best.sigma_m[1] / backdrop.m_per_px, 2.0));
   outlined(kRed, 1, [&](const cv::Scalar& c, int t) {
     // OpenCV turns clockwise from the x axis, headings count from north.
     cv::ellipse(picture, fine(at), cv::Size(fine({half.width, half.height})), axis_deg - 90.0, 0.0, 360.0, c, t,

@@ -36,7 +36,7 @@ struct Scene {
 };
 
 /// Particles are orange, the truth with its path and window is green, the estimate with its 95 % ellipse red, the
-/// acceptance region (95 % of the heaviest cluster) blue.
+/// circle that holds the vehicle with 95 % (the acceptance region) blue.
 cv::Mat drawn(const Backdrop& backdrop, const UtmZone& zone, const Scene& scene);
 
 }  // namespace roadfix::fly

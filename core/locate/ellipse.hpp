@@ -8,6 +8,9 @@
 
 namespace roadfix {
 
+/// So many sigmas along each axis hold 95 % of the positions: the square root of chi^2 with two degrees of freedom.
+inline constexpr double kSigmasOf95 = 2.4477;
+
 struct Ellipse {
   std::array<double, 2> sigma_m;  ///< along the major and minor axis
   Angle heading;                  ///< of the major axis, clockwise from true north, within [0, 180) degrees

@@ -23,7 +23,7 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
 /// they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);
 
-/// The covariance holds the registration error of the map.
+/// The covariance and the radius hold the registration error of the map.
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster);
 
 }  // namespace roadfix

@@ -116,7 +116,7 @@ struct TrackCluster {
   std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
   Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
   Angle heading_sigma;
-  double radius95_m = 0.0;  ///< acceptance region: holds 95 % of the cluster
+  double radius95_m = 0.0;  ///< holds the vehicle with 95 %, if it is in the cluster at all
   double scale = 1.0;       ///< of the feature maps' size, within the scale range
   double scale_sigma = 0.0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geodesy/utm.hpp"
+#include "core/locate/track_geometry.hpp"
 
 namespace roadfix {
 namespace {
@@ -43,6 +44,17 @@ TEST(Ellipse, GrowsByTheErrorOfTheMapsRegistrationOnBothAxes) {
   const Ellipse ellipse = ellipse_of(map_registered_to(6.0), kFarFromTheMeridian, covariance);
   EXPECT_NEAR(ellipse.sigma_m[0], 10.0, 1e-9);
   EXPECT_NEAR(ellipse.sigma_m[1], 6.0, 1e-9);
+}
+
+TEST(Ellipse, TheCircleOfNinetyFivePercentHoldsTheErrorOfTheMapsRegistrationToo) {
+  Cluster cluster;
+  cluster.mean.position = kFarFromTheMeridian;
+  cluster.covariance = covariance_of(Angle(), 3.0, 3.0);
+  cluster.radius95_m = kSigmasOf95 * 3.0;
+  EXPECT_NEAR(to_geographic(map_registered_to(0.0), cluster).radius95_m, kSigmasOf95 * 3.0, 1e-9);
+  const TrackCluster on_earth = to_geographic(map_registered_to(4.0), cluster);
+  EXPECT_NEAR(on_earth.sigma_m[0], 5.0, 1e-9);
+  EXPECT_NEAR(on_earth.radius95_m, kSigmasOf95 * 5.0, 1e-9);
 }
 
 }  // namespace

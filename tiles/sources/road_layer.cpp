@@ -3,15 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <string_view>
 #include <utility>
 
+#include "core/units/text.hpp"
 #include "tiles/sources/osm_tags.hpp"
 
 namespace roadfix {
 namespace {
+
+/// What programs write into text attributes where there is nothing: Python's None and pandas' nan, databases' NULL.
+bool stands_for_nothing(const std::string& value) {
+  constexpr std::array<std::string_view, 6> kWords{"none", "null", "nan", "<na>", "<null>", "(null)"};
+  return std::ranges::find(kWords, lower_case(value)) != kWords.end();
+}
 
 /// Attributes of one feature, those packed in hstore text included.
 class FeatureTags {
@@ -19,6 +27,13 @@ class FeatureTags {
   explicit FeatureTags(const OGRFeature& feature) : feature_(feature) {}
 
   std::string operator()(std::string_view key) {
+    std::string value = as_it_stands(key);
+    if (stands_for_nothing(value)) value.clear();
+    return value;
+  }
+
+ private:
+  std::string as_it_stands(std::string_view key) {
     const int field = feature_.GetFieldIndex(std::string(key).c_str());
     if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
     const int packed = feature_.GetFieldIndex("other_tags");
@@ -28,7 +43,6 @@ class FeatureTags {
     return found != tags_->end() ? found->second : std::string();
   }
 
- private:
   const OGRFeature& feature_;
   std::optional<std::map<std::string, std::string, std::less<>>> tags_;
 };
@@ -47,7 +61,7 @@ bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRule
   for (int i = 0; i < kSample; ++i) {
     const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
     if (!feature) break;
-    const std::string value = feature->GetFieldAsString(attribute.c_str());
+    const std::string value = FeatureTags(*feature)(attribute);
     if (value.empty()) continue;
     ++values;
     known += rules.knows(value) ? 1 : 0;

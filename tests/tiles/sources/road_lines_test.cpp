@@ -91,6 +91,28 @@ TEST_F(RoadLines, ClassesInCapitalsAreClassesAndUnknownOnesAreNamedAsTheyStand) 
   EXPECT_THAT(network.notes, ElementsAre(HasSubstr("Feldweg (1)")));
 }
 
+TEST_F(RoadLines, WordsForNothingAreNoTunnelsAndNoClasses) {
+  const std::string path = geojson(
+      {feature(R"("highway":"primary","tunnel":"None","covered":"nan","width":"NULL")", at(-150, 40), at(150, 40)),
+       feature(R"("highway":"pedestrian","level":"None","indoor":"<Null>")", at(-150, 0), at(150, 0)),
+       feature(R"("highway":"None")", at(-150, -20), at(150, -20)),
+       feature(R"("highway":"primary","tunnel":"yes")", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 2U);
+  EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+  EXPECT_EQ(network.lines.back().half_width_m, 3.0);
+  EXPECT_THAT(network.notes, IsEmpty());
+}
+
+TEST_F(RoadLines, WordsForNothingAmongTheClassesOfAnAttributeDoNotHideThatItHoldsClasses) {
+  const std::string path = geojson({feature(R"("type":"primary")", at(-150, 40), at(150, 40)),
+                                    feature(R"("type":"None")", at(-150, 0), at(150, 0)),
+                                    feature(R"("type":"None")", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  EXPECT_EQ(network.class_attribute, "type");
+  EXPECT_EQ(network.lines.size(), 1U);
+}
+
 TEST_F(RoadLines, LinesWithoutClassesAreAllRoadsAndSaidSo) {
   const std::string path = geojson({feature(R"("type":"A","lanes":4)", at(-150, 40), at(150, 40)),
                                     feature(R"("type":"primary","lanes":2)", at(-150, -40), at(150, -40)),

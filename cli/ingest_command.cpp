@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -66,6 +68,16 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   print_report(json, report, cell_mp, arguments.json);
 }
 
+/// A map that is its own source would count all that it knows twice.
+void refuse_the_map_itself(const SourceFiles& files, const std::string& map) {
+  for (const std::string& path : files.paths) {
+    std::error_code none;
+    if (!std::filesystem::equivalent(path, map, none)) continue;
+    throw InvalidInput("source-is-target",
+                       fmt::format("{} is the map itself: name another SOURCE, or another --map", path));
+  }
+}
+
 void run(const IngestArguments& arguments, bool cell_given) {
   const std::stop_token stop = stop_on_signals();
   if (!is_map_cell_size(arguments.cell_m)) {
@@ -75,6 +87,7 @@ void run(const IngestArguments& arguments, bool cell_given) {
   std::vector<SourceRequest> requests;
   for (const std::string& source : arguments.sources) requests.push_back(request_of(arguments, source));
   for (std::size_t i = 0; i < requests.size(); ++i) {
+    refuse_the_map_itself(requests[i].files, arguments.map);
     for (std::size_t j = 0; j < i; ++j) {
       if (requests[i].files.name != requests[j].files.name) continue;
       throw InvalidInput("source-name-taken",

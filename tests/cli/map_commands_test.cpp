@@ -143,5 +143,15 @@ TEST_F(MapCommands, FailureIsOneLineAndWrongUsageIsTwo) {
   }
 }
 
+TEST_F(MapCommands, AMapIsNoSourceOfItself) {
+  const auto before = testing::tile_bytes(path);
+  for (const std::string& source : {path.string(), folder.path().string()}) {
+    const ProgramResult result = roadfix("ingest " + source + " --as roads --name again --map " + path.string());
+    EXPECT_EQ(result.code, 1);
+    EXPECT_THAT(result.err, HasSubstr("[source-is-target]"));
+  }
+  EXPECT_EQ(testing::tile_bytes(path), before);
+}
+
 }  // namespace
 }  // namespace roadfix

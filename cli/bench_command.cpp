@@ -22,7 +22,6 @@
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
-#include "core/units/error.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -40,17 +39,9 @@ struct BenchArguments {
   bench::BenchOptions options;
 };
 
-/// The manifest with only those of its methods that were asked for.
 bench::Manifest manifest_of(const BenchArguments& arguments) {
   bench::Manifest manifest = bench::read_manifest(arguments.manifest);
-  if (arguments.methods.empty()) return manifest;
-  std::erase_if(manifest.methods, [&](const std::string& method) {
-    return ("," + arguments.methods + ",").find("," + method + ",") == std::string::npos;
-  });
-  if (manifest.methods.empty()) {
-    throw InvalidInput("method-unknown", fmt::format("--methods {}: the manifest has none of them", arguments.methods));
-  }
-  return manifest;
+  return arguments.methods.empty() ? manifest : bench::with_methods(std::move(manifest), arguments.methods);
 }
 
 std::filesystem::path default_cache() {

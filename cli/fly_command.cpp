@@ -127,7 +127,7 @@ void add_fly_command(CLI::App& app) {
   command->footer(
       "Examples: roadfix fly town.gpkg --over post.tif --filter paper,default --pictures figures\n"
       "          roadfix fly city.gpkg --over flight/frames.csv --filter paper,default --film flight.gif\n"
-      "          roadfix fly city.gpkg --runs 100 --erase 0.3 --kidnap 100,2000 --json out.json\n"
+      "          roadfix fly city.gpkg --runs 100 --erase 0.3 --kidnap 50,2000 --json out.json\n"
       "          roadfix fly city.gpkg --server http://127.0.0.1:8080 --vehicles 16");
   const auto options = std::make_shared<FlyOptions>();
   add_fly_options(*command, *options);

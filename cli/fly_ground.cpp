@@ -123,6 +123,30 @@ fly::Flights recorded_flights(const Ground& ground, const fly::FlightPlan& plan,
           number, steps};
 }
 
+int frames_of_the_longest(const std::vector<fly::Recording>& recordings) {
+  std::size_t frames = 0;
+  for (const fly::Recording& recording : recordings) frames = std::max(frames, recording.frames.size());
+  return static_cast<int>(frames);
+}
+
+fly::StepRange outage_of(const FlyOptions& options, int steps) {
+  const fly::StepRange outage{options.outage[0], options.outage[1]};
+  if (outage.first < std::min(outage.end, steps)) return outage;
+  throw InvalidInput("outage-empty",
+                     fmt::format("--outage {},{} leaves out no frame: FIRST comes before END, and before "
+                                 "the flight's {} steps are over",
+                                 outage.first, outage.end, steps));
+}
+
+fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
+  const fly::Kidnapping kidnapping{static_cast<int>(options.kidnap[0]), options.kidnap[1]};
+  if (kidnapping.step < steps) return kidnapping;
+  throw InvalidInput("kidnapping-too-late",
+                     fmt::format("--kidnap at step {} comes after the flight, whose {} steps count from 0: give more "
+                                 "with --steps",
+                                 kidnapping.step, steps));
+}
+
 }  // namespace
 
 MapView map_of(const FlyOptions& options) {
@@ -162,10 +186,9 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
   plan.odometry.turn_drift = Angle::degrees(options.turn_drift_deg);
   plan.tells_odometry = !options.no_odometry;
   plan.registration_m = options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m);
-  if (!options.outage.empty()) plan.outage = fly::StepRange{options.outage[0], options.outage[1]};
-  if (!options.kidnap.empty()) {
-    plan.kidnapping = fly::Kidnapping{static_cast<int>(options.kidnap[0]), options.kidnap[1]};
-  }
+  const int steps = ground.recordings.empty() ? plan.steps : frames_of_the_longest(ground.recordings);
+  if (!options.outage.empty()) plan.outage = outage_of(options, steps);
+  if (!options.kidnap.empty()) plan.kidnapping = kidnapping_of(options, steps);
   return plan;
 }
 

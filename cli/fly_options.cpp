@@ -92,8 +92,8 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
 
 void add_error_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "Errors (1 sigma)";
-  const auto add = [&](const char* name, double& value, const char* what) {
-    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(not_negative());
+  const auto add = [&](const char* name, double& value, const char* what, double most = kMostOfAll) {
+    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(not_negative(most));
   };
   add("--odometry-noise", o.plan.odometry.share, "Odometry: share of the distance, each step and axis");
   add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");
@@ -106,9 +106,9 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
   add("--altitude-bias", o.plan.altitude_bias,
       "Relative error of the altitude, once for a flight; recorded frames are as they are");
   add("--agl", o.camera.agl_m, "Imagery: metres above ground, by which attitude moves what is seen");
-  add("--erase", o.quality.erase, "Feature maps: share of the road that is missing");
+  add("--erase", o.quality.erase, "Feature maps: share of the road that is missing", 1.0);
   add("--invent", o.quality.invent, "Feature maps: roads that are not there, as a share of the true ones");
-  add("--block", o.quality.block, "Feature maps: share of the footprint that is not observed");
+  add("--block", o.quality.block, "Feature maps: share of the footprint that is not observed", 0.9);
   add("--shift", o.quality.shift_m, "Feature maps: metres of shift per axis, in every frame");
   add("--scale", o.quality.scale, "Feature maps: relative error of their size");
   add("--tilt", o.quality.tilt_deg, "Feature maps: degrees of tilt per axis");

@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -109,6 +111,10 @@ ManifestMap parse_map(const Field& field, const std::filesystem::path& directory
   return map;
 }
 
+bool has_map(const Manifest& manifest, const std::string& name) {
+  return std::ranges::any_of(manifest.maps, [&](const ManifestMap& map) { return map.name == name; });
+}
+
 double optional_number(const Field& field, const std::string& key, double low, double high) {
   return field.has(key) ? field.at(key).number(low, high) : 0.0;
 }
@@ -157,7 +163,7 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
   QuerySet set;
   const auto map_name = [&](const std::string& key) {
     std::string name = field.at(key).text();
-    if (std::ranges::none_of(manifest.maps, [&](const ManifestMap& map) { return map.name == name; })) {
+    if (!has_map(manifest, name)) {
       field.at(key).refuse(fmt::format("names the map '{}', which is not among the maps", name));
     }
     return name;
@@ -175,6 +181,9 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
     parse_footprint_and_count(field, set);
   }
   if (field.has("from") && set.kind != QuerySet::Kind::kSimulated) field.at("from").refuse("needs \"image\": null");
+  if (set.elsewhere && set.kind == QuerySet::Kind::kSimulated && set.from == set.map) {
+    field.at("elsewhere").refuse("needs \"from\": another map, since the ground of the map itself is on it");
+  }
   if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
   if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
   if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
@@ -207,7 +216,11 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
   const Field root(document, "");
   root.allow_only({"maps", "queries", "methods"});
   Manifest manifest;
-  for (const Field& map : root.at("maps").elements()) manifest.maps.push_back(parse_map(map, directory));
+  for (const Field& map : root.at("maps").elements()) {
+    ManifestMap parsed = parse_map(map, directory);
+    if (has_map(manifest, parsed.name)) map.at("name").refuse(fmt::format("is '{}', as of a map before", parsed.name));
+    manifest.maps.push_back(std::move(parsed));
+  }
   for (const Field& set : root.at("queries").elements())
     manifest.queries.push_back(parse_query_set(set, manifest, directory));
   if (root.has("methods")) {
@@ -225,6 +238,20 @@ Manifest read_manifest(const std::filesystem::path& file) {
   const auto text = read_file(file);
   if (!text) throw NotFound("manifest-missing", fmt::format("bench manifest {} cannot be opened", file.string()));
   return parse_manifest(*text, file.parent_path());
+}
+
+Manifest with_methods(Manifest manifest, std::string_view names) {
+  std::vector<std::string> wanted;
+  std::istringstream words{std::string(names)};
+  for (std::string name; std::getline(words, name, ',');) {
+    wanted.emplace_back(trimmed(name));
+    if (std::ranges::find(manifest.methods, wanted.back()) != manifest.methods.end()) continue;
+    throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}",
+                                                     wanted.back(), fmt::join(manifest.methods, ", ")));
+  }
+  std::erase_if(manifest.methods,
+                [&](const std::string& method) { return std::ranges::find(wanted, method) == wanted.end(); });
+  return manifest;
 }
 
 }  // namespace roadfix::bench

@@ -65,4 +65,7 @@ struct Manifest {
 Manifest parse_manifest(std::string_view json, const std::filesystem::path& directory);
 Manifest read_manifest(const std::filesystem::path& file);
 
+/// The manifest with only these of its methods, separated by commas. Throws InvalidInput "method-unknown".
+Manifest with_methods(Manifest manifest, std::string_view names);
+
 }  // namespace roadfix::bench

@@ -95,6 +95,11 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(large.err, HasSubstr("no-place-to-fly"));
   EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
   EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
+  EXPECT_EQ(roadfix("fly " + map() + " --erase 20").code, 2);
+  const std::string eight_steps = "fly " + map() + " --footprint-m 200 --steps 8";
+  EXPECT_THAT(roadfix(eight_steps + " --kidnap 8,200").err, HasSubstr("kidnapping-too-late"));
+  EXPECT_THAT(roadfix(eight_steps + " --outage 5,3").err, HasSubstr("outage-empty"));
+  EXPECT_THAT(roadfix(eight_steps + " --outage 8,10").err, HasSubstr("outage-empty"));
   const ProgramResult lost = roadfix("fly " + map() + " --footprint-m 200 --json /no/such/folder/out.json");
   EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
   EXPECT_EQ(lost.out, "") << "said before the flights, not after them";

@@ -81,8 +81,20 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("\"count\": 7", "\"from\": \"city\", \"count\": 7"), "queries[2].from");
   expect_complaint(with("\"count\": 5", "\"from\": \"town\", \"count\": 5"), "queries[0].from");
   expect_complaint(with("\"count\": 7", "\"elsewhere\": 1, \"count\": 7"), "queries[2].elsewhere");
+  expect_complaint(with("\"count\": 7", "\"elsewhere\": true, \"count\": 7"), "queries[2].elsewhere needs \"from\"");
+  expect_complaint(with("}]}],\n", R"(}]}, {"name": "town", "sources": [{"path": "b.tif", "as": "imagery"}]}],)"),
+                   "maps[1].name is 'town'");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");
+}
+
+TEST(Manifest, IsAskedForSomeOfItsMethodsButForNoOther) {
+  const Manifest manifest = parse_manifest(kManifest, ".");
+  EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre("roads", "sift"));
+  EXPECT_THAT(with_methods(manifest, "sift").methods, ElementsAre("sift"));
+  for (const char* names : {"sift,surf", "orb", "roads,,sift"}) {
+    EXPECT_THAT([&] { with_methods(manifest, names); }, ThrowsMessage<InvalidInput>(HasSubstr("no method '"))) << names;
+  }
 }
 
 }  // namespace

@@ -91,8 +91,8 @@ void run_fix(const Options& options) {
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.stop = stop_on_signals();
-  fix_options.time_limit = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.time_limit_s));
-  fix_options.proof_time = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.proof_s));
+  fix_options.time_limit = milliseconds(options.time_limit_s);
+  fix_options.proof_time = milliseconds(options.proof_s);
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
   if (options.as_json) {
     fmt::print("{}\n", json_text(api::to_json(fix, input.detect_time), 2));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -47,6 +48,10 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
           fmt::format("{}: \"{}\" is no pose, write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
     }
     at = last ? stop : stop + 1;
+  }
+  if (!(std::abs(values[2]) <= 360.0)) {
+    throw InvalidInput("pose-unreadable",
+                       fmt::format("{}: the heading of \"{}\" is not within -360 to 360 degrees", where, text));
   }
   return {{values[0], values[1]}, Angle::degrees(values[2])};
 }

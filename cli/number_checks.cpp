@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -37,6 +38,10 @@ CLI::Validator seed() {
                                text);
           },
           "SEED"};
+}
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * seconds)));
 }
 
 }  // namespace roadfix::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 
 namespace roadfix::cli {
 
@@ -16,5 +17,8 @@ CLI::Validator not_negative(double most = kMostOfAll);
 
 /// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.
 CLI::Validator seed();
+
+/// The shortest time is one of them: 0 stands for no limit.
+std::chrono::milliseconds milliseconds(double seconds);
 
 }  // namespace roadfix::cli

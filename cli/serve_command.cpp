@@ -48,10 +48,6 @@ struct ServeOptions {
 
 int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-std::chrono::milliseconds milliseconds(double seconds) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
-}
-
 server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);

@@ -130,6 +130,7 @@ TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
   EXPECT_GT(matches[0]["rho"].get<double>(), 0.6);
   EXPECT_LT(matches[1]["rho"].get<double>(), 0.4);
   EXPECT_THAT(roadfix("match " + input + "--pose 57.7,12").err, HasSubstr("[pose-unreadable]"));
+  EXPECT_THAT(roadfix("match " + input + "--heading-step 5 --pose 57.7,12,inf").err, HasSubstr("[pose-unreadable]"));
   EXPECT_THAT(roadfix("match " + input).err, HasSubstr("[poses-missing]"));
 }
 

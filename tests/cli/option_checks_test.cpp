@@ -34,5 +34,12 @@ TEST(Seed, IsAWholeNumberThatTheServiceTakesToo) {
   EXPECT_EQ(complaint(seed(), "-1"), "must be a whole number from 0 to 2147483647, not -1");
 }
 
+TEST(Milliseconds, AreNoneForNoTimeAlone) {
+  EXPECT_EQ(milliseconds(0.0).count(), 0);
+  EXPECT_EQ(milliseconds(1e-9).count(), 1) << "0 would be no limit";
+  EXPECT_EQ(milliseconds(0.25).count(), 250);
+  EXPECT_EQ(milliseconds(kMostOfAll).count(), 2'000'000'000'000);
+}
+
 }  // namespace
 }  // namespace roadfix::cli

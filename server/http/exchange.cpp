@@ -83,12 +83,16 @@ Request translated(const httplib::Request& head, const Exchange& exchange, const
   return request;
 }
 
-void check_header_names(const httplib::Request& head) {
+void check_headers(const httplib::Request& head) {
   for (const auto& [name, value] : head.headers) {
     if (is_token(name)) continue;
     throw InvalidInput("bad-header", fmt::format("'{}' is no name of a header: letters, digits and hyphens, directly "
                                                  "followed by the colon",
                                                  name.substr(0, 40)));
+  }
+  const std::size_t hosts = head.get_header_value_count("Host");
+  if (hosts > 1 || (hosts == 0 && head.version == "HTTP/1.1")) {
+    throw InvalidInput("bad-header", fmt::format("a request of HTTP/1.1 names one Host; this one names {}", hosts));
   }
 }
 

@@ -39,9 +39,9 @@ Request translated(const httplib::Request& head, const Exchange& exchange, const
 /// Throws InvalidInput ("length-required", "bad-content-length", "unsupported-content-encoding") or LimitExceeded
 /// ("body-too-large") by what the head says.
 void check_body_headers(const Request& request, std::size_t max_bytes);
-/// Throws InvalidInput "bad-header" for a name that is no token (RFC 9112 5.1): programs in front may read it
-/// otherwise.
-void check_header_names(const httplib::Request& head);
+/// Throws InvalidInput "bad-header" for a name that is no token (RFC 9112 5.1), which programs in front may read
+/// otherwise, and for other than one Host (RFC 9112 3.2).
+void check_headers(const httplib::Request& head);
 
 bool announces_body(const Request& request);
 

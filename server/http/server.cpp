@@ -189,7 +189,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
                                   head.method != "POST" && head.method != "DELETE");
   try {
     const bool close = std::exchange(exchange.must_close, true);
-    check_header_names(head);
+    check_headers(head);
     exchange.must_close = close;
     if (head.target.size() > settings_.target_bytes) {
       throw LimitExceeded("url-too-long",
@@ -198,6 +198,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     exchange.target = parse_target(head.target);
     request.path = exchange.target.path;
     request.query = exchange.target.query;
+    if (!exchange.target.authority.empty()) request.headers["host"] = exchange.target.authority;
     if (request.method == "OPTIONS") {
       const std::string allowed = router_.allowed_methods(exchange.target.segments);
       if (allowed.empty()) router_.find(request.method, exchange.target.segments);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::http {
 namespace {
@@ -18,14 +21,14 @@ int hex_digit(char c) {
   throw InvalidInput("bad-url", fmt::format("byte {} of the request target: {}", byte, what));
 }
 
-std::vector<std::string> segments_of(std::string_view path) {
-  if (path.empty() || path.front() != '/') refuse(0, "a path starts with '/'");
+std::vector<std::string> segments_of(std::string_view path, std::size_t offset) {
+  if (path.empty() || path.front() != '/') refuse(offset, "a path starts with '/'");
   std::vector<std::string> segments;
   std::size_t begin = 1;
   while (begin <= path.size()) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
-    segments.push_back(percent_decoded(path.substr(begin, end - begin), false, begin));
-    if (segments.back().find('\0') != std::string::npos) refuse(begin, "a path holds no NUL");
+    segments.push_back(percent_decoded(path.substr(begin, end - begin), false, offset + begin));
+    if (segments.back().find('\0') != std::string::npos) refuse(offset + begin, "a path holds no NUL");
     begin = end + 1;
   }
   return segments;
@@ -46,6 +49,14 @@ Parameters parameters_of(std::string_view query, std::size_t offset) {
     begin = end + 1;
   }
   return parameters;
+}
+
+constexpr std::string_view kScheme = "http://";
+
+/// Where the path of a whole URL begins; 0 where the target is a path.
+std::size_t end_of_authority(std::string_view target) {
+  if (lower_case(target.substr(0, kScheme.size())) != kScheme) return 0;
+  return std::min(target.find_first_of("/?", kScheme.size()), target.size());
 }
 
 }  // namespace
@@ -69,10 +80,15 @@ std::string percent_decoded(std::string_view text, bool form, std::size_t offset
 
 Target parse_target(std::string_view target) {
   target = target.substr(0, target.find('#'));
+  const std::size_t begin = end_of_authority(target);
   const std::size_t question = std::min(target.find('?'), target.size());
   Target parsed;
-  parsed.path = target.substr(0, question);
-  parsed.segments = segments_of(target.substr(0, question));
+  parsed.path = target.substr(begin, question - begin);
+  if (begin > 0) {
+    parsed.authority = target.substr(kScheme.size(), begin - kScheme.size());
+    if (parsed.path.empty()) parsed.path = "/";
+  }
+  parsed.segments = segments_of(parsed.path, begin);
   if (question < target.size()) parsed.query = parameters_of(target.substr(question + 1), question + 1);
   return parsed;
 }

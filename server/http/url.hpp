@@ -10,6 +10,7 @@
 namespace roadfix::http {
 
 struct Target {
+  std::string authority;              ///< of a whole URL, as clients of a proxy send it (RFC 9112 3.2.2); else empty
   std::string path;                   ///< as sent
   std::vector<std::string> segments;  ///< decoded one by one, so that an encoded slash stays inside its segment
   Parameters query;

@@ -116,6 +116,26 @@ TEST_F(HttpServer, RefusesHeaderNamesThatOthersReadDifferently) {
   EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHost: x\r\nX-A: b\r\n folded: c\r\n\r\n"), ::testing::HasSubstr("bad-header"));
 }
 
+TEST_F(HttpServer, TakesAWholeUrlAndItsHostAsClientsOfAProxySendIt) {
+  router_.add({"GET", "/host", {}, Load::kLight, [](const Request& request) {
+                 return Response{200, "text/plain", "<" + request.header("host") + ">"};
+               }});
+  const auto server = started();
+  const std::string rest = " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n";
+  EXPECT_THAT(raw("GET http://maps.example:80/echo?text=abc" + rest + "\r\n"), ::testing::EndsWith("abc"));
+  EXPECT_THAT(raw("GET http://maps.example:80/host" + rest + "\r\n"), ::testing::EndsWith("<maps.example:80>"));
+  EXPECT_THAT(raw("POST http://x/length" + rest + "Content-Length: 2\r\n\r\nab"), ::testing::EndsWith("2"));
+}
+
+TEST_F(HttpServer, RefusesRequestsWithoutAHostOrWithTwo) {
+  const auto server = started();
+  const std::string line = "GET /echo?text=abc HTTP/1.1\r\nConnection: close\r\n";
+  EXPECT_THAT(raw(line + "Host: x\r\n\r\n"), ::testing::StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(raw(line + "\r\n"), ::testing::HasSubstr("bad-header"));
+  EXPECT_THAT(raw(line + "Host: x\r\nhost: y\r\n\r\n"), ::testing::HasSubstr("bad-header"));
+  EXPECT_THAT(raw("GET /echo?text=abc HTTP/1.0\r\n\r\n"), ::testing::StartsWith("HTTP/1.1 200"));
+}
+
 TEST_F(HttpServer, SaysWhenItsAddressIsTaken) {
   const auto server = started();
   settings_.port = port_;

@@ -19,6 +19,18 @@ TEST(Url, ReadsTheQueryInOrderWithEmptyAndRepeatedValues) {
               ElementsAre(Pair("lat", "57.7"), Pair("name", "a b&c"), Pair("flag", ""), Pair("lat", "1")));
 }
 
+TEST(Url, FindsThePathInAWholeUrl) {
+  const Target target = parse_target("HTTP://maps.example:8080/v1/a%2Fb?lat=1");
+  EXPECT_EQ(target.authority, "maps.example:8080");
+  EXPECT_EQ(target.path, "/v1/a%2Fb");
+  EXPECT_THAT(target.segments, ElementsAre("v1", "a/b"));
+  EXPECT_THAT(target.query, ElementsAre(Pair("lat", "1")));
+  EXPECT_EQ(parse_target("http://x").path, "/");
+  EXPECT_THAT(parse_target("http://x?lat=1").query, ElementsAre(Pair("lat", "1")));
+  EXPECT_EQ(parse_target("/a").authority, "");
+  EXPECT_THROW(parse_target("ftp://x/a"), InvalidInput);
+}
+
 TEST(Url, SaysAtWhichByteThePercentEncodingIsBroken) {
   for (const char* target : {"/a%", "/a%2", "/a%zz", "/a?x=%g1"}) {
     try {
@@ -29,6 +41,8 @@ TEST(Url, SaysAtWhichByteThePercentEncodingIsBroken) {
       EXPECT_THAT(error.what(), ::testing::HasSubstr("byte "));
     }
   }
+  EXPECT_THAT([] { parse_target("http://x/a%zz"); },
+              ::testing::ThrowsMessage<InvalidInput>(::testing::HasSubstr("byte 10 ")));
 }
 
 TEST(Url, RefusesPathsWithNulAndWithoutRoot) {

@@ -25,8 +25,11 @@ json cluster_json(const TrackCluster& cluster) {
 
 json json_of(std::optional<std::int64_t> time_us) { return time_us ? json(*time_us) : json(); }
 
+/// Throws where it is no whole number; get() would take any, and one beyond the range for anything.
+std::int64_t whole(const json& number) { return number.get_ref<const json::number_integer_t&>(); }
+
 std::optional<std::int64_t> time_of(const json& time_us) {
-  return time_us.is_null() ? std::nullopt : std::optional(time_us.get<std::int64_t>());
+  return time_us.is_null() ? std::nullopt : std::optional(whole(time_us));
 }
 
 }  // namespace
@@ -111,13 +114,13 @@ TrackerState state_of(const json& counters, FilterState filter) {
   state.filter = std::move(filter);
   state.started = true;
   try {
-    state.sequence = counters.at("sequence");
-    state.time_us = counters.at("time_us");
+    state.sequence = whole(counters.at("sequence"));
+    state.time_us = whole(counters.at("time_us"));
     state.searched = counters.at("searched");
     state.claim.compared = counters.at("compared");
-    state.measured = counters.at("measured");
-    state.last_search = counters.at("last_search");
-    state.claim.supported = counters.at("supported");
+    state.measured = whole(counters.at("measured"));
+    state.last_search = whole(counters.at("last_search"));
+    state.claim.supported = whole(counters.at("supported"));
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
     // Programs from before did not look around.

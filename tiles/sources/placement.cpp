@@ -102,8 +102,7 @@ GridBox Placement::footprint() const {
   std::vector<cv::Point2d> points;
   for (int row = 0; row <= kSteps; ++row) {
     for (int col = 0; col <= kSteps; ++col) {
-      points.emplace_back(size.width * col / static_cast<double>(kSteps),
-                          size.height * row / static_cast<double>(kSteps));
+      points.emplace_back(double{1} * size.width * col / kSteps, double{1} * size.height * row / kSteps);
     }
   }
   const std::vector<cv::Point2d> pixels = points;

@@ -56,6 +56,11 @@ TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
     damaged[name] = "soon";
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
   }
+  for (const std::string name : {"sequence", "time_us", "measured", "looked_time_us"}) {
+    nlohmann::json damaged = good;
+    damaged[name] = 7e111;
+    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
+  }
 }
 
 }  // namespace

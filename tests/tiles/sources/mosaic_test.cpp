@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <opencv2/imgproc.hpp>
 
 #include "core/geodesy/utm.hpp"
@@ -195,6 +196,14 @@ TEST_F(MosaicTest, RasterOfDegreesMayCrossTheAntimeridian) {
     const Mosaic mosaic({path}, {}, ValueRule::kPicture, *UtmZone::from_epsg(32701));
     EXPECT_NEAR(mosaic.extent().width_m(), 215.0, 5.0);
   }
+}
+
+TEST_F(MosaicTest, MosaicsOfMoreColumnsThanFitIntoTheirProductsLieWhereTheySay) {
+  std::ofstream(folder / "wide.vrt") << R"(<VRTDataset rasterXSize="80000000" rasterYSize="8"><SRS>EPSG:32637</SRS>
+    <GeoTransform>400000, 0.001, 0, 4200000, 0, -0.001</GeoTransform><VRTRasterBand dataType="Byte" band="1"/></VRTDataset>)";
+  const Mosaic mosaic({(folder / "wide.vrt").string()}, {}, ValueRule::kPicture, kZone);
+  EXPECT_NEAR(mosaic.extent().min.east_m, 400'000.0, 0.1);
+  EXPECT_NEAR(mosaic.extent().width_m(), 80'000.0, 0.1);
 }
 
 TEST_F(MosaicTest, SharesOfRoadOfSeveralTypesAreRefused) {

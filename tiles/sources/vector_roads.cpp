@@ -10,6 +10,7 @@
 
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/line_coverage.hpp"
+#include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -100,6 +101,12 @@ GridBox extent_of(const std::vector<PlanePolygon>& polygons) {
   return extent;
 }
 
+/// The sources and the polygons of their extent, where a file holds them.
+std::vector<std::string> files_read(std::vector<std::string> paths, const VectorOptions& options) {
+  if (!options.extent.empty() && !box_in_degrees(options.extent)) paths.push_back(options.extent);
+  return paths;
+}
+
 class RoadVectors final : public CellSource {
  public:
   RoadVectors(const std::vector<std::string>& paths, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
@@ -112,7 +119,7 @@ class RoadVectors final : public CellSource {
     if (!options.extent.empty()) summary_.method += fmt::format("; extent {}", options.extent);
     if (!options.layer.empty()) summary_.method += fmt::format("; layer {}", options.layer);
     if (!options.crs.empty()) summary_.method += fmt::format("; crs {}", options.crs);
-    summary_.fingerprint = fingerprint(paths, summary_.method);
+    summary_.fingerprint = fingerprint(files_read(paths, options), summary_.method);
   }
 
   SourceSummary summary() const override { return summary_; }

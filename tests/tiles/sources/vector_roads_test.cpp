@@ -215,5 +215,19 @@ TEST_F(VectorRoads, ARoadToAPointOfNoPlaceCostsNoMoreThanItsLength) {
   EXPECT_EQ(result.at(100, 50), road) << "where the long one begins";
 }
 
+TEST_F(VectorRoads, AreOthersWhereThePolygonOfTheirExtentHasChanged) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
+  VectorOptions options;
+  options.extent = (folder / "seen.geojson").string();
+  const auto fingerprint_within = [&](GridPoint corner) {
+    std::ofstream(options.extent) << R"({"type":"Polygon","coordinates":[[)" << degrees(at(-100, -100)) << ","
+                                  << degrees(at(100, -100)) << "," << degrees(corner) << "," << degrees(at(-100, -100))
+                                  << "]]}";
+    return open_road_vectors({path}, options, RoadRules(), kZone, 2.0)->summary().fingerprint;
+  };
+  const std::string before = fingerprint_within(at(100, 100));
+  EXPECT_NE(fingerprint_within(at(100, 120)), before);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <string>
 
 #include "core/units/error.hpp"
@@ -69,10 +70,14 @@ FilterState filter_state_of(std::span<const std::byte> bytes) {
     at += kWordBytes * count;
     if (!std::ranges::all_of(*column, [](double x) { return std::isfinite(x); })) refuse("holds what is no number");
   }
-  const auto is_support = [](double x) { return x >= 0.0 && x <= 1.0; };
-  const bool has_weights = std::ranges::all_of(state.particles.weight, [](double w) { return w >= 0.0 && w <= 1.0; });
+  constexpr double kRounding = 1e-6;  // of weights that sum to 1
+  const std::vector<double>& weights = state.particles.weight;
+  const bool has_weights = std::ranges::all_of(weights, [](double w) { return w >= 0.0 && w <= 1.0; }) &&
+                           std::abs(std::accumulate(weights.begin(), weights.end(), -1.0)) <= kRounding;
   const bool has_scales = std::ranges::all_of(state.particles.log_scale, [](double s) { return std::abs(s) <= 1.0; });
-  if (!is_support(state.slow_support) || !is_support(state.fast_support) || !has_weights || !has_scales) {
+  const bool has_support =
+      state.slow_support > 0.0 && state.slow_support <= 1.0 && state.fast_support >= 0.0 && state.fast_support <= 1.0;
+  if (!has_support || !has_weights || !has_scales) {
     refuse("holds values that no filter has");
   }
   return state;

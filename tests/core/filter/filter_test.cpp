@@ -275,6 +275,12 @@ TEST(FilterState, RefusesBytesThatAreCutOrDamaged) {
     damaged[at - at % 8 + 6] = std::byte{0xf8};
     EXPECT_THROW(filter_state_of(damaged), CorruptData) << at;
   }
+  FilterState nowhere = filter.state();
+  std::ranges::fill(nowhere.particles.weight, 0.0);
+  EXPECT_THROW(filter_state_of(to_bytes(nowhere)), CorruptData);
+  FilterState unsupported = filter.state();
+  unsupported.slow_support = 0.0;
+  EXPECT_THROW(filter_state_of(to_bytes(unsupported)), CorruptData) << "its doubt would be 0 / 0";
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <utility>
+#include <set>
 
 #include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
+#include "core/units/text.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -36,18 +36,23 @@ void add_content(Fnv1a64& hash, const std::string& path, vsi_l_offset size) {
   hash.add(bytes);
 }
 
-/// The file and what GDAL reads with it: world files, .aux.xml, the parts of a Shapefile, the images of a VRT.
-std::vector<std::string> with_side_files(const std::string& path) {
+/// The file and what GDAL reads with it: world files, .aux.xml, the parts of a Shapefile, the images of a VRT, and of
+/// the VRTs among them.
+void add_with_side_files(const std::string& path, std::set<std::string>& files) {
+  if (!files.insert(path).second) return;
   const GdalMessages messages;
   const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
-  std::vector<std::string> files{path};
-  if (!dataset) return files;
+  if (!dataset) return;
   char** list = dataset->GetFileList();
-  for (char** entry = list; entry != nullptr && *entry != nullptr; ++entry) files.emplace_back(*entry);
+  for (char** entry = list; entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string file = *entry;
+    if (lower_case(std::filesystem::path(file).extension().string()) == ".vrt") {
+      add_with_side_files(file, files);
+    } else {
+      files.insert(file);
+    }
+  }
   CSLDestroy(list);
-  std::ranges::sort(files);
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  return files;
 }
 
 }  // namespace
@@ -57,7 +62,9 @@ std::string fingerprint(const std::vector<std::string>& paths, const std::string
   Fnv1a64 hash;
   hash.add(settings);
   for (const std::string& path : paths) {
-    for (const std::string& file : with_side_files(path)) {
+    std::set<std::string> files;
+    add_with_side_files(path, files);
+    for (const std::string& file : files) {
       VSIStatBufL stat;
       if (VSIStatL(file.c_str(), &stat) != 0) continue;
       hash.add(std::filesystem::path(file).filename().string());

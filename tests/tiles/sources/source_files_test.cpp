@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
@@ -151,6 +152,23 @@ TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {
   EXPECT_EQ(fingerprint({path}, "x"), before);
   image("a.tif", 2.0);
   EXPECT_NE(fingerprint({path}, "x"), before);
+}
+
+TEST_F(SourceFilesTest, TheFingerprintChangesWithTheImagesOfAVrtOfVrts) {
+  const std::string inner = (folder / "inner.vrt").string();
+  {
+    const DatasetPtr tile(GDALDataset::Open(image("a.tif", 1.0).c_str(), GDAL_OF_RASTER));
+    const DatasetPtr made(GetGDALDriverManager()->GetDriverByName("VRT")->CreateCopy(inner.c_str(), tile.get(), FALSE,
+                                                                                     nullptr, nullptr, nullptr));
+  }
+  std::string text = read_file(inner).value();  // GDAL's own copy of a VRT would name the image, not the VRT
+  text.replace(text.find("a.tif"), 5, "inner.vrt");
+  const std::string outer = (folder / "outer.vrt").string();
+  std::ofstream(outer) << text;
+  const std::string before = fingerprint({outer}, "x");
+  EXPECT_EQ(fingerprint({outer}, "x"), before);
+  image("a.tif", 2.0);
+  EXPECT_NE(fingerprint({outer}, "x"), before);
 }
 
 }  // namespace

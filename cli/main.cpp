@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <exception>
 #include <opencv2/core/utils/logger.hpp>
+#include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "core/units/error.hpp"
@@ -43,7 +45,13 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& wrong) {
-    app.exit(wrong);
+    const std::vector<std::string> words = app.remaining();
+    if (app.get_subcommands().empty() && !words.empty() &&
+        !words.front().starts_with('-')) {  // CLI11 would miss a subcommand, whatever was written
+      fmt::print(stderr, "There is no subcommand '{}'\nRun with --help for those that there are.\n", words.front());
+    } else {
+      app.exit(wrong);
+    }
     return kWrongUsage;
   } catch (const roadfix::Error& error) {
     fmt::print(stderr, "roadfix: {} [{}]\n", error.what(), error.code());

@@ -153,5 +153,14 @@ TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
+TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
+  const ProgramResult mistyped = roadfix("ingset a.tif --map " + path.string());
+  EXPECT_EQ(mistyped.code, 2);
+  EXPECT_THAT(mistyped.err, HasSubstr("no subcommand 'ingset'"));
+  EXPECT_THAT(roadfix("").err, HasSubstr("A subcommand is required"));
+  EXPECT_THAT(roadfix("info").err, HasSubstr("map is required"));
+  EXPECT_THAT(roadfix("info " + path.string() + " --jsn").err, HasSubstr("--jsn"));
+}
+
 }  // namespace
 }  // namespace roadfix

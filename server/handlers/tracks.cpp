@@ -82,6 +82,14 @@ http::Response step_response(const http::Request& request, const api::PositionFo
   return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request)});
 }
 
+void await_predecessor(const Service& service, const http::Request& request) {
+  api::Fields fields(request.query);
+  if (!fields.has("sequence")) {
+    fields = api::read_content(request, joined(step_query(), api::picture_members()), service.limits).fields;
+  }
+  service.tracks.await_predecessor(id_of(request), fields.large_integer("sequence", 0));
+}
+
 http::Response post_step(const Service& service, const http::Request& request) {
   const StoredTrack track = service.tracks.find(id_of(request));
   const api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
@@ -185,7 +193,9 @@ void add_track_routes(http::Router& router, const Service& service) {
   add("GET", "/v1/tracks", {}, http::Load::kLight, list_tracks);
   add("GET", "/v1/tracks/{id}", {"particles"}, http::Load::kLight, get_track);
   add("DELETE", "/v1/tracks/{id}", {}, http::Load::kLight, delete_track);
-  add("POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy, post_step);
+  router.add({"POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy,
+              [&service](const http::Request& request) { return post_step(service, request); },
+              [&service](const http::Request& request) { await_predecessor(service, request); }});
   add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, http::Load::kLight, get_history);
   add("GET", "/v1/tracks/{id}/events", {}, http::Load::kLight, get_events);
 }

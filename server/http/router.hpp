@@ -22,6 +22,8 @@ struct Route {
   std::vector<std::string> parameters;  ///< every query parameter that the route knows; others are refused
   Load load = Load::kLight;
   std::function<Response(const Request&)> handler;
+  /// Where a heavy request depends on others: waits for them before it takes a turn, which they may need.
+  std::function<void(const Request&)> await_others = {};
 };
 
 struct RouteMatch {

@@ -18,11 +18,17 @@ std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
   return last->started ? tracker_.particles(*last, count) : std::vector<GeoPose>();
 }
 
+bool LiveTrack::is_next(std::int64_t sequence) const { return !state_->started || sequence <= state_->sequence + 1; }
+
+void LiveTrack::await_predecessor(std::int64_t sequence, std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  turn_ended_.wait_for(lock, patience, [&] { return is_next(sequence); });
+}
+
 LiveTrack::Turn::Turn(LiveTrack& track, std::int64_t sequence, std::chrono::milliseconds patience)
     : track_(track), lock_(track.mutex_), place_(track.waiting_.insert(sequence)) {
   const auto is_first = [&] { return track_.waiting_.begin() == place_; };
-  const auto follows = [&] { return !state().started || sequence <= state().sequence + 1; };
-  track_.turn_ended_.wait_for(lock_, patience, [&] { return is_first() && follows(); });
+  track_.turn_ended_.wait_for(lock_, patience, [&] { return is_first() && track_.is_next(sequence); });
   track_.turn_ended_.wait(lock_, is_first);
 }
 

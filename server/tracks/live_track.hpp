@@ -22,9 +22,15 @@ class LiveTrack {
   /// After the last step, thinned to at most `count`; none before the first one. Waits for no step that is under way.
   std::vector<GeoPose> particles(std::size_t count) const;
 
+  /// Waits until the step is the next one, for so long at most, and for one that is under way to its end.
+  void await_predecessor(std::int64_t sequence, std::chrono::milliseconds patience);
+
   class Turn;
 
  private:
+  /// Holding `mutex_`: no step is missing before this one.
+  bool is_next(std::int64_t sequence) const;
+
   const std::shared_ptr<const ServedMap> map_;
   const Tracker tracker_;
   std::mutex mutex_;  ///< held for as long as a step takes

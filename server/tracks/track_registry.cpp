@@ -207,6 +207,17 @@ std::optional<std::string> TrackRegistry::answered(const std::string& id, std::i
   return taken->answer;
 }
 
+void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequence) const {
+  std::shared_ptr<LiveTrack> track;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = live_.find(id);
+    if (known == live_.end()) return;
+    track = known->second;
+  }
+  track->await_predecessor(sequence, limits_.order_wait);
+}
+
 std::string TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
                                 const StepLimits& limits) {
   const std::shared_ptr<LiveTrack> track = live(id);

@@ -64,6 +64,9 @@ class TrackRegistry {
   /// What a step was answered, if it was taken already. Throws InvalidInput ("step-differs") where that was another
   /// step of the same number.
   std::optional<std::string> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
+  /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
+  /// the searches for that, so that it holds none meanwhile.
+  void await_predecessor(const std::string& id, std::int64_t sequence) const;
   /// Takes the step and returns its answer once it cannot be lost any more. Throws what Tracker::advance throws,
   /// InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
   std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits);

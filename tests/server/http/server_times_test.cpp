@@ -104,6 +104,27 @@ TEST_F(HttpServerTimes, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
   EXPECT_GE(times_.second, released + settings_.request_time);
 }
 
+TEST_F(HttpServerTimes, LetsARequestWaitForOthersWithoutATurnThatTheyMayNeed) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 1s;
+  router_.add({"POST",
+               "/dependent",
+               {},
+               Load::kHeavy,
+               [](const Request&) {
+                 return Response{200, "text/plain", "done"};
+               },
+               [this](const Request&) {
+                 ++waiting_;
+                 while (!go_) std::this_thread::sleep_for(1ms);
+               }});
+  const auto server = started();
+  std::jthread dependent([&] { EXPECT_EQ(client().Post("/dependent", "", "text/plain")->body, "done"); });
+  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(client().Post("/length", "abc", "text/plain")->body, "3");
+  go_ = true;
+}
+
 constexpr const char* kEmptyPost = " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n";
 
 TEST_F(HttpServerTimes, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {

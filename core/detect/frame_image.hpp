@@ -10,11 +10,9 @@ enum class Border {
   kBlackUnseen  ///< black areas that reach the picture's rim were not seen, as in frames rectified to the ground
 };
 
-/// `decoded` has 8 or 16 bits and 1, 3 or 4 channels (BGR order, alpha below one half = not seen); 16 bits are cut
-/// to their upper 8. InvalidInput "image-shape" for anything else.
+/// `decoded` has 8 or 16 bits and 1, 3 or 4 channels (BGR order, alpha below one half = not seen). 16 bits become 8
+/// from the 0.5th to the 99.5th percentile of what was seen, and black is 0 in them (at most 4 in 8 bits, which lossy
+/// codecs blur). InvalidInput "image-shape" for anything else.
 GroundImage frame_image(const cv::Mat& decoded, double gsd_m, Border border = Border::kSeen);
-
-/// CV_8UC1, 255 = seen: without the areas of pixels of at most `darkest` in each channel that touch the rim.
-cv::Mat seen_inside_black_border(const cv::Mat& pixels, int darkest = 4);
 
 }  // namespace roadfix

@@ -32,9 +32,41 @@ TEST(FrameImage, AlphaSaysWhatWasSeen) {
   EXPECT_EQ(cv::countNonZero(image.observed), 62);
 }
 
-TEST(FrameImage, SixteenBitsAreCutToTheirUpperEight) {
-  const cv::Mat frame(4, 4, CV_16UC1, cv::Scalar(0x8000));
-  EXPECT_EQ(frame_image(frame, 1.0).pixels.at<unsigned char>(1, 1), 128);
+/// Grey that grows with the columns, from `first` in steps.
+cv::Mat ramp(int first, int step) {
+  cv::Mat frame(10, 256, CV_16UC1);
+  for (int col = 0; col < frame.cols; ++col) frame.col(col).setTo(cv::Scalar(first + step * col));
+  return frame;
+}
+
+TEST(FrameImage, SixteenBitsShowTheSameWhateverPartOfThemASensorFills) {
+  const cv::Mat full = frame_image(ramp(0, 257), 1.0).pixels;
+  EXPECT_EQ(full.type(), CV_8UC1);
+  for (const cv::Mat& frame : {ramp(0, 16), ramp(7000, 2)}) {
+    cv::Mat difference;
+    cv::absdiff(frame_image(frame, 1.0).pixels, full, difference);
+    EXPECT_EQ(cv::countNonZero(difference > 1), 0);
+  }
+  EXPECT_EQ(full.at<unsigned char>(0, 0), 0);
+  EXPECT_NEAR(full.at<unsigned char>(0, 64), 64, 1);
+  EXPECT_EQ(full.at<unsigned char>(0, 255), 255);
+}
+
+TEST(FrameImage, OfSixteenBitsTheDarkGroundAtTheRimWasSeenAndNothingElseIsBlack) {
+  cv::Mat frame = ramp(7000, 2);
+  frame.rowRange(0, 5).setTo(cv::Scalar(0));
+  const GroundImage image = frame_image(frame, 1.0, Border::kBlackUnseen);
+  EXPECT_EQ(cv::countNonZero(image.observed), 5 * 256);
+  EXPECT_NEAR(image.pixels.at<unsigned char>(9, 128), 128, 1) << "what was not seen does not count";
+  EXPECT_EQ(cv::countNonZero(frame_image(ramp(1, 2), 1.0, Border::kBlackUnseen).observed), 10 * 256);
+}
+
+TEST(FrameImage, SixteenBitsOfOneValueOrNoneThatWasSeenMakeAPicture) {
+  EXPECT_EQ(frame_image(cv::Mat(4, 4, CV_16UC1, cv::Scalar(0x8000)), 1.0).pixels.type(), CV_8UC1);
+  const GroundImage unseen = frame_image(cv::Mat(4, 4, CV_16UC4, cv::Scalar(9, 9, 9, 0x7FFF)), 1.0);
+  EXPECT_EQ(unseen.pixels.type(), CV_8UC3);
+  EXPECT_EQ(cv::countNonZero(unseen.observed), 0);
+  EXPECT_EQ(cv::countNonZero(frame_image(cv::Mat(4, 4, CV_16UC4, cv::Scalar(9, 9, 9, 0x8000)), 1.0).observed), 16);
 }
 
 TEST(FrameImage, RefusesOtherPictures) {

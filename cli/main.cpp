@@ -45,9 +45,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& wrong) {
+    // Of a mistyped subcommand CLI11 says that one is missing.
     const std::vector<std::string> words = app.remaining();
-    if (app.get_subcommands().empty() && !words.empty() &&
-        !words.front().starts_with('-')) {  // CLI11 would miss a subcommand, whatever was written
+    if (app.get_subcommands().empty() && !words.empty() && !words.front().starts_with('-')) {
       fmt::print(stderr, "There is no subcommand '{}'\nRun with --help for those that there are.\n", words.front());
     } else {
       app.exit(wrong);

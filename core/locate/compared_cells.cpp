@@ -61,7 +61,7 @@ GridReader compared_cells(const MapView& map, double finest_cell_m) {
     for (int row = block_of(first.row); row * kBlockCells < first.row + geometry.rows; ++row) {
       for (int col = block_of(first.col); col * kBlockCells < first.col + geometry.cols; ++col) {
         const GridGeometry window{geometry.cell_m, {col * kBlockCells, row * kBlockCells}, kBlockCells, kBlockCells};
-        const auto block = kept->get<ComparedBlock>(window, {levels, 0}, [&] { return coarser(map, window, levels); });
+        const auto block = kept->get<ComparedBlock>(window, {levels}, [&] { return coarser(map, window, levels); });
         paste(block->cells, grid.cells, window.origin.col - first.col, window.origin.row - first.row);
       }
     }

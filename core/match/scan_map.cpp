@@ -28,7 +28,7 @@ ScanMap::ScanMap(const RoadGrid& map, const FloatPlane& values, const BlockSumPl
       block_values_(blocks.value, blocks.square, patch_blocks(reach, block)) {}
 
 int scan_block(const FeatureMap& features) {
-  return std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, kMostScanBlock);
+  return std::clamp(std::min(features.cells.cols(), features.cells.rows()) / 12, 1, 4);
 }
 
 }  // namespace roadfix

@@ -35,9 +35,7 @@ class ScanMap {
   Correlator values_, block_observed_, block_values_;
 };
 
-inline constexpr int kMostScanBlock = 4;
-
-/// Cells along the edge of a block that is small against the footprint, 1 to kMostScanBlock.
+/// Cells along the edge of a block that is small against the footprint.
 int scan_block(const FeatureMap& features);
 
 }  // namespace roadfix

@@ -11,7 +11,7 @@ std::size_t SearchCache::bytes() const {
   return bytes_;
 }
 
-SearchCache::Key SearchCache::key_of(std::size_t kind, const GridGeometry& window, std::array<int, 2> parameters) {
+SearchCache::Key SearchCache::key_of(std::size_t kind, const GridGeometry& window, const Parameters& parameters) {
   return {static_cast<std::int64_t>(kind),
           std::llround(window.cell_m * 1e6),
           window.origin.col,
@@ -19,7 +19,8 @@ SearchCache::Key SearchCache::key_of(std::size_t kind, const GridGeometry& windo
           window.cols,
           window.rows,
           parameters[0],
-          parameters[1]};
+          parameters[1],
+          parameters[2]};
 }
 
 std::shared_ptr<const void> SearchCache::entry(const Key& key, const std::function<Value()>& build) {

@@ -18,11 +18,14 @@ namespace roadfix {
 /// longest. Thread-safe: what several searches want at once is built once.
 class SearchCache {
  public:
+  /// What beside the window tells two things of one type apart.
+  using Parameters = std::array<int, 3>;
+
   explicit SearchCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
   template <typename T, typename Build>
-  std::shared_ptr<const T> get(const GridGeometry& window, std::array<int, 2> parameters, Build build) {
+  std::shared_ptr<const T> get(const GridGeometry& window, const Parameters& parameters, Build build) {
     const auto built = entry(key_of(typeid(T).hash_code(), window, parameters), [&] {
       auto value = std::make_shared<const T>(build());
       return Value{value, value->bytes()};
@@ -33,7 +36,7 @@ class SearchCache {
   std::size_t bytes() const;
 
  private:
-  using Key = std::array<std::int64_t, 8>;
+  using Key = std::array<std::int64_t, 9>;
   struct Value {
     std::shared_ptr<const void> value;
     std::size_t bytes = 0;
@@ -44,7 +47,7 @@ class SearchCache {
     std::uint64_t asked = 0;
   };
 
-  static Key key_of(std::size_t kind, const GridGeometry& window, std::array<int, 2> parameters);
+  static Key key_of(std::size_t kind, const GridGeometry& window, const Parameters& parameters);
   std::shared_ptr<const void> entry(const Key& key, const std::function<Value()>& build);
   void keep(const Key& key, std::size_t bytes);
 
@@ -58,7 +61,7 @@ class SearchCache {
 /// From the cache, or without one just built.
 template <typename T, typename Build>
 std::shared_ptr<const T> kept_or_built(const std::shared_ptr<SearchCache>& cache, const GridGeometry& window,
-                                       std::array<int, 2> parameters, Build build) {
+                                       const SearchCache::Parameters& parameters, Build build) {
   if (!cache) return std::make_shared<const T>(build());
   return cache->get<T>(window, parameters, build);
 }

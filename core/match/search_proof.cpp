@@ -48,7 +48,7 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const int largest = level.scales.reach();
   const GridGeometry window = framed(bounded.positions, level.reach(largest) + BoundMap::kFrame);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  const auto map = kept_or_built<BoundMap>(options.cache, window, {levels.proof_level(), 0},
+  const auto map = kept_or_built<BoundMap>(options.cache, window, {levels.proof_level()},
                                            [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();
   const Deadline deadline = end_of_proof(options);

@@ -66,8 +66,7 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   const GridGeometry window = framed(positions, reach);
   const int block = scan_block(coarse.features.map);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  const int block_of_levels = block + kMostScanBlock * levels_.coarsest();
-  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block_of_levels},
+  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block, levels_.coarsest()},
                                           [&] { return ScanMap(coarse.read(window), reach, block); });
   const Deadline end = deadline.after(kScanTimeShare);
   std::vector<LatticePose> inside;

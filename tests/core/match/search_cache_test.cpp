@@ -21,15 +21,16 @@ GridGeometry window(int col) { return {2.0, {col, 0}, 10, 10}; }
 TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
   SearchCache cache(1000);
   int built = 0;
-  const auto get = [&](int col, std::array<int, 2> parameters) {
+  const auto get = [&](int col, const SearchCache::Parameters& parameters) {
     return cache.get<Piece>(window(col), parameters, [&] { return Piece{++built}; })->value;
   };
   EXPECT_EQ(get(1, {5, 4}), 1);
   EXPECT_EQ(get(1, {5, 4}), 1);
   EXPECT_EQ(get(2, {5, 4}), 2);
   EXPECT_EQ(get(1, {5, 3}), 3);
+  EXPECT_EQ(get(1, {5, 4, 2}), 4);
   EXPECT_EQ(get(1, {5, 4}), 1);
-  EXPECT_EQ(cache.bytes(), 30U);
+  EXPECT_EQ(cache.bytes(), 40U);
 }
 
 TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {

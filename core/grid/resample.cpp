@@ -40,6 +40,12 @@ CellArray sampled(const CellArray& source, const Placement& placement, int cols,
   return result;
 }
 
+/// Whether less than a quarter of each cell of `step` source cells a side lies on the source, so that the result is
+/// unobserved; taking the step^2 samples of such a cell would be without end.
+bool covers_no_cell(const CellArray& source, double step) {
+  return std::min<double>(source.cols(), step) * std::min<double>(source.rows(), step) < 0.25 * step * step;
+}
+
 constexpr int kSquare = 8;
 
 /// The square of cells from (col, row) on, put where a quarter turn of the whole takes it. Eight cells of a row are one
@@ -105,6 +111,7 @@ FeatureMap resampled(const FeatureMap& map, double cell_m, double scale) {
   const int rows = std::max(1, static_cast<int>(std::lround(map.cells.rows() / step)));
   // The nadir keeps its place on the ground; it is the fixed point of the resampling.
   const CellPosition nadir{map.nadir.col / step, map.nadir.row / step};
+  if (covers_no_cell(map.cells, step)) return {CellArray(cols, rows), cell_m, nadir};
   const Placement placement{{0.0, 0.0}, {step, 0.0}, {0.0, step}};
   return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
 }

@@ -108,5 +108,13 @@ TEST(Resampled, CoarserCellsAverageTheArea) {
   EXPECT_GT(coarse.cells.at(0, 0), coarse.cells.at(1, 1));
 }
 
+TEST(Resampled, OfAMapFarSmallerThanACellNothingIsLeftAndAtOnce) {
+  for (const double cell_m : {0.1, 1e-6, 1e-300}) {
+    const FeatureMap coarse = resampled(FeatureMap::centred(CellArray(8, 5, kRoad), cell_m), 2.0);
+    EXPECT_EQ(coarse.cells, CellArray(1, 1)) << cell_m;
+  }
+  EXPECT_EQ(resampled(FeatureMap::centred(CellArray(4000, 1, kRoad), 0.01), 2.0).cells.observed_count(), 0u);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -131,8 +131,8 @@ const std::vector<std::string>& feature_fields() {
 }
 
 const std::vector<std::string>& picture_members() {
-  static const std::vector<std::string> kMembers{"image", "also", "cells", "cols",      "rows",
-                                                 "pose",  "map",  "epsg",  "footprint", "geotransform"};
+  static const std::vector<std::string> kMembers{"image", "cells", "cols",      "rows",        "pose",
+                                                 "map",   "epsg",  "footprint", "geotransform"};
   return kMembers;
 }
 

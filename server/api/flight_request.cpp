@@ -55,6 +55,11 @@ const json& others_of(const Content& content, const Limits& limits) {
 
 }  // namespace
 
+const std::vector<std::string>& flight_members() {
+  static const std::vector<std::string> kMembers = joined({"also"}, picture_members());
+  return kMembers;
+}
+
 Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
                             const Limits& limits, const std::stop_token& stop) {
   Features first = features_of(content, detector, default_cell_m, limits, stop);

@@ -5,6 +5,9 @@
 
 namespace roadfix::api {
 
+/// picture_members() and "also".
+const std::vector<std::string>& flight_members();
+
 /// As features_of, laid together with each of "also" (JSON objects with image in base64, forward_m, right_m and
 /// turn_deg, seen from the UAV at the request's picture; all else is as for that picture). Throws InvalidField with the
 /// place ("also[2].turn_deg") and LimitExceeded ("too-many-frames", "frames-too-far-apart").

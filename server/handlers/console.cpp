@@ -15,7 +15,7 @@ constexpr const char* kPolicy = "default-src 'self'; img-src 'self' data:; frame
 http::Response get_file(const http::Request& request, std::string_view name) {
   const auto files = console::files();
   const auto file = std::ranges::find(files, name, &console::File::name);
-  if (file == files.end()) throw NotFound("unknown-route", "the console has no file of that name");
+  if (file == files.end()) throw NotFound("route-not-found", "the console has no file of that name");
   const std::string tag = entity_tag(std::to_string(std::hash<std::string_view>{}(file->content)), std::string(name));
   http::Response response{304, {}, {}, {{"ETag", tag}, {"Cache-Control", "no-cache"}}};
   if (is_known_to_client(request, tag)) return response;

@@ -29,7 +29,7 @@ api::PositionTime time_of(const http::Request& request, std::optional<double> ti
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
-      api::read_content(request, joined(query_fields(), api::picture_members()), service.limits);
+      api::read_content(request, joined(query_fields(), api::flight_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMostExact});
   const Prior prior = api::parse_prior(content.fields);

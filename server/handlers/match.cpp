@@ -16,7 +16,7 @@ std::vector<std::string> query_fields() { return joined(api::feature_fields(), {
 http::Response post_match(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
-      api::read_content(request, joined(joined(query_fields(), {"poses"}), api::picture_members()), service.limits);
+      api::read_content(request, joined(joined(query_fields(), {"poses"}), api::flight_members()), service.limits);
   const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));

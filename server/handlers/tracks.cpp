@@ -128,7 +128,7 @@ http::Response get_track(const Service& service, const http::Request& request) {
   const StoredTrack track = service.tracks.find(id_of(request));
   json answer = track_json(service, track);
   const auto last = service.tracks.last_step(track.id);
-  answer["last"] = last ? api::stored_json(last->answer) : json();
+  if (last) answer["last"] = api::stored_json(last->answer);
   if (const auto count = fields.optional_integer("particles", 1, kMostParticlesShown)) {
     answer["particles"] = api::particles_json(service.tracks.particles(track.id, static_cast<std::size_t>(*count)));
   }

@@ -1,14 +1,20 @@
 // The OpenAPI document and the routes say the same, in both directions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "core/detect/tree_detector.hpp"
+#include "core/units/error.hpp"
 #include "schema/schema.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/flight_request.hpp"
 #include "server/api/position_answer.hpp"
 #include "server/api/track_request.hpp"
 #include "server/service.hpp"
@@ -125,7 +131,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
     return names;
   };
   std::set<std::string> fix(api::feature_fields().begin(), api::feature_fields().end());
-  fix.insert(api::picture_members().begin(), api::picture_members().end());
+  fix.insert(api::flight_members().begin(), api::flight_members().end());
   std::set<std::string> match = fix;
   fix.insert(api::prior_fields().begin(), api::prior_fields().end());
   fix.insert(api::position_fields().begin(), api::position_fields().end());
@@ -142,6 +148,76 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   step.insert(api::step_fields().begin(), api::step_fields().end());
   step.insert(api::position_fields().begin(), api::position_fields().end());
   EXPECT_EQ(members("StepRequest"), step);
+}
+
+/// Gives every number of `schema` in turn its bounds and what lies just beyond, beside the members of `base`.
+void expect_ranges(const json& schema, const json& base, const std::function<void(const json&)>& parse) {
+  const auto taken = [&](json body, const std::string& name, const json& value) {
+    body[name] = value;
+    try {
+      parse(body);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  for (const auto& [name, member] : schema.at("properties").items()) {
+    const std::string type = member.value("type", "");
+    if (!base.contains(name) || (type != "number" && type != "integer")) continue;
+    const auto beyond = [&](const char* bound, int sign) -> json {
+      const double least = type == "integer" ? 1.0 : 1e-3;
+      const double value = member.at(bound).get<double>();
+      const double outside = value + sign * std::max(least, 1e-9 * std::abs(value));
+      return type == "integer" ? json(static_cast<std::int64_t>(outside)) : json(outside);
+    };
+    for (const auto& [bound, sign] : {std::pair{"minimum", -1}, {"maximum", 1}}) {
+      if (!member.contains(bound)) continue;
+      EXPECT_TRUE(taken(base, name, member[bound])) << name << " is not taken at its " << bound;
+      EXPECT_FALSE(taken(base, name, beyond(bound, sign))) << name << " is taken beyond its " << bound;
+    }
+    EXPECT_TRUE(member.contains("minimum") || member.contains("exclusiveMinimum")) << name;
+    EXPECT_TRUE(member.contains("maximum") || name == "particles") << name << ": its limit is the operator's";
+    if (member.contains("exclusiveMinimum")) {
+      EXPECT_FALSE(taken(base, name, member["exclusiveMinimum"])) << name << " is taken at its exclusive minimum";
+    }
+  }
+}
+
+TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
+  const json& schemas = document_.at("components").at("schemas");
+  const json prior{{"lat", 1},          {"lon", 2}, {"radius_m", 300}, {"heading_deg", 4}, {"heading_range_deg", 5},
+                   {"scale_range", 0.1}};
+  json fix{{"confidence", 0.9}, {"max_modes", 1}, {"proof_s", 0}, {"time_limit_s", 1}};
+  fix.update(prior);
+  expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
+    api::Fields fields;
+    fields.add(body, api::prior_fields());
+    api::parse_prior(fields);
+    api::parse_fix_options(fields, limits_);
+  });
+  json track{{"map", "m"},
+             {"particles", 1000},
+             {"measure_every", 1},
+             {"seed", 1},
+             {"speed_m_s", 3},
+             {"speed_sigma_m_s", 1},
+             {"turn_rate_deg_s", 0},
+             {"turn_rate_sigma_deg_s", 1},
+             {"odometry_share", 0.1},
+             {"wind_sigma_m_s", 1},
+             {"wind_walk", 1}};
+  track.update(prior);
+  expect_ranges(schemas.at("TrackRequest"), track, [&](const json& body) {
+    api::Fields fields;
+    fields.add(body, api::track_members());
+    api::parse_track(fields, limits_);
+  });
+  const json step{{"sequence", 1}, {"time_us", 1}, {"forward_m", 0}, {"right_m", 0}, {"turn_deg", 0}};
+  expect_ranges(schemas.at("StepRequest"), step, [&](const json& body) {
+    api::Fields fields;
+    fields.add(body, api::step_fields());
+    api::parse_step(fields);
+  });
 }
 
 TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {

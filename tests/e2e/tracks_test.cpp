@@ -17,6 +17,7 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
   const auto running = service();
   httplib::Client client = client_of(*running);
   const std::string id = begin(client);
+  EXPECT_FALSE(testing::json_of(client.Get(("/v1/tracks/" + id).c_str())).contains("last")) << "no step yet";
   testing::Flight flight(town_.roads, town_.pose, 20);
   json answer;
   for (int i = 0; i < 8; ++i) answer = testing::json_of(send(client, id, request_of(flight.step())));
@@ -58,6 +59,8 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
   const auto refused = [&](const json& step) {
     return testing::refusal(client.Post(("/v1/tracks/" + id + "/steps").c_str(), step.dump(), "application/json"));
   };
+  EXPECT_EQ(refused({{"sequence", 9}, {"time_us", 9'000'000'000}, {"also", json::array()}}), "400 unknown-field also")
+      << "a track lays its frames together itself";
   EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 4'000'000}}), "409 time-backwards");
   EXPECT_EQ(refused({{"sequence", 4}}), "400 missing-parameter time_us");
   EXPECT_EQ(refused({{"sequence", 4.5}, {"time_us", 1}}), "400 bad-parameter sequence");

@@ -9,6 +9,7 @@
 #include "core/units/error.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/flight_request.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
 #include "server/http/url.hpp"
@@ -35,7 +36,7 @@ class NoRoads : public roadfix::RoadDetector {
 const std::vector<std::string>& members() {
   static const std::vector<std::string> kMembers = [] {
     std::vector<std::string> all = api::feature_fields();
-    for (const auto* more : {&api::prior_fields(), &api::picture_members()})
+    for (const auto* more : {&api::prior_fields(), &api::flight_members()})
       all.insert(all.end(), more->begin(), more->end());
     all.emplace_back("poses");
     return all;

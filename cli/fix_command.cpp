@@ -123,7 +123,8 @@ void add_fix_command(CLI::App& app) {
       ->needs(heading);
   heading->needs("--heading-range");
   command->add_option("--confidence", o->fix.confidence, "Probability from which the answer is a fix")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 0.999999));
   add_calibration_option(*command, o->calibration);
   command->add_option("--modes", o->fix.max_modes, "Places to report at most")
       ->capture_default_str()

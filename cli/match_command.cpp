@@ -96,7 +96,7 @@ void run_match(const Options& options) {
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.features, poses, match_options);
   if (options.as_json) {
-    fmt::print("{}\n", json_text({{"matches", api::to_json(scores)}}, 2));
+    fmt::print("{}\n", json_text(api::to_json(scores, view), 2));
   } else {
     print_text(poses, scores);
   }
@@ -116,7 +116,7 @@ void add_match_command(CLI::App& app) {
   command
       ->add_option("--heading-step", o->heading_step_deg,
                    "Round headings to so many degrees and positions to cells: faster for many poses")
-      ->check(CLI::Range(0.0, 45.0));
+      ->check(CLI::Range(0.0, 90.0));
   command->add_option("--threads", o->threads, "Threads")->capture_default_str()->check(CLI::Range(1, 1024));
   command->add_flag("--json", o->as_json, "Answer as JSON");
   command->callback([o] { run_match(*o); });

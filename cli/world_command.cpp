@@ -64,7 +64,7 @@ void add_world_command(CLI::App& app) {
       "bench.");
   const auto options = std::make_shared<Options>();
   world::WorldSettings& settings = options->settings;
-  command->add_option("folder,--out", options->folder, "Folder to write, made where it is missing")->required();
+  command->add_option("folder", options->folder, "Folder to write, made where it is missing")->required();
   command->add_option("--seed", settings.seed, "The same seed gives the same files")
       ->capture_default_str()
       ->check(seed());

@@ -186,7 +186,7 @@ def parse_arguments():
 def prepare(arguments, work):
     """The sources of the map and the frames to ask for."""
     if not arguments.images:
-        run(arguments.roadfix, "world", "--out", work / "world", "--seed", arguments.seed,
+        run(arguments.roadfix, "world", work / "world", "--seed", arguments.seed,
             "--frames", arguments.frames, "--footprint-m", DEMO_FOOTPRINT_M)
         return [work / "world" / "pre.tif"], read_frames(work / "world" / "frames" / "frames.csv")
     frames = [Frame(file, arguments.gsd) for file in arguments.frame]

@@ -147,14 +147,14 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
 void require_roads_visible(double gsd_m) {
   if (gsd_m < kFinestGsdM) {
     throw InvalidInput("frame-too-fine",
-                       fmt::format("frame: pixels of {:.3g} m show no ground to speak of, {} m is the "
+                       fmt::format("frame: pixels of {:.6g} m show no ground to speak of, {} m is the "
                                    "least: check the metres per pixel, or the field of view and the "
                                    "altitude",
                                    gsd_m, kFinestGsdM));
   }
   if (gsd_m <= kCoarsestGsdM) return;
   throw InvalidInput("frame-too-coarse",
-                     fmt::format("frame: pixels of {:.3g} m do not show roads, {} m is the most: check the metres per "
+                     fmt::format("frame: pixels of {:.6g} m do not show roads, {} m is the most: check the metres per "
                                  "pixel, or the field of view and the altitude",
                                  gsd_m, kCoarsestGsdM));
 }

@@ -85,17 +85,17 @@ json to_json(const Localizability& place) {
   return answer;
 }
 
-json to_json(std::span<const MatchScore> scores) {
-  json answer = json::array();
+json to_json(std::span<const MatchScore> scores, const MapView& map) {
+  json list = json::array();
   for (const MatchScore& score : scores) {
     json entry{{"rho", nullptr}, {"probability", nullptr}, {"observed_cells", score.observed_cells}};
     if (score.rho) {
       entry["rho"] = *score.rho;
       entry["probability"] = likelihood(*score.rho);
     }
-    answer.push_back(std::move(entry));
+    list.push_back(std::move(entry));
   }
-  return answer;
+  return {{"scores", std::move(list)}, {"map", {{"name", map.name}, {"version", map.version}}}};
 }
 
 }  // namespace roadfix::api

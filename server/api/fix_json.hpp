@@ -31,7 +31,7 @@ nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<doubl
 
 nlohmann::json to_json(const Localizability& place);
 
-/// One object per pose: rho and probability (equations 5 and 7) are null where they are not defined.
-nlohmann::json to_json(std::span<const MatchScore> scores);
+/// One of "scores" per pose: rho and probability (equations 5 and 7) are null where they are not defined.
+nlohmann::json to_json(std::span<const MatchScore> scores, const MapView& map);
 
 }  // namespace roadfix::api

@@ -25,9 +25,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.stop = limit.token();
-  const std::vector<MatchScore> scores = match(map->view, features.map, poses, options);
-  return json_response(
-      {{"scores", api::to_json(scores)}, {"map", {{"name", map->name}, {"version", map->view.version}}}});
+  return json_response(api::to_json(match(map->view, features.map, poses, options), map->view));
 }
 
 }  // namespace

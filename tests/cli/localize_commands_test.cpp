@@ -125,12 +125,14 @@ TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
   const ProgramResult result =
       roadfix("match --json " + input + "--pose " + pose + " --poses " + (folder / "poses.csv").string());
   ASSERT_EQ(result.code, 0) << result.err;
-  const auto matches = nlohmann::json::parse(result.out)["matches"];
+  const auto matches = nlohmann::json::parse(result.out)["scores"];
   ASSERT_EQ(matches.size(), 2U);
   EXPECT_GT(matches[0]["rho"].get<double>(), 0.6);
   EXPECT_LT(matches[1]["rho"].get<double>(), 0.4);
   EXPECT_THAT(roadfix("match " + input + "--pose 57.7,12").err, HasSubstr("[pose-unreadable]"));
   EXPECT_THAT(roadfix("match " + input + "--heading-step 5 --pose 57.7,12,inf").err, HasSubstr("[pose-unreadable]"));
+  EXPECT_EQ(roadfix("match " + input + "--heading-step 90 --pose 57.7,12,0").code, 0) << "as the service takes it";
+  EXPECT_EQ(roadfix("fix " + input + "--confidence 0.4").code, 2) << "as the service refuses it";
   EXPECT_THAT(roadfix("match " + input).err, HasSubstr("[poses-missing]"));
 }
 

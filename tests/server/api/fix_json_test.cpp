@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/map_view.hpp"
+
 namespace roadfix::api {
 namespace {
 
@@ -74,10 +76,12 @@ TEST(FixJson, ALocalizabilityNamesThePlacesAlike) {
 
 TEST(FixJson, AMatchWithoutCommonCellsHasNoRho) {
   const std::vector<MatchScore> scores{{0.25, 100}, {-0.5, 7}, {std::nullopt, 0}};
-  const auto answer = to_json(scores);
-  EXPECT_EQ(answer[0], (nlohmann::json{{"rho", 0.25}, {"probability", 0.25}, {"observed_cells", 100}}));
-  EXPECT_EQ(answer[1]["probability"], 0.0);
-  EXPECT_TRUE(answer[2]["rho"].is_null());
+  const MapView map = testing::view_of({{2.0, {0, 0}, 1, 1}, CellArray(1, 1)});
+  const auto answer = to_json(scores, map);
+  EXPECT_EQ(answer["map"]["name"], "town");
+  EXPECT_EQ(answer["scores"][0], (nlohmann::json{{"rho", 0.25}, {"probability", 0.25}, {"observed_cells", 100}}));
+  EXPECT_EQ(answer["scores"][1]["probability"], 0.0);
+  EXPECT_TRUE(answer["scores"][2]["rho"].is_null());
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ class Window {
   bool turned() const { return planes_.size() > 1; }
 
   /// Poses of one heading, by as many quarters to the right of the footprint's.
-  void match(const Footprint& footprint, int quarters, Poses poses, std::span<MatchSums> sums) const {
+  void match(const PackedFootprint& footprint, int quarters, Poses poses, std::span<MatchSums> sums) const {
     std::vector<PlaneCell> places;
     places.reserve(poses.size());
     for (const BinnedPose& pose : poses) places.push_back(place_of(pose.cell, quarters));
@@ -174,14 +174,14 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
     parallel_for(static_cast<int>(families.size()), threads, [&](int task) {
       const Poses family = families[static_cast<std::size_t>(task)];
       FeatureMap turned = turnable.at(bins.heading(family.front().bin % quarter));
-      Footprint footprint(turned);
+      PackedFootprint footprint(turned);
       int turns = 0;
       for (const Poses members : runs(family, same_heading)) {
         deadline.check();
         const int quarters = members.front().bin / quarter;
         if (!window.turned() && turns < quarters) {
           for (; turns < quarters; ++turns) turned = quarter_turned(turned);
-          footprint = Footprint(turned);
+          footprint = PackedFootprint(turned);
         }
         window.match(footprint, quarters - turns, members, sums);
       }

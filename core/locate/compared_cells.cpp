@@ -78,8 +78,8 @@ double rho_at(const MapView& map, const FeatureMap& features, const GridPose& po
   const double col = pose.position.east_m / features.cell_m;
   const double row = -pose.position.north_m / features.cell_m;
   const LatticeIndex cell{static_cast<int>(std::floor(col)), static_cast<int>(std::floor(row))};
-  const Footprint footprint = footprint_at(resampled(features, features.cell_m, scale), pose.heading,
-                                           {col - cell.col - 0.5, row - cell.row - 0.5});
+  const PackedFootprint footprint = footprint_at(resampled(features, features.cell_m, scale), pose.heading,
+                                                 {col - cell.col - 0.5, row - cell.row - 0.5});
   const int reach = footprint.reach();
   const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
   const MapPlane plane(map.read(window).cells, 0);

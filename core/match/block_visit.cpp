@@ -10,11 +10,11 @@ namespace roadfix {
 
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
   const FeatureMap turned = problem_.turnable.at(problem_.heading(heading));
-  const Footprint above(above_base(turned, problem_.base));
+  const PackedFootprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(heading, nodes);
   parts = surviving(std::move(parts), above, kBlockCells);
   parts = surviving(halves(parts), above, kBlockCells / 2);
-  return best_of(heading, Footprint(turned), parts);
+  return best_of(heading, PackedFootprint(turned), parts);
 }
 
 std::vector<BlockVisit::Part> BlockVisit::parts_of(std::size_t heading, std::span<const BoundNode> nodes) const {
@@ -38,7 +38,8 @@ std::vector<BlockVisit::Part> BlockVisit::halves(std::span<const Part> parts) {
   return result;
 }
 
-std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, const Footprint& above, int side) const {
+std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, const PackedFootprint& above,
+                                                    int side) const {
   std::vector<PlaneCell> places;
   for (const Part& part : parts) places.push_back({part.col, part.row});
   std::vector<std::int64_t> products(places.size());
@@ -80,7 +81,7 @@ BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const 
   return sums;
 }
 
-std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const Footprint& footprint,
+std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFootprint& footprint,
                                              std::span<const Part> parts) const {
   std::vector<PlaneCell> places;
   std::vector<std::size_t> owners;

@@ -30,9 +30,10 @@ class BlockVisit {
 
   std::vector<Part> parts_of(std::size_t heading, std::span<const BoundNode> nodes) const;
   static std::vector<Part> halves(std::span<const Part> parts);
-  std::vector<Part> surviving(std::vector<Part> parts, const Footprint& above, int side) const;
+  std::vector<Part> surviving(std::vector<Part> parts, const PackedFootprint& above, int side) const;
   BlockSums sums_at(std::size_t heading, const BoundNode& node) const;
-  std::vector<LatticePose> best_of(std::size_t heading, const Footprint& footprint, std::span<const Part> parts) const;
+  std::vector<LatticePose> best_of(std::size_t heading, const PackedFootprint& footprint,
+                                   std::span<const Part> parts) const;
 
   const BoundProblem& problem_;
   const HeadingSectors& headings_;

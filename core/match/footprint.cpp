@@ -42,15 +42,15 @@ std::size_t unobserved_after(std::span<const Cell> row) {
 /// Behind the last cell of a span from its first, observed cell on. It ends before a block that would begin with an
 /// unobserved cell, so that all spans of a row take the fewest blocks.
 std::size_t end_of_span(std::span<const Cell> row, std::size_t first) {
-  std::size_t end = first + Footprint::kAlignment;
-  while (end < row.size() && is_observed(row[end])) end += Footprint::kAlignment;
+  std::size_t end = first + PackedFootprint::kAlignment;
+  while (end < row.size() && is_observed(row[end])) end += PackedFootprint::kAlignment;
   end = std::min(end, row.size());
   return end - unobserved_after(row.subspan(first, end - first));
 }
 
 }  // namespace
 
-Footprint::Footprint(const FeatureMap& north_up) {
+PackedFootprint::PackedFootprint(const FeatureMap& north_up) {
   const CellArray& cells = north_up.cells;
   assert(cells.cols() <= kMaxCols);
   const int nadir_col = static_cast<int>(std::floor(north_up.nadir.col));
@@ -77,7 +77,7 @@ Footprint::Footprint(const FeatureMap& north_up) {
 }
 
 /// The block's cells as they came, from which its mask and what it adds to the sums follow.
-void Footprint::mask_and_count(Block& values, Block& mask) {
+void PackedFootprint::mask_and_count(Block& values, Block& mask) {
   // Loops that compilers turn into vectors.
   std::uint32_t observed = 0;
   std::uint32_t sum = 0;
@@ -105,7 +105,7 @@ int footprint_reach(const FeatureMap& features) {
   return static_cast<int>(std::ceil(reach)) + 1;
 }
 
-Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset) {
+PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset) {
   // A nadir that lies off the cell centre is a feature map whose centre lies off its nadir the other way, in the body
   // frame.
   FeatureMap shifted = map;
@@ -113,9 +113,11 @@ Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::
   const double s = sin(grid_heading);
   shifted.nadir.col -= c * offset.col + s * offset.row;
   shifted.nadir.row -= -s * offset.col + c * offset.row;
-  return Footprint(rotated(shifted, grid_heading));
+  return PackedFootprint(rotated(shifted, grid_heading));
 }
 
-Footprint footprint_at(const TurnableMap& map, Angle grid_heading) { return Footprint(map.at(grid_heading)); }
+PackedFootprint footprint_at(const TurnableMap& map, Angle grid_heading) {
+  return PackedFootprint(map.at(grid_heading));
+}
 
 }  // namespace roadfix

@@ -14,7 +14,7 @@ namespace roadfix {
 
 /// Observed cells only matter: spans of a row begin and end with one, and a row has several where whole blocks of
 /// kAlignment cells are spared by it.
-class Footprint {
+class PackedFootprint {
  public:
   static constexpr int kAlignment = 32;
   static constexpr int kMaxCols = 65536;
@@ -28,7 +28,7 @@ class Footprint {
 
   /// `north_up` comes from rotated(): its nadir lies within the cell that counts as the centre.
   /// At most kMaxCols columns (the kernel's 32-bit sums).
-  explicit Footprint(const FeatureMap& north_up);
+  explicit PackedFootprint(const FeatureMap& north_up);
 
   std::span<const Span> spans() const { return spans_; }
   /// 0..254, 0 where unobserved or padding. Of an even number of blocks of kAlignment.
@@ -65,8 +65,8 @@ int footprint_reach(const FeatureMap& features);
 
 /// The footprint of a feature map at a grid heading, with its nadir `offset` from the centre of a cell (cells, each
 /// component within +-0.5): exact to sub-cell by resampling.
-Footprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
+PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
 /// With its nadir in the middle of a cell.
-Footprint footprint_at(const TurnableMap& map, Angle grid_heading);
+PackedFootprint footprint_at(const TurnableMap& map, Angle grid_heading);
 
 }  // namespace roadfix

@@ -15,8 +15,9 @@ namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR  // processors without the byte operations (SSE2 only)
 
-void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint, IntegerSums& sums) {
-  for (const Footprint::Span& span : footprint.spans()) {
+void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
+                     IntegerSums& sums) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     const std::uint8_t* map = nadir + span.row * stride + span.first_col;
     for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
       const std::int64_t m = map[i];
@@ -32,9 +33,9 @@ void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Foo
   }
 }
 
-std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint) {
+std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint) {
   std::int64_t sum = 0;
-  for (const Footprint::Span& span : footprint.spans()) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     const std::uint8_t* map = nadir + span.row * stride + span.first_col;
     for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
       sum += std::int64_t{1} * map[i] * footprint.values()[span.offset + i];
@@ -48,7 +49,7 @@ std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t strid
 namespace hn = hwy::HWY_NAMESPACE;
 
 // A footprint's spans are padded to blocks, so longer vectors are not used.
-constexpr hn::CappedTag<std::uint8_t, Footprint::kAlignment> kBytes;
+constexpr hn::CappedTag<std::uint8_t, PackedFootprint::kAlignment> kBytes;
 constexpr hn::Repartition<std::int16_t, decltype(kBytes)> kShorts;
 constexpr hn::Repartition<std::int32_t, decltype(kBytes)> kInts;
 constexpr hn::Repartition<std::uint64_t, decltype(kBytes)> kLongs;
@@ -59,7 +60,7 @@ using Longs = hn::Vec<decltype(kLongs)>;
 // A vector of bytes adds at most 4 * 254^2 to a 32-bit lane: after so many vectors the lanes are emptied.
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 254 < (std::size_t{1} << 31));
-static_assert(Footprint::kMaxCols / 16 <= kVectorsPerFlush, "a row fits between two flushes");
+static_assert(PackedFootprint::kMaxCols / 16 <= kVectorsPerFlush, "a row fits between two flushes");
 
 HWY_ATTR HWY_INLINE void add_products(Bytes a, Bytes b, Ints& sum0, Ints& sum1) {
   const Bytes zero = hn::Zero(kBytes);
@@ -87,7 +88,7 @@ HWY_ATTR HWY_INLINE std::int64_t total(Longs sum) {
 }
 
 /// Where all map cells under the footprint were observed: only three sums depend on the place. False if one was not.
-HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint,
+HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
                                    IntegerSums& sums) {
   const Bytes unobserved = hn::Set(kBytes, kUnobserved);
   const std::size_t step = hn::Lanes(kBytes);
@@ -98,7 +99,7 @@ HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t str
   Ints ml1 = hn::Zero(kInts);
   std::size_t vectors = 0;
   sums = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
-  for (const Footprint::Span& span : footprint.spans()) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     const std::uint8_t* map = nadir + span.row * stride + span.first_col;
     const std::uint8_t* values = footprint.values() + span.offset;
     const std::uint8_t* mask = footprint.mask() + span.offset;
@@ -124,7 +125,7 @@ HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t str
   return true;
 }
 
-HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint,
+HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
                                   IntegerSums& sums) {
   const Bytes unobserved = hn::Set(kBytes, kUnobserved);
   const Bytes one = hn::Set(kBytes, 1);
@@ -140,7 +141,7 @@ HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stri
   Ints ml1 = hn::Zero(kInts);
   std::size_t vectors = 0;
   sums = {};
-  for (const Footprint::Span& span : footprint.spans()) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     const std::uint8_t* map = nadir + span.row * stride + span.first_col;
     const std::uint8_t* values = footprint.values() + span.offset;
     const std::uint8_t* mask = footprint.mask() + span.offset;
@@ -173,19 +174,20 @@ HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stri
   sums.ml += emptied(ml0, ml1);
 }
 
-void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const Footprint& footprint, IntegerSums& sums) {
+void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
+                     IntegerSums& sums) {
   if (!sums_on_observed_map(nadir, stride, footprint, sums)) sums_on_partial_map(nadir, stride, footprint, sums);
 }
 
 /// Unobserved cells of the footprint have the value 0.
 HWY_ATTR std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride,
-                                          const Footprint& footprint) {
+                                          const PackedFootprint& footprint) {
   const std::size_t step = hn::Lanes(kBytes);
   Ints sum0 = hn::Zero(kInts);
   Ints sum1 = hn::Zero(kInts);
   std::int64_t sum = 0;
   std::size_t vectors = 0;
-  for (const Footprint::Span& span : footprint.spans()) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     const std::uint8_t* map = nadir + span.row * stride + span.first_col;
     const std::uint8_t* values = footprint.values() + span.offset;
     const auto cells = static_cast<std::size_t>(span.cells);
@@ -202,14 +204,14 @@ HWY_ATTR std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdif
 
 #endif
 
-void products_at(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void products_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                  std::span<std::int64_t> sums) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     sums[i] = products_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint);
   }
 }
 
-void sums_at(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void sums_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
              std::span<IntegerSums> sums) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     sums_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint, sums[i]);
@@ -250,14 +252,14 @@ MatchSums scaled(const IntegerSums& s) {
 }
 
 /// How far beyond the plane's cells a footprint's nadir may lie.
-int room_of(const MapPlane& map, const Footprint& footprint) { return map.margin() - footprint.reach(); }
+int room_of(const MapPlane& map, const PackedFootprint& footprint) { return map.margin() - footprint.reach(); }
 
 bool within(const MapPlane& map, int room, PlaneCell place) {
   return place.col >= -room && place.row >= -room && place.col < map.cols() + room && place.row < map.rows() + room;
 }
 
 /// All places within the plane and its margin.
-void sums_within(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void sums_within(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                  std::span<MatchSums> out) {
   std::vector<IntegerSums> sums(places.size());
   if (has_byte_products()) {
@@ -270,7 +272,7 @@ void sums_within(const MapPlane& map, const Footprint& footprint, std::span<cons
 
 }  // namespace
 
-void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void match_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums) {
   assert(places.size() == sums.size());
   const int room = room_of(map, footprint);
@@ -284,7 +286,7 @@ void match_sums(const MapPlane& map, const Footprint& footprint, std::span<const
   }
 }
 
-void product_sums(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void product_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                   std::span<std::int64_t> sums) {
   assert(places.size() == sums.size());
   assert(std::ranges::all_of(

@@ -22,7 +22,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kStep = 64;
-constexpr int kHalf = Footprint::kAlignment;
+constexpr int kHalf = PackedFootprint::kAlignment;
 static_assert(2 * kHalf == int{kStep});
 // A vector adds at most 4 * 254 * 128 to a 32-bit lane: after so many vectors the lanes are emptied.
 constexpr std::size_t kVectorsPerFlush = 8192;
@@ -35,11 +35,11 @@ struct Offsets {
   std::ptrdiff_t high = 0;
 };
 
-std::vector<Offsets> offsets_of(const Footprint& footprint, std::ptrdiff_t stride) {
+std::vector<Offsets> offsets_of(const PackedFootprint& footprint, std::ptrdiff_t stride) {
   std::vector<Offsets> offsets;
   offsets.reserve(2 * footprint.spans().size());
   bool low = true;
-  for (const Footprint::Span& span : footprint.spans()) {
+  for (const PackedFootprint::Span& span : footprint.spans()) {
     for (int i = 0; i < span.cells; i += kHalf, low = !low) {
       const std::ptrdiff_t offset = span.row * stride + span.first_col + i;
       if (low) offsets.push_back({offset, 0});
@@ -84,7 +84,7 @@ struct Hidden {
 /// Several places at once: the processor need not wait for a sum of one before it adds to the others. The instruction
 /// wants signed bytes for one factor: cells of the map less 128, 0 where the footprint has not observed.
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::span<const Offsets> offsets,
+ROADFIX_VNNI void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const Offsets> offsets,
                          const PlaneCell* cells, IntegerSums* out) {
   const __m512i high_bit = _mm512_set1_epi8(-128);
   const __m512i unobserved = _mm512_set1_epi8(kUnobserved - 128);
@@ -135,7 +135,7 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const Footprint& footprint, std::s
 }
 
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_products(const MapPlane& map, const Footprint& footprint, std::span<const Offsets> offsets,
+ROADFIX_VNNI void add_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const Offsets> offsets,
                                const PlaneCell* cells, std::int64_t* out) {
   const __m512i high_bit = _mm512_set1_epi8(-128);
   const std::uint8_t* nadir[kPlaces];
@@ -169,7 +169,7 @@ bool has_byte_products() {
 
 void allow_byte_products_for_test(bool allow) { allowed = allow; }
 
-void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void sums_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums) {
   assert(places.size() == sums.size());
   const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
@@ -178,7 +178,7 @@ void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std:
   for (; i < places.size(); ++i) add_up<1>(map, footprint, offsets, &places[i], &sums[i]);
 }
 
-void products_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void products_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                                std::span<std::int64_t> sums) {
   assert(places.size() == sums.size());
   const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
@@ -197,12 +197,12 @@ bool has_byte_products() { return false; }
 
 void allow_byte_products_for_test(bool /*allow*/) {}
 
-void sums_by_byte_products(const MapPlane& /*map*/, const Footprint& /*footprint*/,
+void sums_by_byte_products(const MapPlane& /*map*/, const PackedFootprint& /*footprint*/,
                            std::span<const PlaneCell> /*places*/, std::span<IntegerSums> /*sums*/) {
   assert(false);
 }
 
-void products_by_byte_products(const MapPlane& /*map*/, const Footprint& /*footprint*/,
+void products_by_byte_products(const MapPlane& /*map*/, const PackedFootprint& /*footprint*/,
                                std::span<const PlaneCell> /*places*/, std::span<std::int64_t> /*sums*/) {
   assert(false);
 }

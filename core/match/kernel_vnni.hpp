@@ -15,11 +15,11 @@ bool has_byte_products();
 void allow_byte_products_for_test(bool allow);
 
 /// As match_sums(), in whole numbers; all places within the plane and its margin. Needs has_byte_products().
-void sums_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void sums_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums);
 
 /// As product_sums(). Needs has_byte_products().
-void products_by_byte_products(const MapPlane& map, const Footprint& footprint, std::span<const PlaneCell> places,
+void products_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                                std::span<std::int64_t> sums);
 
 }  // namespace roadfix

@@ -105,7 +105,7 @@ LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, st
 
 void run(RefineTask& task, const Level& level, int cells, const GroundAround& ground,
          const std::vector<LatticePose>& poses) {
-  const Footprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
+  const PackedFootprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
   std::vector<PlaneCell> places;
   for (const std::size_t i : task.candidates) add_places_around(ground.place(i, poses[i].cell), cells, places);
   std::vector<MatchSums> sums(places.size());
@@ -198,7 +198,7 @@ Peak peak_around(const Level& level, const LatticePose& pose) {
   std::vector<MatchSums> sums(places.size());
   Peak peak;
   for (int d = 0; d < kPeakSize; ++d) {
-    const Footprint footprint =
+    const PackedFootprint footprint =
         footprint_at(features.turnable, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
     match_sums(plane, footprint, places, sums);
     for (int row = 0; row < kPeakSize; ++row) {

@@ -46,7 +46,7 @@ void equation5_kernel(benchmark::State& state) {
   const auto side = static_cast<int>(state.range(0));
   const double heading_deg = static_cast<double>(state.range(1));
   const FeatureMap window = window_of(small_map(), side);
-  const Footprint footprint = footprint_at(window, Angle::degrees(heading_deg));
+  const PackedFootprint footprint = footprint_at(window, Angle::degrees(heading_deg));
   const MapPlane plane(small_map().cells, 0);
   std::mt19937_64 random(3);
   std::vector<PlaneCell> places;

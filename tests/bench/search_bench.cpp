@@ -221,7 +221,7 @@ BENCHMARK(one_heading_by_opencv)->Unit(benchmark::kMillisecond);
 void one_heading_by_brute_force(benchmark::State& state) {
   if (city() == nullptr) return state.SkipWithError("ROADFIX_BENCH_MAP names no map");
   const Around given = around();
-  const Footprint footprint(given.turned);
+  const PackedFootprint footprint(given.turned);
   const MapPlane plane(given.map.cells, 0);
   std::vector<PlaneCell> places;
   for (int row = footprint.reach(); row < plane.rows() - footprint.reach(); ++row) {

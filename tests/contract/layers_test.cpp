@@ -1,4 +1,5 @@
-// Holds the whole tree against the tables of ARCHITECTURE.md: includes and CMake links point only downwards.
+// Holds the whole tree against the tables of ARCHITECTURE.md: includes and CMake links point only downwards; and what
+// compilers and linkers do not look at.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -93,6 +94,35 @@ TEST(Layers, EveryHeaderBelongsToATargetSoThatItIsCompiledAlone) {
     EXPECT_TRUE(std::regex_search(read(kRoot / build_file), std::regex(R"([\s(])" + listed + R"([\s)])")))
         << "add " << listed << " to HEADERS in " << build_file;
   }
+}
+
+/// Types at namespace scope, which stand at the beginning of a line, with their namespace.
+std::vector<std::string> types_defined_in(const std::string& header) {
+  static const std::regex kDefinition(
+      R"((?:^|\n)(?:namespace ([\w:]+) \{|(?:struct|class|enum class) (?:alignas\(.*\) )?(\w+)(?: final)?(?: : [^\n{]*)? \{))");
+  std::string scope;
+  std::vector<std::string> types;
+  for (auto it = std::sregex_iterator(header.begin(), header.end(), kDefinition); it != std::sregex_iterator(); ++it) {
+    if ((*it)[1].matched) {
+      scope = (*it)[1];
+    } else {
+      types.push_back(scope + "::" + (*it)[2].str());
+    }
+  }
+  return types;
+}
+
+TEST(Headers, GiveOneNameToOneType) {
+  // No compiler or linker tells of two types of one name in different files of a program; it may run with either's
+  // code.
+  std::map<std::string, std::string> header_of;
+  for (const auto& file : product_files(std::regex(R"(.*\.hpp)"))) {
+    for (const auto& type : types_defined_in(file.text)) {
+      const auto [known, is_new] = header_of.emplace(type, file.path);
+      EXPECT_TRUE(is_new) << file.path << " defines " << type << ", as " << known->second << " does: rename one";
+    }
+  }
+  EXPECT_GT(header_of.size(), 200u);
 }
 
 constexpr const char* kSmallTable = R"(

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "tiles/sources/placement.hpp"
+#include "tiles/sources/georeference.hpp"
 #include "tiles/sources/vector_roads.hpp"
 
 namespace roadfix {

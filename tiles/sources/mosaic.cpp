@@ -10,7 +10,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/sources/collar.hpp"
-#include "tiles/sources/placement.hpp"
+#include "tiles/sources/georeference.hpp"
 #include "tiles/sources/warp.hpp"
 
 namespace roadfix {
@@ -77,10 +77,10 @@ struct Mosaic::Image {
 
 struct Mosaic::Handle {
   Handle(std::size_t image_index, std::unique_ptr<RasterFile> raster, UtmZone zone)
-      : image(image_index), file(std::move(raster)), placement(*file, zone) {}
+      : image(image_index), file(std::move(raster)), georeference(*file, zone) {}
   std::size_t image;
   std::unique_ptr<RasterFile> file;
-  Placement placement;
+  Georeference georeference;
 };
 
 Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
@@ -91,15 +91,15 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     if (rule == ValueRule::kShare && !images_.empty()) {
       require_same_kind(RasterFile(images_.front().path, options), file);
     }
-    const Placement placement(file, zone);
-    Image image{std::move(path), placement.footprint(), placement.gsd_m(),
+    const Georeference georeference(file, zone);
+    Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
                 rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};
     extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
     gsd_m_ = std::min(gsd_m_, image.gsd_m);
     channels_ = std::max(channels_, file.channels());
     integers_ = integers_ || file.holds_integers();
     if (images_.empty()) crs_ = crs_name(file.crs());
-    PositionError error = roadfix::position_error(file, placement, zone);
+    PositionError error = roadfix::position_error(file, georeference, zone);
     if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
     if (!image.declared) {
       const std::vector<float> sample = file.sample_values();
@@ -145,7 +145,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   for (std::size_t i = 0; i < images_.size(); ++i) {
     if (!images_[i].footprint.overlaps(box)) continue;
     std::unique_ptr<Handle> handle = borrow(i, gsd_m);
-    warp_into({*handle->file, handle->placement, images_[i].range, images_[i].collar.get()}, box, result);
+    warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));
   }
   return result;

@@ -32,7 +32,7 @@ enum class ValueRule {
 
 class Mosaic {
  public:
-  /// Throws what RasterFile and Placement throw, and InvalidInput ("road-values-mixed") for shares of several types.
+  /// Throws what RasterFile and Georeference throw, and InvalidInput ("road-values-mixed") for shares of several types.
   Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone);
   ~Mosaic();
 

@@ -16,7 +16,7 @@ constexpr double kRpcSigmaM = 10.0;
 constexpr int kExactFirstOrder = 3;
 constexpr int kExactSecondOrder = 6;
 
-double control_point_sigma_m(const RasterFile& file, const Placement& placement, UtmZone zone) {
+double control_point_sigma_m(const RasterFile& file, const Georeference& georeference, UtmZone zone) {
   GDALDataset& dataset = file.dataset();
   const int count = dataset.GetGCPCount();
   const int exact = count >= kExactSecondOrder ? kExactSecondOrder : kExactFirstOrder;
@@ -26,7 +26,7 @@ double control_point_sigma_m(const RasterFile& file, const Placement& placement,
   for (int i = 0; i < count; ++i) {
     const GDAL_GCP& point = dataset.GetGCPs()[i];
     std::vector<cv::Point2d> fitted{{point.dfGCPPixel, point.dfGCPLine}};
-    placement.to_plane(fitted);
+    georeference.to_plane(fitted);
     double east = point.dfGCPX;
     double north = point.dfGCPY;
     if (to_zone->Transform(1, &east, &north) == FALSE) return std::numeric_limits<double>::infinity();
@@ -38,11 +38,11 @@ double control_point_sigma_m(const RasterFile& file, const Placement& placement,
 
 }  // namespace
 
-PositionError position_error(const RasterFile& file, const Placement& placement, UtmZone zone) {
+PositionError position_error(const RasterFile& file, const Georeference& georeference, UtmZone zone) {
   std::array<double, 6> transform{};
   if (file.dataset().GetGeoTransform(transform.data()) == CE_None) return {};
   if (file.dataset().GetGCPCount() > 0) {
-    const double sigma_m = control_point_sigma_m(file, placement, zone);
+    const double sigma_m = control_point_sigma_m(file, georeference, zone);
     return {sigma_m, fmt::format("{}: its {} control points contradict each other by {:.3g} m (1 sigma), and so "
                                  "uncertain is where it lies. Correct them, or make an orthoimage of it first",
                                  file.path(), file.dataset().GetGCPCount(), sigma_m)};

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tiles/sources/placement.hpp"
+#include "tiles/sources/georeference.hpp"
 
 namespace roadfix {
 
@@ -14,6 +14,6 @@ struct PositionError {
 
 /// Of ground control points: how far they lie from where the fit to them puts them, as far as there are more of them
 /// than the fit has degrees of freedom. Of RPC without a terrain model: what is usual.
-PositionError position_error(const RasterFile& file, const Placement& placement, UtmZone zone);
+PositionError position_error(const RasterFile& file, const Georeference& georeference, UtmZone zone);
 
 }  // namespace roadfix

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/georeference.hpp"
 #include "tiles/sources/mosaic.hpp"
-#include "tiles/sources/placement.hpp"
 
 namespace roadfix {
 

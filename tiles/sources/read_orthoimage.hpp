@@ -12,7 +12,7 @@ namespace roadfix {
 /// megapixels.
 Orthoimage read_orthoimage(const std::string& path, const UtmZone& zone);
 
-/// The zone that its centre lies in. Throws what RasterFile and Placement throw.
+/// The zone that its centre lies in. Throws what RasterFile and Georeference throw.
 UtmZone zone_of_image(const std::string& path);
 
 }  // namespace roadfix

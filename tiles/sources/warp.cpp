@@ -15,11 +15,11 @@ constexpr int kHalfWeight = 128;
 /// Source pixel coordinates of the centres of all pixels of a piece: exact at every 16th, bilinear in between.
 class PixelCoordinates {
  public:
-  PixelCoordinates(const Placement& placement, cv::Point2d corner, double gsd_m, cv::Size size)
+  PixelCoordinates(const Georeference& georeference, cv::Point2d corner, double gsd_m, cv::Size size)
       : step_(std::clamp(std::max(size.width, size.height), 1, kNodeStepPx)),
         cols_((size.width - 1) / step_ + 2),
         nodes_(nodes(corner, gsd_m, size)) {
-    placement.to_pixels(nodes_);
+    georeference.to_pixels(nodes_);
   }
 
   cv::Point2d at(int col, int row) const {
@@ -113,7 +113,7 @@ void fill(const cv::Mat& values, const cv::Mat& weights, cv::Mat target, cv::Mat
 
 void warp_piece(const PlacedRaster& raster, cv::Point2d corner, int reduction, double gsd_m, cv::Mat target,
                 cv::Mat observed) {
-  const PixelCoordinates coordinates(raster.placement, corner, gsd_m, target.size());
+  const PixelCoordinates coordinates(raster.georeference, corner, gsd_m, target.size());
   const cv::Rect window = source_window(coordinates, raster.file.size(), reduction);
   if (window.empty()) return;
   RasterPixels pixels = raster.file.read(window, raster.range);
@@ -143,7 +143,7 @@ void warp_piece(const PlacedRaster& raster, cv::Point2d corner, int reduction, d
 }  // namespace
 
 void warp_into(const PlacedRaster& raster, const GridBox& box, GroundImage& image) {
-  const double ratio = image.gsd_m / raster.placement.gsd_m();
+  const double ratio = image.gsd_m / raster.georeference.gsd_m();
   const int reduction = 1 << std::clamp(static_cast<int>(std::lround(std::log2(ratio))), 0, 10);
   const int piece = std::max(1, kSourcePiecePx / reduction);
   const cv::Rect whole({0, 0}, image.pixels.size());

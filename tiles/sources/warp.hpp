@@ -3,7 +3,7 @@
 
 #include "core/detect/road_detector.hpp"
 #include "tiles/sources/collar.hpp"
-#include "tiles/sources/placement.hpp"
+#include "tiles/sources/georeference.hpp"
 #include "tiles/sources/raster_file.hpp"
 
 namespace roadfix {
@@ -11,7 +11,7 @@ namespace roadfix {
 /// What is needed to read one raster in the map's zone.
 struct PlacedRaster {
   RasterFile& file;
-  const Placement& placement;
+  const Georeference& georeference;
   const ValueRange& range;
   const Collar* collar;  ///< null without
 };

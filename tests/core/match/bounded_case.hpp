@@ -65,7 +65,7 @@ class BoundedCase {
     std::vector<MatchSums> sums(places.size());
     double best = 0.0;
     for (const int bin : search.headings) {
-      const Footprint footprint = footprint_at(features_, search.bins.heading(bin));
+      const PackedFootprint footprint = footprint_at(features_, search.bins.heading(bin));
       match_sums(MapPlane(map_.cells, 2 * footprint.reach()), footprint, places, sums);
       for (const MatchSums& s : sums) best = std::max(best, score_of(s, full, search.least_cells));
     }

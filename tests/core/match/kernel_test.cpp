@@ -64,7 +64,7 @@ TEST_P(KernelOnEachTarget, AgreesWithTheDefinitionForRandomSizesPlacesAndHoles) 
     const CellArray map = random_cells(random, 1 + below(150), 1 + below(90), holes);
     const FeatureMap features =
         FeatureMap::centred(random_cells(random, 1 + below(140), 1 + below(70), 0.1 * (round % 4)), 1.0);
-    const Footprint footprint(features);
+    const PackedFootprint footprint(features);
     const MapPlane plane(map, 2 * footprint.reach() + round % 2);
     std::vector<PlaneCell> places;
     for (int i = 0; i < 13; ++i) places.push_back({below(400) - 150, below(300) - 100});
@@ -81,7 +81,7 @@ TEST_P(KernelOnEachTarget, SumsProductsAloneWhereAllOfTheMapIsObserved) {
   for (int round = 0; round < 100; ++round) {
     const FeatureMap features =
         FeatureMap::centred(random_cells(random, 1 + below(140), 1 + below(70), 0.3 * (round % 4)), 1.0);
-    const Footprint footprint(features);
+    const PackedFootprint footprint(features);
     const int reach = footprint.reach();
     const CellArray map = random_cells(random, 2 * reach + 1 + below(50), 2 * reach + 1 + below(50), 0.0);
     const MapPlane plane(map, 0);
@@ -102,7 +102,7 @@ TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
   const int cols = 4000;
   const int rows = 700;
   const FeatureMap features = FeatureMap::centred(CellArray(cols, rows, kRoad), 1.0);
-  const Footprint footprint(features);
+  const PackedFootprint footprint(features);
   CellArray map(cols, rows, kRoad);
   for (const bool hole : {false, true}) {
     if (hole) map.at(5, 5) = kUnobserved;
@@ -135,7 +135,7 @@ TEST(FootprintAt, TurnsAndShiftsTheFeatureMapLikeCuttingItOutOfTheGround) {
   const GridGeometry::CellPosition at{40.8, 39.7};
   const FeatureMap window = cut_out(grid, {grid.geometry.point_at(at), heading}, 31, 25, 1.0);
   const auto fit = [&](GridGeometry::CellPosition offset) {
-    const Footprint footprint = footprint_at(window, heading, offset);
+    const PackedFootprint footprint = footprint_at(window, heading, offset);
     const MapPlane plane(grid.cells, footprint.reach());
     const PlaneCell place{40, 39};
     MatchSums sums;

@@ -267,7 +267,7 @@ double brute_force(const RoadGrid& map, const FeatureMap& features, const Headin
   }
   std::vector<MatchSums> sums(places.size());
   for (int bin = 0; bin < bins.count(); ++bin) {
-    const Footprint footprint = footprint_at(features, bins.heading(bin));
+    const PackedFootprint footprint = footprint_at(features, bins.heading(bin));
     match_sums(MapPlane(map.cells, 2 * footprint.reach()), footprint, places, sums);
     for (const MatchSums& s : sums) {
       best = std::max(best, score_of(s, full, least_share * static_cast<double>(full)));

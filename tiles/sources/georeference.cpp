@@ -1,4 +1,4 @@
-#include "tiles/sources/placement.hpp"
+#include "tiles/sources/georeference.hpp"
 
 #include <cpl_string.h>
 #include <fmt/format.h>
@@ -88,15 +88,15 @@ void require_way_back(const RasterFile& file, const std::vector<cv::Point2d>& pi
 
 }  // namespace
 
-void Placement::Destroy::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
+void Georeference::Destroy::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
 
-Placement::Placement(const RasterFile& file, UtmZone zone)
+Georeference::Georeference(const RasterFile& file, UtmZone zone)
     : file_(&file), zone_(zone), transformer_(create_transformer(file, utm_reference(zone))) {}
 
-void Placement::to_pixels(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, true); }
-void Placement::to_plane(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, false); }
+void Georeference::to_pixels(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, true); }
+void Georeference::to_plane(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, false); }
 
-GridBox Placement::footprint() const {
+GridBox Georeference::footprint() const {
   constexpr int kSteps = 32;
   const cv::Size size = file_->size();
   std::vector<cv::Point2d> points;
@@ -121,7 +121,7 @@ GridBox Placement::footprint() const {
   return box;
 }
 
-double Placement::gsd_m() const {
+double Georeference::gsd_m() const {
   const cv::Point2d centre(file_->size().width / 2.0, file_->size().height / 2.0);
   std::vector<cv::Point2d> points{centre, centre + cv::Point2d(1.0, 0.0), centre + cv::Point2d(0.0, 1.0)};
   to_plane(points);

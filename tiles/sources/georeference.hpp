@@ -12,10 +12,10 @@
 
 namespace roadfix {
 
-class Placement {
+class Georeference {
  public:
   /// Refers to the file, which must outlive it. Throws InvalidInput "crs-not-transformable".
-  Placement(const RasterFile& file, UtmZone zone);
+  Georeference(const RasterFile& file, UtmZone zone);
 
   /// Pixel coordinates of points on the plane; NaN where a point has no place in the image's reference system.
   void to_pixels(std::vector<cv::Point2d>& points) const;

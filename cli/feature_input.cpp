@@ -18,8 +18,8 @@
 namespace roadfix::cli {
 namespace {
 
-constexpr double kMostCells = 25e6;
-constexpr std::size_t kMostFrames = 64;
+constexpr double kMaxCells = 25e6;
+constexpr std::size_t kMaxFrames = 64;
 
 struct Another {
   std::string path;
@@ -59,16 +59,16 @@ FeatureMap features_in(const std::string& path, const FeatureInputOptions& optio
 FeatureMap all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
   FeatureMap features = features_in(options.path, options, detector, map_cell_m);
   if (options.also.empty()) return features;
-  if (options.also.size() >= kMostFrames) {
+  if (options.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
-                        fmt::format("{} frames are more than {}", options.also.size() + 1, kMostFrames));
+                        fmt::format("{} frames are more than {}", options.also.size() + 1, kMaxFrames));
   }
   std::vector<PlacedFeatures> parts{{std::move(features), {}}};
   for (const std::string& text : options.also) {
     const Another another = parse_also(text);
     parts.push_back({features_in(another.path, options, detector, map_cell_m), another.offset});
   }
-  return combined(parts, kMostCells);
+  return combined(parts, kMaxCells);
 }
 
 }  // namespace

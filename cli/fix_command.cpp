@@ -132,7 +132,7 @@ void add_fix_command(CLI::App& app) {
   command
       ->add_option("--scale-range", o->fix.scale_range, "The ground may be smaller by this share, or larger by as much")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, kMostScaleRange));
+      ->check(CLI::Range(0.0, kMaxScaleRange));
   command->add_option("--threads", o->fix.threads, "Threads of the search")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));

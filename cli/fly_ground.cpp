@@ -75,7 +75,7 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.detector = ground.detector.get();
   recorded.cell_m = map.cell_m;
   recorded.step_s = options.plan.handling.step_s;
-  recorded.most_frames = static_cast<std::size_t>(options.steps.value_or(0));
+  recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
   recorded.seed = options.seed;
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(

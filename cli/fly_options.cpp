@@ -44,7 +44,7 @@ void add_belief_options(CLI::App& command, FlyOptions& o) {
                   "The altitude: the ground seen may be smaller by this share, or larger by as much, for long")
       ->capture_default_str()
       ->group(kGroup)
-      ->check(CLI::Range(0.0, kMostScaleRange));
+      ->check(CLI::Range(0.0, kMaxScaleRange));
   command
       .add_option("--wind-sigma", o.wind_sigma_m_s,
                   "The wind at first, where odometry is relative to the air: 1 sigma in metres per second and axis")
@@ -92,8 +92,8 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
 
 void add_error_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "Errors (1 sigma)";
-  const auto add = [&](const char* name, double& value, const char* what, double most = kMostOfAll) {
-    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(not_negative(most));
+  const auto add = [&](const char* name, double& value, const char* what, double max = kMaxNumber) {
+    command.add_option(name, value, what)->capture_default_str()->group(kGroup)->check(not_negative(max));
   };
   add("--odometry-noise", o.plan.odometry.share, "Odometry: share of the distance, each step and axis");
   add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");

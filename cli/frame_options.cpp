@@ -64,15 +64,15 @@ GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, cons
   camera.agl_m = options.agl_m;
   camera.roll = Angle::degrees(options.roll_deg);
   camera.pitch = Angle::degrees(options.pitch_deg);
-  return ground_seen(frame_image(decoded, kAnyGsd), camera, detector, static_cast<double>(kMostPixels));
+  return ground_seen(frame_image(decoded, kAnyGsd), camera, detector, static_cast<double>(kMaxPixels));
 }
 
 cv::Mat picture_in(const std::string& path) {
-  return decoded(path, [](const auto& bytes) { return decode_image(bytes, kMostPixels); });
+  return decoded(path, [](const auto& bytes) { return decode_image(bytes, kMaxPixels); });
 }
 
 CellArray feature_map_in(const std::string& path) {
-  return decoded(path, [](const auto& bytes) { return decode_feature_map(bytes, kMostPixels); });
+  return decoded(path, [](const auto& bytes) { return decode_feature_map(bytes, kMaxPixels); });
 }
 
 }  // namespace roadfix::cli

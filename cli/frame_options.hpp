@@ -10,7 +10,7 @@
 
 namespace roadfix::cli {
 
-inline constexpr std::int64_t kMostPixels = 400'000'000;
+inline constexpr std::int64_t kMaxPixels = 400'000'000;
 
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera

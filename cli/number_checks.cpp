@@ -11,22 +11,22 @@
 namespace roadfix::cli {
 namespace {
 
-CLI::Validator number_within(double least, bool is_open, double most, const char* name) {
+CLI::Validator number_within(double min, bool is_open, double max, const char* name) {
   return {[=](std::string& text) -> std::string {
             double value = 0.0;
             const bool is_number = CLI::detail::lexical_cast(text, value);
-            if (is_number && value <= most && (is_open ? value > least : value >= least)) return {};
+            if (is_number && value <= max && (is_open ? value > min : value >= min)) return {};
             return fmt::format("must be a number {} {:.0f} and at most {:.0f}, not {}",
-                               is_open ? "above" : "of at least", least, most, text);
+                               is_open ? "above" : "of at least", min, max, text);
           },
           name};
 }
 
 }  // namespace
 
-CLI::Validator positive(double most) { return number_within(0.0, true, most, "POSITIVE"); }
+CLI::Validator positive(double max) { return number_within(0.0, true, max, "POSITIVE"); }
 
-CLI::Validator not_negative(double most) { return number_within(0.0, false, most, "NONNEGATIVE"); }
+CLI::Validator not_negative(double max) { return number_within(0.0, false, max, "NONNEGATIVE"); }
 
 CLI::Validator seed() {
   return {[](std::string& text) -> std::string {

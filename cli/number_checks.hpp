@@ -7,13 +7,13 @@
 namespace roadfix::cli {
 
 /// Of metres, seconds, pixels or bytes: more than anybody means, and still countable in milliseconds.
-inline constexpr double kMostOfAll = 2e9;
+inline constexpr double kMaxNumber = 2e9;
 
 /// Above 0 and at most `most`.
-CLI::Validator positive(double most = kMostOfAll);
+CLI::Validator positive(double max = kMaxNumber);
 
 /// 0 or positive(most).
-CLI::Validator not_negative(double most = kMostOfAll);
+CLI::Validator not_negative(double max = kMaxNumber);
 
 /// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.
 CLI::Validator seed();

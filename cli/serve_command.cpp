@@ -24,9 +24,9 @@ namespace roadfix::cli {
 namespace {
 
 constexpr std::size_t kMiB = std::size_t{1} << 20;
-constexpr double kMostSeconds = 1e6;
-constexpr double kMostMiB = 1 << 20;  // a TiB
-constexpr double kMostThreads = 10'000;
+constexpr double kMaxSeconds = 1e6;
+constexpr double kMaxMiB = 1 << 20;  // a TiB
+constexpr double kMaxThreads = 10'000;
 
 struct ServeOptions {
   server::Configuration service;
@@ -96,44 +96,43 @@ void also_from_file(CLI::App& command, const std::string& path) {
 
 void add_limits(CLI::App& command, ServeOptions& o) {
   auto& limits = o.service.limits;
-  const auto add = [&](const char* name, auto& value, const char* text, double most = kMostOfAll) {
-    command.add_option(name, value, text)->capture_default_str()->check(positive(most))->group("Limits of one request");
+  const auto add = [&](const char* name, auto& value, const char* text, double max = kMaxNumber) {
+    command.add_option(name, value, text)->capture_default_str()->check(positive(max))->group("Limits of one request");
   };
-  add("--max-body", o.body_mib, "Body in MiB, after unpacking", kMostMiB);
+  add("--max-body", o.body_mib, "Body in MiB, after unpacking", kMaxMiB);
   add("--max-pixels", limits.pixels, "Pixels of a picture");
   add("--max-cells", limits.cells, "Cells of a window or feature map");
   add("--max-poses", limits.poses, "Poses of a match");
   add("--max-search", limits.search_km2, "Area of a search in km2");
   add("--max-particles", limits.particles, "Particles of a track");
-  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on",
-      kMostSeconds);
+  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on", kMaxSeconds);
   command
       .add_option("--turn-time", o.turn_time_s,
                   "Seconds that a search or detection may wait for its turn; as many as --request-time unless given")
-      ->check(positive(kMostSeconds))
+      ->check(positive(kMaxSeconds))
       ->group("Limits of one request");
 }
 
 void add_resources(CLI::App& command, ServeOptions& o) {
   auto& http = o.service.http;
-  const auto add = [&](const char* name, auto& value, const char* text, double most = kMostOfAll) {
-    return command.add_option(name, value, text)->capture_default_str()->check(positive(most))->group("Resources");
+  const auto add = [&](const char* name, auto& value, const char* text, double max = kMaxNumber) {
+    return command.add_option(name, value, text)->capture_default_str()->check(positive(max))->group("Resources");
   };
-  add("--threads", http.threads, "Connections served at the same time", kMostThreads);
+  add("--threads", http.threads, "Connections served at the same time", kMaxThreads);
   add("--searches", http.heavy_running, "Searches and detections at the same time");
   add("--searches-waiting", http.heavy_waiting, "Further ones that wait; others are told to come back");
-  add("--search-threads", o.service.search_threads, "Threads of one search", kMostThreads);
-  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept", kMostSeconds);
-  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB", kMostMiB);
-  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB", kMostMiB);
-  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB", kMostMiB);
+  add("--search-threads", o.service.search_threads, "Threads of one search", kMaxThreads);
+  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept", kMaxSeconds);
+  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB", kMaxMiB);
+  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB", kMaxMiB);
+  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB", kMaxMiB);
   add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
   add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");
   add("--max-streams", o.service.track_limits.streams, "Streams of events at the same time, at most half of --threads");
-  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB", kMostMiB);
-  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook", kMostSeconds);
-  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends", kMostSeconds);
-  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps", kMostSeconds);
+  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB", kMaxMiB);
+  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook", kMaxSeconds);
+  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends", kMaxSeconds);
+  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps", kMaxSeconds);
 }
 
 void run_serve(const ServeOptions& options) {

@@ -38,15 +38,15 @@ cv::Mat ground_before(std::span<const Orthoimage> imagery, const FeatureMap& fea
 
 cv::Mat agreement(const CellArray& before, const CellArray& after) {
   assert(before.cols() == after.cols() && before.rows() == after.rows());
-  const double most_before = strongest_of(before);
-  const double most_after = strongest_of(after);
+  const double max_before = strongest_of(before);
+  const double max_after = strongest_of(after);
   cv::Mat picture(after.rows(), after.cols(), CV_8UC3, cv::Scalar::all(90));
   for (int row = 0; row < picture.rows; ++row) {
     for (int col = 0; col < picture.cols; ++col) {
       const Cell then = before.at(col, row);
       const Cell now = after.at(col, row);
       if (!is_observed(then) || !is_observed(now)) continue;
-      picture.at<cv::Vec3b>(row, col) = colour_of(probability(then) / most_before, probability(now) / most_after);
+      picture.at<cv::Vec3b>(row, col) = colour_of(probability(then) / max_before, probability(now) / max_after);
     }
   }
   return picture;

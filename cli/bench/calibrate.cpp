@@ -96,7 +96,7 @@ double highest_of(std::span<const Example> examples, const Weights& weights) {
 }
 
 struct Scaling {
-  std::array<double, kFigures> most{};
+  std::array<double, kFigures> max{};
   std::array<double, kFigures> mean{};
   std::array<double, kFigures> spread{};
 };
@@ -111,8 +111,8 @@ Scaling standardise(std::vector<Example>& examples) {
     for (const Example& example : examples) {
       if (example.right) values.push_back(example.figures[i]);
     }
-    scaling.most[i] = quantile(values, 0.5).value_or(0.0);
-    for (Example& example : examples) example.figures[i] = std::min(example.figures[i], scaling.most[i]);
+    scaling.max[i] = quantile(values, 0.5).value_or(0.0);
+    for (Example& example : examples) example.figures[i] = std::min(example.figures[i], scaling.max[i]);
     for (const Example& example : examples) scaling.mean[i] += example.figures[i] / n;
     double square = 0.0;
     for (const Example& example : examples) square += std::pow(example.figures[i] - scaling.mean[i], 2) / n;
@@ -150,7 +150,7 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   Calibration& c = report.calibration;
   c.bias = weights[0];
   for (std::size_t i = 0; i < kFigures; ++i) {
-    c.terms[i] = {weights[i + 1] / scaling.spread[i], scaling.most[i]};
+    c.terms[i] = {weights[i + 1] / scaling.spread[i], scaling.max[i]};
     c.bias -= weights[i + 1] * scaling.mean[i] / scaling.spread[i];
   }
   c.highest = highest_of(examples, weights);
@@ -167,7 +167,7 @@ json to_json(const CalibrationReport& report, const json& origin) {
                 {"sigma_scale", {{"position", c.position_sigma_scale}, {"heading", c.heading_sigma_scale}}},
                 {"origin", origin}};
   for (std::size_t i = 0; i < kFigures; ++i) {
-    document["terms"][kCountedFigures[i].name] = {{"weight", c.terms[i].weight}, {"most", c.terms[i].most}};
+    document["terms"][kCountedFigures[i].name] = {{"weight", c.terms[i].weight}, {"most", c.terms[i].max}};
   }
   document["origin"]["examples"] = report.examples;
   document["origin"]["right"] = report.right;

@@ -18,7 +18,7 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
 }
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
-  constexpr std::int64_t kMostPixels = 400'000'000;
+  constexpr std::int64_t kMaxPixels = 400'000'000;
   const auto refuse = [&](const char* why) {
     throw InvalidInput("image-unreadable", fmt::format("{}: {}", frame.file.string(), why));
   };
@@ -27,7 +27,7 @@ GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& fr
   const std::vector<std::uint8_t> bytes(file->begin(), file->end());
   cv::Mat decoded;
   try {
-    decoded = decode_image(bytes, kMostPixels);
+    decoded = decode_image(bytes, kMaxPixels);
   } catch (const InvalidInput& error) {
     refuse(error.what());
   }

@@ -19,13 +19,13 @@ struct GridEllipse {
 };
 
 inline double nees(const GridEllipse& ellipse, GridPoint truth) {
-  constexpr double kLeastSigmaM = 1e-3;
+  constexpr double kMinSigmaM = 1e-3;
   const double east = truth.east_m - ellipse.centre.east_m;
   const double north = truth.north_m - ellipse.centre.north_m;
   const double s = sin(ellipse.major_axis);
   const double c = cos(ellipse.major_axis);
-  const double along = (east * s + north * c) / std::max(ellipse.sigma_m[0], kLeastSigmaM);
-  const double across = (east * c - north * s) / std::max(ellipse.sigma_m[1], kLeastSigmaM);
+  const double along = (east * s + north * c) / std::max(ellipse.sigma_m[0], kMinSigmaM);
+  const double across = (east * c - north * s) / std::max(ellipse.sigma_m[1], kMinSigmaM);
   return along * along + across * across;
 }
 

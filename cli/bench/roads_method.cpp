@@ -42,12 +42,12 @@ class RoadsMethod : public Method {
   }
 
   FeatureMap features_of(const Query& query) const {
-    constexpr double kMostCells = 25e6;
+    constexpr double kMaxCells = 25e6;
     if (query.features) return *query.features;
     if (query.earlier.empty()) return detected(*query.picture);
     std::vector<PlacedFeatures> parts{{detected(*query.picture), {}}};
     for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.picture), frame.offset});
-    return combined(parts, kMostCells);
+    return combined(parts, kMaxCells);
   }
 
   const MapView& map_;

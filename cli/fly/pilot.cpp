@@ -21,8 +21,8 @@ Angle bearing(GridPoint from, GridPoint to) {
 
 /// The turn towards a bearing that one step allows.
 Angle turn_towards(Angle target, const GridPose& pose, const Handling& handling) {
-  const Angle most = handling.step_s * handling.turn_rate;
-  return std::clamp((target - pose.heading).wrapped(), -most, most);
+  const Angle max_turn = handling.step_s * handling.turn_rate;
+  return std::clamp((target - pose.heading).wrapped(), -max_turn, max_turn);
 }
 
 class RandomPilot : public Pilot {

@@ -22,12 +22,12 @@ struct Sequence {
 };
 
 /// Frames of one sequence need not follow each other in the file.
-std::vector<Sequence> sequences_of(std::vector<FrameTruth> frames, std::size_t most_frames) {
+std::vector<Sequence> sequences_of(std::vector<FrameTruth> frames, std::size_t max_frames) {
   std::vector<Sequence> sequences;
   for (FrameTruth& frame : frames) {
     auto found = std::ranges::find(sequences, frame.sequence, &Sequence::name);
     if (found == sequences.end()) found = sequences.insert(found, {frame.sequence, {}});
-    if (most_frames == 0 || found->frames.size() < most_frames) found->frames.push_back(std::move(frame));
+    if (max_frames == 0 || found->frames.size() < max_frames) found->frames.push_back(std::move(frame));
   }
   return sequences;
 }
@@ -74,7 +74,7 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
                                        const RecordingOptions& options,
                                        const std::function<void(std::int64_t, std::int64_t)>& seen) {
-  const std::vector<Sequence> sequences = sequences_of(bench::read_frames_csv(csv), options.most_frames);
+  const std::vector<Sequence> sequences = sequences_of(bench::read_frames_csv(csv), options.max_frames);
   std::int64_t total = 0;
   for (const Sequence& sequence : sequences) total += std::ssize(sequence.frames);
   std::vector<Recording> recordings;

@@ -30,7 +30,7 @@ struct RecordingOptions {
   const RoadDetector* detector = nullptr;  ///< null = frames are kept as pictures, for a detector elsewhere
   double cell_m = 2.0;                     ///< of the feature maps
   double step_s = 1.0;                     ///< between frames whose times are not recorded
-  std::size_t most_frames = 0;             ///< of a sequence; 0 = all
+  std::size_t max_frames = 0;              ///< of a sequence; 0 = all
   std::uint64_t seed = 1;                  ///< of the detector
 };
 

@@ -14,7 +14,7 @@ namespace {
 using bench::mean;
 using bench::quantile;
 
-constexpr double kMostWeight = 0.5;
+constexpr double kMaxWeight = 0.5;
 
 bool near(const Record& record) { return record.error_m <= kFoundM; }
 
@@ -53,7 +53,7 @@ void add_search(std::span<const Record> records, Summary& summary, Samples& samp
   }
   const Record& last = records.back();
   samples.final_errors.push_back(last.error_m);
-  if (!near(last) && last.estimate.clusters.front().weight >= kMostWeight) ++summary.wrong_at_end;
+  if (!near(last) && last.estimate.clusters.front().weight >= kMaxWeight) ++summary.wrong_at_end;
 }
 
 void add_event(std::span<const Record> records, const Events& events, Summary& summary, Samples& samples) {

@@ -24,16 +24,16 @@ const json& field(const json& object, const char* name) {
   return *found;
 }
 
-double number_in(const json& value, const char* name, double least, double most) {
+double number_in(const json& value, const char* name, double min, double max) {
   if (!value.is_number()) refuse(fmt::format("\"{}\" must be a number", name));
   const double number = value.get<double>();
-  if (!(number >= least && number <= most))
-    refuse(fmt::format("\"{}\" = {} lies outside {} to {}", name, number, least, most));
+  if (!(number >= min && number <= max))
+    refuse(fmt::format("\"{}\" = {} lies outside {} to {}", name, number, min, max));
   return number;
 }
 
-int integer_in(const json& object, const char* name, int least, int most) {
-  const double number = number_in(field(object, name), name, least, most);
+int integer_in(const json& object, const char* name, int min, int max) {
+  const double number = number_in(field(object, name), name, min, max);
   if (number != std::floor(number)) refuse(fmt::format("\"{}\" must be a whole number", name));
   return static_cast<int>(number);
 }
@@ -50,11 +50,11 @@ bool first_of(const json& object, const char* name, std::string_view first, std:
   return text == first;
 }
 
-std::array<double, 3> three(const json& object, const char* name, double least, double most) {
+std::array<double, 3> three(const json& object, const char* name, double min, double max) {
   const json& values = field(object, name);
   if (!values.is_array() || values.size() != 3) refuse(fmt::format("\"{}\" must be three numbers", name));
   std::array<double, 3> result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = number_in(values[i], name, least, most);
+  for (std::size_t i = 0; i < 3; ++i) result[i] = number_in(values[i], name, min, max);
   return result;
 }
 

@@ -26,13 +26,13 @@ std::vector<int> tile_starts(int length, const TilePlan& plan) {
 
 std::vector<float> blend_weights(int cells, int overlap_cells) {
   // A picture's own border has one tile only, and any positive weight stands for all of it.
-  constexpr float kLeast = 1e-4F;
+  constexpr float kMin = 1e-4F;
   const float quiet = static_cast<float>(overlap_cells) / 4.0F;
   const float ramp = std::max(1.0F, static_cast<float>(overlap_cells) / 2.0F);
   std::vector<float> weights(static_cast<std::size_t>(cells), 1.0F);
   for (int i = 0; i < cells && overlap_cells > 0; ++i) {
     const float end_distance = static_cast<float>(std::min(i, cells - 1 - i)) + 0.5F;
-    weights[static_cast<std::size_t>(i)] = std::clamp((end_distance - quiet) / ramp, kLeast, 1.0F);
+    weights[static_cast<std::size_t>(i)] = std::clamp((end_distance - quiet) / ramp, kMin, 1.0F);
   }
   return weights;
 }

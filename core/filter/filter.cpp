@@ -41,7 +41,7 @@ class ProposalDraw {
     ParticleState state{mean.position.east_m + l[0][0] * a, mean.position.north_m + l[1][0] * a + l[1][1] * b,
                         (mean.heading + Angle::radians(l[2][0] * a + l[2][1] * b + l[2][2] * c)).wrapped().radians()};
     const double log_scale = proposals_[k].log_scale + proposals_[k].log_scale_sigma * random.normal();
-    state.log_scale = std::clamp(log_scale, -region_.most_log_scale, region_.most_log_scale);
+    state.log_scale = std::clamp(log_scale, -region_.max_log_scale, region_.max_log_scale);
     draw_drift(region_, state, random);
     return state;
   }
@@ -185,7 +185,7 @@ void Filter::roughen(std::span<const std::size_t> ancestors) {
     const double turn = options_.roughening_heading.radians() * random.normal();
     p.heading_rad[k] = Angle::radians(p.heading_rad[k] + turn).wrapped().radians();
     const double log_scale = p.log_scale[k] + options_.roughening_log_scale * random.normal();
-    p.log_scale[k] = std::clamp(log_scale, -region_.most_log_scale, region_.most_log_scale);
+    p.log_scale[k] = std::clamp(log_scale, -region_.max_log_scale, region_.max_log_scale);
   }
 }
 

@@ -76,7 +76,7 @@ void OdometryMotion::operator()(ParticleState& state, RandomStream& random) cons
 
 void ScaleWalk::operator()(ParticleState& state, RandomStream& random) const {
   const double sigma = walk * std::sqrt(seconds);
-  state.log_scale = std::clamp(state.log_scale + sigma * random.normal(), -most_log_scale, most_log_scale);
+  state.log_scale = std::clamp(state.log_scale + sigma * random.normal(), -max_log_scale, max_log_scale);
 }
 
 void ConstantVelocityMotion::operator()(ParticleState& state, RandomStream& random) const {

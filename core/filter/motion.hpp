@@ -59,7 +59,7 @@ class OdometryMotion {
 struct ScaleWalk {
   double seconds = 0.0;
   double walk = 0.0;  ///< growth of the logarithm's sigma per square root of a second
-  double most_log_scale = 0.0;
+  double max_log_scale = 0.0;
 
   void operator()(ParticleState& state, RandomStream& random) const;
 };

@@ -15,15 +15,15 @@ bool AcceptanceRegion::keeps(GridPoint point) const { return poses.grown(beyond_
 ParticleState uniform_draw(const AcceptanceRegion& region, const PoseRegion& poses, RandomStream& random) {
   const GridBox within = poses.circle ? clipped(poses.box, *poses.circle) : poses.box;
   ParticleState state;
-  constexpr int kMostTries = 1000;  // a circle that only grazes the box
-  for (int i = 0; i < kMostTries; ++i) {
+  constexpr int kMaxTries = 1000;  // a circle that only grazes the box
+  for (int i = 0; i < kMaxTries; ++i) {
     state.east_m = random.uniform(within.min.east_m, within.max.east_m);
     state.north_m = random.uniform(within.min.north_m, within.max.north_m);
     if (poses.contains({state.east_m, state.north_m})) break;
   }
   const double half_rad = poses.heading_half_width.radians();
   state.heading_rad = (poses.heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();
-  state.log_scale = random.uniform(-region.most_log_scale, region.most_log_scale);
+  state.log_scale = random.uniform(-region.max_log_scale, region.max_log_scale);
   draw_drift(region, state, random);
   return state;
 }

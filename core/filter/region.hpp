@@ -10,7 +10,7 @@ namespace roadfix {
 struct AcceptanceRegion {
   PoseRegion poses;              ///< where new ones are drawn
   double beyond_m = 0.0;         ///< so far outside particles live on
-  double most_log_scale = 0.0;   ///< their scale stays within +- that; 0 = it is as it was told
+  double max_log_scale = 0.0;    ///< their scale stays within +- that; 0 = it is as it was told
   double drift_sigma_m_s = 0.0;  ///< per axis, of the drift of new ones
 
   /// Whether a particle that has come there lives on.

@@ -17,12 +17,12 @@ struct ProjectedPoint {
 };
 
 /// By Chebyshev polynomials of degree 4 in latitude and longitude over a box. Wherever UTM is defined, up to 84 degrees
-/// of latitude and 9 degrees off the central meridian, it differs from UtmZone by less than kMostErrorM and kMostTurn.
+/// of latitude and 9 degrees off the central meridian, it differs from UtmZone by less than kMaxErrorM and kMaxTurn.
 class LocalProjection {
  public:
   static constexpr double kSideDeg = 0.25;
-  static constexpr double kMostErrorM = 1e-6;
-  static constexpr Angle kMostTurn = Angle::radians(1e-12);
+  static constexpr double kMaxErrorM = 1e-6;
+  static constexpr Angle kMaxTurn = Angle::radians(1e-12);
 
   /// Over the box of kSideDeg north and east of `south_west`; nullopt where UTM is undefined in parts of it.
   static std::optional<LocalProjection> over(const UtmZone& zone, LatLon south_west);

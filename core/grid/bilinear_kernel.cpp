@@ -180,7 +180,7 @@ BilinearSource::BilinearSource(const CellArray& cells)
 }
 
 CellArray BilinearSource::sampled(const Placement& placement, int cols, int rows) const {
-  assert(std::max(cols_, rows_) < SnappedPlacement::kMostCells);
+  assert(std::max(cols_, rows_) < SnappedPlacement::kMaxCells);
   CellArray result(cols, rows);
   const QuadPlane plane{quads_.data(), cols_, rows_};
   const SnappedPlacement snapped(placement);

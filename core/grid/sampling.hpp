@@ -48,7 +48,7 @@ class SnappedPlacement {
   static constexpr int kShareBits = 7;  ///< of a position within its cell
   static constexpr int kCellBits = 17;  ///< a cell is 2^17 of the numbers below
   /// Of a source, an edge: beyond that the numbers would not hold.
-  static constexpr int kMostCells = 12'000;
+  static constexpr int kMaxCells = 12'000;
 
   explicit SnappedPlacement(const Placement& placement);
 

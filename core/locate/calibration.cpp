@@ -49,7 +49,7 @@ json parsed(std::string_view text) {
 double Calibration::probability(const SearchFigures& figures) const {
   double sum = bias;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    sum += terms[i].weight * std::min(figures.*kCountedFigures[i].value, terms[i].most);
+    sum += terms[i].weight * std::min(figures.*kCountedFigures[i].value, terms[i].max);
   }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.

@@ -29,7 +29,7 @@ struct Calibration {
   /// One figure in the sum that the logistic function turns into a probability.
   struct Term {
     double weight = 0.0;  ///< >= 0
-    double most = 0.0;    ///< larger figures count as this one
+    double max = 0.0;     ///< larger figures count as this one
   };
 
   double bias = 0.0;

@@ -32,7 +32,7 @@ double spread_of(const CellArray& cells) {
 
 // On less, one place always fits far better than the others, and what tells chance from more than chance no longer
 // holds.
-constexpr double kLeastGroundM2 = 16.0 * kSampleM2;
+constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
 /// Sets status and reason and returns true where the feature map alone tells that there is nothing to search for.
 bool hopeless(const FeatureMap& features, Fix& fix) {
@@ -42,15 +42,15 @@ bool hopeless(const FeatureMap& features, Fix& fix) {
     fix.explanation = "no cell of the feature map was observed: the frame showed no ground";
     return true;
   }
-  if (ground_m2 < kLeastGroundM2) {
+  if (ground_m2 < kMinGroundM2) {
     fix.reason = "footprint-too-small";
     fix.explanation = fmt::format(
         "the frame shows {:.0f} m2 of ground, less than the {:.0f} m2 from which roads tell places apart: check its "
         "scale (metres per pixel or cell), fly higher, or lay several frames together",
-        ground_m2, kLeastGroundM2);
+        ground_m2, kMinGroundM2);
     return true;
   }
-  if (spread_of(features.cells) < kLeastSpread) {
+  if (spread_of(features.cells) < kMinSpread) {
     fix.reason = "too-few-roads";
     fix.explanation = "the feature map shows hardly any road, or road everywhere: there is nothing to match";
     return true;

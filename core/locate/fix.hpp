@@ -52,7 +52,7 @@ struct FixOptions {
   double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it
   int max_modes = 8;
   /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
-  /// [0, kMostScaleRange].
+  /// [0, kMaxScaleRange].
   double scale_range = 0.0;
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has

@@ -67,9 +67,9 @@ void match_exactly(const MapView& map, const FeatureMap& features, std::span<con
 
 void match_in_bins(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                    const MatchOptions& options, std::span<MatchSums> sums) {
-  constexpr double kMostBins = 1e6;
+  constexpr double kMaxBins = 1e6;
   const double wanted = std::ceil(2.0 * std::numbers::pi / options.heading_step.radians());
-  const HeadingBins bins = HeadingBins(static_cast<int>(std::min(wanted, kMostBins))).in_quarters();
+  const HeadingBins bins = HeadingBins(static_cast<int>(std::min(wanted, kMaxBins))).in_quarters();
   std::vector<BinnedPose> binned;
   binned.reserve(poses.size());
   for_each_on_map(map, features, poses, [&](const GridQuery& query) {

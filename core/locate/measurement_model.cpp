@@ -32,8 +32,8 @@ double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t fram
     log_ratio = expected_correlation * (seen * r - 0.5 * samples * expected_correlation);
   }
   // exp() cannot overflow: log_ratio is at most a few thousand samples times a fraction, so it is bounded first.
-  constexpr double kMost = 300.0;
-  return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * log_ratio, kMost)));
+  constexpr double kMax = 300.0;
+  return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * log_ratio, kMax)));
 }
 
 bool MeasurementModel::supports(double mean_likelihood) const {

@@ -12,8 +12,8 @@ namespace roadfix {
 namespace {
 
 constexpr double kLargestSideM = 20'000.0;
-constexpr int kMostCellsAcross = 8192;
-constexpr double kMostSidesOff = 10.0;  // a telephoto camera looks less far ahead
+constexpr int kMaxCellsAcross = 8192;
+constexpr double kMaxSidesOff = 10.0;  // a telephoto camera looks less far ahead
 
 void require_usable(const FeatureMap& features) {
   if (features.cells.empty()) {
@@ -39,14 +39,14 @@ void require_nadir_near(const FeatureMap& features, double cell_m) {
   const double cols = features.cells.cols();
   const double rows = features.cells.rows();
   const double off = std::hypot(features.nadir.col - cols / 2.0, features.nadir.row - rows / 2.0);
-  const double most_off = kMostSidesOff * std::max(cols, rows);
-  const double most_reach = kMostCellsAcross * cell_m / features.cell_m;
-  if (off <= most_off && off + 0.5 * std::hypot(cols, rows) <= most_reach) return;
+  const double max_off = kMaxSidesOff * std::max(cols, rows);
+  const double max_reach = kMaxCellsAcross * cell_m / features.cell_m;
+  if (off <= max_off && off + 0.5 * std::hypot(cols, rows) <= max_reach) return;
   throw InvalidInput("nadir-out-of-range",
                      fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
                                  "{} cells: check nadir_col and nadir_row, at most ten times the longer side is "
                                  "allowed, and {} cells of the map to the farthest corner",
-                                 off, cols, rows, kMostCellsAcross));
+                                 off, cols, rows, kMaxCellsAcross));
 }
 
 GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
@@ -75,19 +75,19 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
   double cell_m = map.cell_m;
   while (2.0 * cell_m <= 1.01 * features.cell_m) cell_m *= 2.0;
   const double cells_across = features.cell_m * std::max(features.cells.cols(), features.cells.rows()) / cell_m;
-  if (cells_across > kMostCellsAcross) {
+  if (cells_across > kMaxCellsAcross) {
     throw InvalidInput("feature-map-too-large",
                        fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",
-                                   cells_across, kMostCellsAcross));
+                                   cells_across, kMaxCellsAcross));
   }
   require_nadir_near(features, cell_m);
   return resampled(features, cell_m);
 }
 
 void require_scale_range(double range) {
-  if (range >= 0.0 && range <= kMostScaleRange) return;
+  if (range >= 0.0 && range <= kMaxScaleRange) return;
   throw InvalidInput("scale-range-out-of-range",
-                     fmt::format("the scale range is {}: give a share from 0 to {}", range, kMostScaleRange));
+                     fmt::format("the scale range is {}: give a share from 0 to {}", range, kMaxScaleRange));
 }
 
 PoseRegion region_of(const MapView& map, const Prior& prior) {

@@ -16,7 +16,7 @@ namespace {
 using Frame = RecentFrames::Frame;
 
 constexpr std::uint64_t kMagic = 0x3130'4646'4652ULL;  // "RFFF01"
-constexpr double kMostCombinedCells = 16e6;            // more than frames make that may be kept
+constexpr double kMaxCombinedCells = 16e6;             // more than frames make that may be kept
 
 std::array<double, 2> size_m(const FeatureMap& features) {
   return {features.cell_m * features.cells.cols(), features.cell_m * features.cells.rows()};
@@ -33,14 +33,14 @@ double slip_m(const Frame& frame) {
 }
 
 bool is_near_enough(const Frame& frame) {
-  return slip_m(frame) <= RecentFrames::kMostSlipM &&
-         distance_m(frame.placed.offset) <= RecentFrames::kMostSides * longer_side_m(frame.placed.features);
+  return slip_m(frame) <= RecentFrames::kMaxSlipM &&
+         distance_m(frame.placed.offset) <= RecentFrames::kMaxSides * longer_side_m(frame.placed.features);
 }
 
 bool is_small_enough(const FeatureMap& features) {
   const CellArray& cells = features.cells;
   const double off = std::hypot(features.nadir.col - cells.cols() / 2.0, features.nadir.row - cells.rows() / 2.0);
-  return std::max(cells.cols(), cells.rows()) <= RecentFrames::kMostAcross && off <= RecentFrames::kMostAcross;
+  return std::max(cells.cols(), cells.rows()) <= RecentFrames::kMaxAcross && off <= RecentFrames::kMaxAcross;
 }
 
 /// The same place from where the vehicle is after `step`.
@@ -91,7 +91,7 @@ void put(std::vector<std::byte>& bytes, const Frame& frame) {
 Frame read_frame(Reader& reader) {
   const std::uint64_t cols = reader.word();
   const std::uint64_t rows = reader.word();
-  if (cols == 0 || rows == 0 || std::max(cols, rows) > RecentFrames::kMostAcross) refuse("have a size that none has");
+  if (cols == 0 || rows == 0 || std::max(cols, rows) > RecentFrames::kMaxAcross) refuse("have a size that none has");
   Frame frame;
   FeatureMap& features = frame.placed.features;
   features.cells = CellArray(static_cast<int>(cols), static_cast<int>(rows));
@@ -133,9 +133,9 @@ void RecentFrames::keep(const FeatureMap& features) {
   frames_.push_back({{features, {}}, 0.0, 0.0});
   std::size_t sum = 0;
   std::size_t count = 0;
-  for (auto frame = frames_.rbegin(); frame != frames_.rend() && count < kMostFrames; ++frame, ++count) {
+  for (auto frame = frames_.rbegin(); frame != frames_.rend() && count < kMaxFrames; ++frame, ++count) {
     sum += frame->placed.features.cells.cells().size();
-    if (sum > kMostCells) break;
+    if (sum > kMaxCells) break;
   }
   frames_.erase(frames_.begin(), frames_.end() - static_cast<std::ptrdiff_t>(count));
 }
@@ -146,7 +146,7 @@ FeatureMap RecentFrames::laid_around(const FeatureMap& features) const {
   for (const Frame& frame : frames_) {
     if (frame.placed.features.cell_m == features.cell_m) parts.push_back(frame.placed);
   }
-  return parts.size() == 1 ? features : combined(parts, kMostCombinedCells);
+  return parts.size() == 1 ? features : combined(parts, kMaxCombinedCells);
 }
 
 std::vector<std::byte> RecentFrames::to_bytes() const {
@@ -164,7 +164,7 @@ RecentFrames RecentFrames::of_bytes(std::span<const std::byte> bytes) {
   Reader reader(bytes);
   if (reader.word() != kMagic) refuse("are of no known version");
   const std::uint64_t count = reader.word();
-  if (count == 0 || count > kMostFrames) refuse("are more or fewer than any track has");
+  if (count == 0 || count > kMaxFrames) refuse("are more or fewer than any track has");
   for (std::uint64_t i = 0; i < count; ++i) result.frames_.push_back(read_frame(reader));
   if (!reader.at_end()) refuse("go on beyond their end");
   const double cell_m = result.frames_.front().placed.features.cell_m;

@@ -16,14 +16,14 @@ namespace roadfix {
 /// All in cells of one size.
 class RecentFrames {
  public:
-  static constexpr std::size_t kMostFrames = 8;
-  static constexpr int kMostAcross = 512;                           ///< cells; a larger frame stands for itself
-  static constexpr std::size_t kMostCells = std::size_t{1} << 19U;  ///< of all frames, observed or not
+  static constexpr std::size_t kMaxFrames = 8;
+  static constexpr int kMaxAcross = 512;                           ///< cells; a larger frame stands for itself
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 19U;  ///< of all frames, observed or not
   /// A frame closer to a kept one than this share of its shorter side shows nothing new.
   static constexpr double kApartShare = 0.25;
   /// 1 sigma by which the odometry may have lost a frame at its rim.
-  static constexpr double kMostSlipM = 20.0;
-  static constexpr double kMostSides = 1.5;  ///< of a frame, from it to the vehicle
+  static constexpr double kMaxSlipM = 20.0;
+  static constexpr double kMaxSides = 1.5;  ///< of a frame, from it to the vehicle
 
   struct Frame {
     PlacedFeatures placed;  ///< from the vehicle now

@@ -61,11 +61,11 @@ struct UsualCells {
 UsualCells usual(const CellArray& cells) {
   std::array<std::int64_t, 256> count{};
   for (const Cell cell : cells.cells()) ++count[cell];
-  const auto most = [&](int first, int last, Cell otherwise) {
+  const auto most_frequent = [&](int first, int last, Cell otherwise) {
     const auto top = std::max_element(count.begin() + first, count.begin() + last + 1);
     return *top > 0 ? static_cast<Cell>(top - count.begin()) : otherwise;
   };
-  return {most(kNoRoad, kRoad / 2, kNoRoad), most(kRoad / 2 + 1, kRoad, kRoad)};
+  return {most_frequent(kNoRoad, kRoad / 2, kNoRoad), most_frequent(kRoad / 2 + 1, kRoad, kRoad)};
 }
 
 void erase(CellArray& cells, double share, double cell_m, Cell no_road, std::mt19937_64& random) {

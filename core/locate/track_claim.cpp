@@ -6,22 +6,22 @@
 namespace roadfix {
 namespace {
 
-constexpr std::int64_t kLeastSupport = 3;
-constexpr std::int64_t kMostSupport = 5;
-const double kLeastLogOdds = std::log(100.0);
-const double kMostLogOdds = 2.0 * kLeastLogOdds;
+constexpr std::int64_t kMinSupport = 3;
+constexpr std::int64_t kMaxSupport = 5;
+const double kMinLogOdds = std::log(100.0);
+const double kMaxLogOdds = 2.0 * kMinLogOdds;
 
 }  // namespace
 
-void TrackClaim::accept() { supported = std::min(supported + 1, kMostSupport); }
+void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 
 void TrackClaim::reject() {
-  supported = std::max<std::int64_t>(0, std::min(supported, kMostSupport) - 1);
+  supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
   if (!is_supported()) compared = false;
 }
 
 void TrackClaim::weigh(double log_ratio) {
-  log_odds = std::clamp(log_odds + log_ratio, 0.0, kMostLogOdds);
+  log_odds = std::clamp(log_odds + log_ratio, 0.0, kMaxLogOdds);
   if (log_odds == 0.0) compared = false;
 }
 
@@ -31,8 +31,8 @@ void TrackClaim::confirm(double probability) {
   compared = true;
 }
 
-bool TrackClaim::is_supported() const { return supported >= kLeastSupport; }
+bool TrackClaim::is_supported() const { return supported >= kMinSupport; }
 
-bool TrackClaim::outweighs_chance() const { return log_odds >= kLeastLogOdds; }
+bool TrackClaim::outweighs_chance() const { return log_odds >= kMinLogOdds; }
 
 }  // namespace roadfix

@@ -42,7 +42,7 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features) {
   constexpr double kWiden = 4.0;
   const double cell_at_the_edge = 1.0 / footprint_reach(features);
-  constexpr double kLeastWeight = 0.02;
+  constexpr double kMinWeight = 0.02;
   std::vector<Proposal> proposals;
   for (const FixMode& mode : fix.modes) {
     const GridPose at = on_grid(mode.pose, map.zone);
@@ -57,7 +57,7 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
                          {{{along2 * s * s + across2 * c * c, shared, 0.0},
                            {shared, along2 * c * c + across2 * s * s, 0.0},
                            {0.0, 0.0, turn2}}},
-                         std::max(mode.weight, kLeastWeight),
+                         std::max(mode.weight, kMinWeight),
                          std::log(mode.scale),
                          std::sqrt(kWiden) * cell_at_the_edge});
   }

@@ -13,7 +13,7 @@ namespace {
 
 AcceptanceRegion region_of_flight(const MapView& map, const TrackSettings& settings) {
   require_scale_range(settings.vehicle.scale_range);
-  return {region_of(map, {}), settings.beyond_map_m, most_log_scale(settings.vehicle.scale_range)};
+  return {region_of(map, {}), settings.beyond_map_m, max_log_scale(settings.vehicle.scale_range)};
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ struct VehicleNoise {
   Angle odometry_turn = Angle::degrees(0.5);
   Wind wind;
   /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
-  /// that stays much the same from step to step; in [0, kMostScaleRange].
+  /// that stays much the same from step to step; in [0, kMaxScaleRange].
   double scale_range = 0.0;
 };
 
@@ -130,7 +130,7 @@ struct TrackEstimate {
   std::int64_t sequence = 0;
   std::int64_t time_us = 0;
   bool converged = false;              ///< only then the first cluster is a position to fly on
-  std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMostClusters of them
+  std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMaxClusters of them
   std::size_t cluster_count = 0;
   std::size_t particles = 0;
   std::uint64_t resets = 0;
@@ -140,7 +140,7 @@ struct TrackEstimate {
   std::optional<double> since_accepted_s;
   bool drifts = false;            ///< the odometry was found wrong, and a drift of it is learned
   std::int64_t missed_steps = 0;  ///< sequence numbers left out before this step
-  static constexpr std::size_t kMostClusters = 8;
+  static constexpr std::size_t kMaxClusters = 8;
 };
 
 struct StepResult {

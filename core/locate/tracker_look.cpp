@@ -18,14 +18,14 @@ constexpr double kMovedShare = 0.8;  // of the particles, to where it was found
 
 /// Whether a search around a belief found the vehicle, but not there.
 bool is_beside(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
-  constexpr double kLeastProbability = 0.5;
-  constexpr double kLeastShare = 0.01;  // of the best mode's weight
+  constexpr double kMinProbability = 0.5;
+  constexpr double kMinShare = 0.01;  // of the best mode's weight
   constexpr double kNearM = 15.0;
   constexpr double kSigmas = 2.0;
-  if (fix.status == FixStatus::kNoFix || fix.probability < kLeastProbability) return false;
+  if (fix.status == FixStatus::kNoFix || fix.probability < kMinProbability) return false;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
   return std::ranges::none_of(fix.modes, [&](const FixMode& mode) {
-    return mode.weight >= kLeastShare * fix.modes.front().weight &&
+    return mode.weight >= kMinShare * fix.modes.front().weight &&
            distance_m(on_grid(mode.pose, zone).position, belief.mean.position) <= near_m;
   });
 }

@@ -14,7 +14,7 @@ constexpr std::int64_t kMeasurementsBetweenSearches = 10;
 constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, where a claim waits for a search
 constexpr double kProbabilityForClaim = 0.95;         // of a search at the place that the measurements bear out
 constexpr double kInjectedShare = 0.3;
-constexpr double kMostOfAFix = 0.9;  // of the particles; the others begin anew
+constexpr double kMaxFixShare = 0.9;  // of the particles; the others begin anew
 constexpr double kRecoveryRadiusM = 3000.0;
 
 }  // namespace
@@ -31,7 +31,7 @@ bool Tracker::Step::start_by_search() {
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
-  filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMostOfAFix, 0.9),
+  filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMaxFixShare, 0.9),
                        first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
   if (fix->status == FixStatus::kFix) believe(*fix);
@@ -47,7 +47,7 @@ void Tracker::Step::search_where_due() {
 bool Tracker::Step::wants_search() const {
   // Nothing has spoken for the belief for long, be it that nothing could.
   const bool stale = since_accepted_s().value_or(0.0) >= kStaleAfterS;
-  if (filter_.doubt() > kMostDoubt || stale) return true;
+  if (filter_.doubt() > kMaxDoubt || stale) return true;
   if (state_.claim.outweighs_chance()) return !state_.claim.compared;
   return state_.claim.log_odds == 0.0 && estimate_.measurement != Measurement::kUseless;
 }
@@ -67,7 +67,7 @@ void Tracker::Step::recover() {
   } else if (fix->status != FixStatus::kFix) {
     filter_.inject(proposals_of(tracker_.map_, *fix, *features_), kInjectedShare);
   } else {
-    filter_.start_from(proposals_of(tracker_.map_, *fix, *features_), 1.0 - kMostOfAFix, tracker_.region_.poses);
+    filter_.start_from(proposals_of(tracker_.map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
     estimate_.measurement = Measurement::kSearched;
     forget_support();
     state_.searched = true;

@@ -95,7 +95,7 @@ template <MotionModel Motion>
 bool Tracker::Step::predict(const Motion& motion) {
   const double range = settings_.vehicle.scale_range;
   if (range == 0.0) return filter_.predict(motion);
-  const ScaleWalk scale_walk{seconds(), kScaleWalkShare * range, tracker_.region_.most_log_scale};
+  const ScaleWalk scale_walk{seconds(), kScaleWalkShare * range, tracker_.region_.max_log_scale};
   return filter_.predict([&](ParticleState& state, RandomStream& random) {
     motion(state, random);
     scale_walk(state, random);
@@ -196,12 +196,12 @@ void Tracker::Step::weigh(const ParticleMatches& matches, std::int64_t frame_cel
 
 /// Whether the belief lies where the map shows next to nothing, so that a frame speaks neither for nor against it.
 bool Tracker::Step::is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const {
-  constexpr double kLeastShare = 0.25;
+  constexpr double kMinShare = 0.25;
   if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return false;
   const Particles& p = filter_.particles();
   double seen = 0.0;
   for (std::size_t i = 0; i < sums.size(); ++i) seen += p.weight[i] * static_cast<double>(sums[i].n);
-  return seen < kLeastShare * static_cast<double>(frame_cells);
+  return seen < kMinShare * static_cast<double>(frame_cells);
 }
 
 void Tracker::Step::describe() {
@@ -209,7 +209,7 @@ void Tracker::Step::describe() {
   estimate_.time_us = state_.time_us;
   const std::vector<Cluster> clusters = clusters_of(filter_.particles(), settings_.clusters);
   estimate_.cluster_count = clusters.size();
-  for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMostClusters); ++i) {
+  for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {
     estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i]));
   }
   estimate_.particles = filter_.particles().size();
@@ -222,7 +222,7 @@ void Tracker::Step::describe() {
 
 bool Tracker::Step::has_converged(const Cluster& best) const {
   return best.weight >= settings_.converged_weight && best.sigma_m() <= settings_.converged_sigma_m &&
-         state_.claim.is_supported() && is_borne_out() && filter_.doubt() <= kMostDoubt &&
+         state_.claim.is_supported() && is_borne_out() && filter_.doubt() <= kMaxDoubt &&
          since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
 }
 

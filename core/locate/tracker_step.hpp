@@ -11,7 +11,7 @@
 namespace roadfix {
 
 class Tracker::Step {
-  static constexpr double kMostDoubt = 0.4;  // beyond it a place is not claimed, and is searched for
+  static constexpr double kMaxDoubt = 0.4;  // beyond it a place is not claimed, and is searched for
 
  public:
   /// Refers to all but `before`.

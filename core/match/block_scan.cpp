@@ -11,7 +11,7 @@ constexpr int kTileRows = 16;  // of blocks; with kRun columns and the footprint
 
 /// The feature map's sums where parts of the map are unobserved, for a run of blocks.
 struct PartialSums {
-  RunSums sum_least{}, sum_most{}, square_least{};
+  RunSums sum_min{}, sum_max{}, square_min{};
 };
 
 }  // namespace
@@ -75,9 +75,9 @@ void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<R
       row.needed[i] = std::numeric_limits<double>::infinity();
       if (!row.eligible[i]) continue;
       const BlockSums sums = HeadingSectors::covered(sector, row.run, i).sums;
-      row.needed[i] = cross_needed(sums, problem_.full_cells, problem_.search.least_cells, goal);
-      const double most = (kRoad - problem_.base) * sums.map.most;
-      if (row.needed[i] <= most) row.hopeless = false;
+      row.needed[i] = cross_needed(sums, problem_.full_cells, problem_.search.min_cells, goal);
+      const double reachable = (kRoad - problem_.base) * sums.map.max;
+      if (row.needed[i] <= reachable) row.hopeless = false;
     }
   }
 }
@@ -89,34 +89,34 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
   bool partial_known = false;
   PartialSums partial;
   for (std::size_t i = 0; i < BoundMap::kRun; ++i) {
-    const double most = cross[i] * turned.cross.unit;
-    if (most < known.needed[i]) continue;
+    const double cross_max = cross[i] * turned.cross.unit;
+    if (cross_max < known.needed[i]) continue;
     auto [sums, whole] = HeadingSectors::covered(headings_.sector_of(heading), known.run, i);
-    sums.cross_most = most;
+    sums.cross_max = cross_max;
     if (whole) {
       sums.cells = {turned.cells, turned.cells};
       sums.feature = {turned.sum, turned.sum};
-      sums.feature_square_least = turned.square;
+      sums.feature_square_min = turned.square;
     } else {
       if (!partial_known) {
         partial_known = true;
-        term_sums(problem_.map, turned.sum_least, col, row, partial.sum_least);
-        term_sums(problem_.map, turned.sum_most, col, row, partial.sum_most);
-        term_sums(problem_.map, turned.square_least, col, row, partial.square_least);
+        term_sums(problem_.map, turned.sum_min, col, row, partial.sum_min);
+        term_sums(problem_.map, turned.sum_max, col, row, partial.sum_max);
+        term_sums(problem_.map, turned.square_min, col, row, partial.square_min);
       }
-      sums.cells.most = std::min(sums.cells.most, turned.cells);
-      sums.feature = {partial.sum_least[i] * turned.sum_least.unit,
-                      std::min(turned.sum, partial.sum_most[i] * turned.sum_most.unit)};
-      sums.feature_square_least = partial.square_least[i] * turned.square_least.unit;
+      sums.cells.max = std::min(sums.cells.max, turned.cells);
+      sums.feature = {partial.sum_min[i] * turned.sum_min.unit,
+                      std::min(turned.sum, partial.sum_max[i] * turned.sum_max.unit)};
+      sums.feature_square_min = partial.square_min[i] * turned.square_min.unit;
     }
-    const double bound = score_bound(sums, problem_.full_cells, problem_.search.least_cells);
+    const double bound = score_bound(sums, problem_.full_cells, problem_.search.min_cells);
     if (bound <= best_) continue;
     BoundNode node{col + static_cast<std::int32_t>(i), row, static_cast<std::int32_t>(heading),
                    std::nextafter(static_cast<float>(bound), 2.0F)};
-    node.map_least = known.run.inner.value[i];
-    node.map_most = known.run.outer.value[i];
-    node.square_least = known.run.inner.square[i];
-    node.square_most = known.run.outer.square[i];
+    node.map_min = known.run.inner.value[i];
+    node.map_max = known.run.outer.value[i];
+    node.square_min = known.run.inner.square[i];
+    node.square_max = known.run.outer.square[i];
     node.whole = whole;
     nodes.push_back(node);
   }

@@ -18,7 +18,7 @@ struct BoundNode {
   std::int32_t heading = 0;  ///< index into the headings searched
   float bound = 0.0F;
   /// Of the map under the footprint, where all of it is observed; else `whole` is false.
-  std::uint32_t map_least = 0, map_most = 0, square_least = 0, square_most = 0;
+  std::uint32_t map_min = 0, map_max = 0, square_min = 0, square_max = 0;
   bool whole = false;
 };
 

@@ -47,8 +47,8 @@ std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, con
   std::vector<Part> result;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
-    part.sums.cross_most = static_cast<double>(products[i]);
-    if (score_bound(part.sums, problem_.full_cells, problem_.search.least_cells) > best_) result.push_back(part);
+    part.sums.cross_max = static_cast<double>(products[i]);
+    if (score_bound(part.sums, problem_.full_cells, problem_.search.min_cells) > best_) result.push_back(part);
   }
   return result;
 }
@@ -59,11 +59,11 @@ BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const 
   const TurnedFeatures& turned = headings_.turned(heading);
   if (node.whole) {
     BlockSums sums = sector.features;
-    sums.map = {static_cast<double>(node.map_least), static_cast<double>(node.map_most)};
-    sums.map_square = {static_cast<double>(node.square_least), static_cast<double>(node.square_most)};
+    sums.map = {static_cast<double>(node.map_min), static_cast<double>(node.map_max)};
+    sums.map_square = {static_cast<double>(node.square_min), static_cast<double>(node.square_max)};
     sums.cells = {turned.cells, turned.cells};
     sums.feature = {turned.sum, turned.sum};
-    sums.feature_square_least = turned.square;
+    sums.feature_square_min = turned.square;
     return sums;
   }
   SectorRun run;
@@ -75,9 +75,9 @@ BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const 
     term_sums(problem_.map, terms, node.col, node.row, values);
     return values[0] * terms.unit;
   };
-  sums.cells.most = std::min(sums.cells.most, turned.cells);
-  sums.feature = {at(turned.sum_least), std::min(turned.sum, at(turned.sum_most))};
-  sums.feature_square_least = at(turned.square_least);
+  sums.cells.max = std::min(sums.cells.max, turned.cells);
+  sums.feature = {at(turned.sum_min), std::min(turned.sum, at(turned.sum_max))};
+  sums.feature_square_min = at(turned.square_min);
   return sums;
 }
 
@@ -99,7 +99,7 @@ std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFo
   const LatticeIndex origin = problem_.map.geometry().origin;
   std::map<std::size_t, LatticePose> best;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double score = score_of(sums[i], full_cells, problem_.search.least_cells);
+    const double score = score_of(sums[i], full_cells, problem_.search.min_cells);
     if (score <= 0.0) continue;
     LatticePose& pose = best[owners[i]];
     if (score <= pose.score) continue;

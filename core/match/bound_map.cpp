@@ -38,16 +38,16 @@ CellArray pooled_once(const CellArray& cells, int apart) {
   return result;
 }
 
-int least_observed(const CellArray& cells) {
-  int least = kRoad;
-  for (const Cell cell : cells.cells()) least = std::min<int>(least, is_observed(cell) ? cell : kRoad);
-  return least;
+int min_observed(const CellArray& cells) {
+  int min = kRoad;
+  for (const Cell cell : cells.cells()) min = std::min<int>(min, is_observed(cell) ? cell : kRoad);
+  return min;
 }
 
-int most_observed(const CellArray& cells) {
-  int most = 0;
-  for (const Cell cell : cells.cells()) most = std::max<int>(most, is_observed(cell) ? cell : 0);
-  return most;
+int max_observed(const CellArray& cells) {
+  int max = 0;
+  for (const Cell cell : cells.cells()) max = std::max<int>(max, is_observed(cell) ? cell : 0);
+  return max;
 }
 
 }  // namespace
@@ -58,8 +58,8 @@ BoundMap::BoundMap(const RoadGrid& grid)
       block_rows_(blocks(grid.cells.rows())),
       stride_(block_cols_ + 2 * kMargin + kRun),
       all_observed_(std::ranges::all_of(grid.cells.cells(), is_observed)),
-      base_(least_observed(grid.cells)),
-      span_(std::max(1, most_observed(grid.cells) - base_)),
+      base_(min_observed(grid.cells)),
+      span_(std::max(1, max_observed(grid.cells) - base_)),
       exact_(grid.cells, 0),
       pooled2_(CellArray(), 0),
       pooled4_(CellArray(), 0) {
@@ -100,9 +100,9 @@ void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<
     }
     for (int block = 0; block < block_cols_; ++block) {
       const auto* first = sums.data() + std::ptrdiff_t{block} * kBlockCells;
-      std::uint16_t most = 0;
-      for (int i = 0; i < kWindow; ++i) most = std::max(most, first[i]);
-      widest[static_cast<std::size_t>(block)] = most;
+      std::uint16_t max = 0;
+      for (int i = 0; i < kWindow; ++i) max = std::max(max, first[i]);
+      widest[static_cast<std::size_t>(block)] = max;
     }
     // Windows overlap: a row counts for its own block row and, but for the last one, for the block row above.
     for (int block_row = std::max(0, (row - kWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;

@@ -10,7 +10,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kClasses = 64;
-constexpr std::size_t kMostTermsOfClass = 1000;  // their sum has to fit into 16 bits
+constexpr std::size_t kMaxTermsOfClass = 1000;  // their sum has to fit into 16 bits
 constexpr double kHighestSum = 2147483648.0;
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
@@ -52,8 +52,8 @@ class Remainder {
   std::vector<int> values_;
 };
 
-bool holds(const std::vector<CellOffset>& piece, int share, int level, double least) {
-  return share >= least * level * static_cast<double>(piece.size());
+bool holds(const std::vector<CellOffset>& piece, int share, int level, double min_share) {
+  return share >= min_share * level * static_cast<double>(piece.size());
 }
 
 }  // namespace
@@ -63,9 +63,9 @@ BoundTerms classified(std::vector<std::pair<double, BoundTerms::Term>> weighted,
   std::erase_if(weighted, [](const auto& term) { return term.first <= 0.0; });
   if (weighted.empty()) return result;
   std::ranges::sort(weighted, [](const auto& a, const auto& b) { return a.first < b.first; });
-  const double most = BoundMap::kFull * weighted.back().first * static_cast<double>(weighted.size());
-  result.unit = std::max(1.0, most / kHighestSum);
-  const std::size_t size = std::clamp<std::size_t>((weighted.size() + kClasses - 1) / kClasses, 1, kMostTermsOfClass);
+  const double max_sum = BoundMap::kFull * weighted.back().first * static_cast<double>(weighted.size());
+  result.unit = std::max(1.0, max_sum / kHighestSum);
+  const std::size_t size = std::clamp<std::size_t>((weighted.size() + kClasses - 1) / kClasses, 1, kMaxTermsOfClass);
   for (std::size_t first = 0; first < weighted.size(); first += size) {
     const std::size_t end = std::min(first + size, weighted.size());
     const double weight = weighted[rounding == Rounding::kUp ? end - 1 : first].first / result.unit;
@@ -98,12 +98,12 @@ LineHints find_lines(const FeatureMap& features, int base) {
   Remainder rest(features.cells, base);
   LineHints hints;
   hints.level = std::max(1, rest.highest() / 3);
-  for (const double least : {0.95, 0.85, 0.75, 0.65, 0.5, 0.4}) {
+  for (const double min_share : {0.95, 0.85, 0.75, 0.65, 0.5, 0.4}) {
     for (int row = 0; row < rest.rows(); ++row) {
       for (int col = 0; col < rest.cols(); ++col) {
         while (2 * rest.at(col, row) >= hints.level) {
           int best = -1;
-          double best_share = least;
+          double best_share = min_share;
           for (int i = 0; i < kLineDirections; ++i) {
             const auto& line = line_stencil(i);
             const double share = static_cast<double>(rest.share(line, col, row, hints.level)) /
@@ -135,7 +135,7 @@ BoundTerms::Term term_at(int col, int row, int plane) {
 /// Takes the lines from the remainder, each where it fits best near its place.
 void add_lines(const LineHints& hints, Angle heading, int nadir_col, int nadir_row, int span, Remainder& rest,
                Weighted& terms) {
-  constexpr double kLeastShare = 0.3;
+  constexpr double kMinShare = 0.3;
   const double c = cos(heading);
   const double s = sin(heading);
   for (const LineHint& hint : hints.lines) {
@@ -153,7 +153,7 @@ void add_lines(const LineHints& hints, Angle heading, int nadir_col, int nadir_r
       best = at;
       best_share = share;
     }
-    if (!holds(line, best_share, hints.level, kLeastShare)) continue;
+    if (!holds(line, best_share, hints.level, kMinShare)) continue;
     rest.take(line, best.col, best.row, hints.level);
     const double weight = static_cast<double>(line.size()) * hints.level * span / BoundMap::kFull;
     terms.emplace_back(weight, term_at(best.col - nadir_col, best.row - nadir_row, index));
@@ -244,10 +244,10 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
     cover(array, nadir_col, nadir_row);
     return;
   }
-  sum_least = classified(blocks(BoundMap::kAllObserved, 1.0, value), Rounding::kDown);
-  sum_most = classified(blocks(BoundMap::kAnyObserved, 1.0, value), Rounding::kUp);
+  sum_min = classified(blocks(BoundMap::kAllObserved, 1.0, value), Rounding::kDown);
+  sum_max = classified(blocks(BoundMap::kAnyObserved, 1.0, value), Rounding::kUp);
   const auto squared = [&](int c, int r) { return value(c, r) * value(c, r); };
-  square_least = classified(blocks(BoundMap::kAllObserved, 1.0, squared), Rounding::kDown);
+  square_min = classified(blocks(BoundMap::kAllObserved, 1.0, squared), Rounding::kDown);
 
   cover(array, nadir_col, nadir_row);
 }

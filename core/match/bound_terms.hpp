@@ -58,9 +58,9 @@ struct BlockRun {
 
 /// One heading. Values are cells as stored (0..254), map values less the map's base.
 struct TurnedFeatures {
-  double cells = 0.0, sum = 0.0, square = 0.0;   ///< over the observed cells
-  BoundTerms cross;                              ///< sum of (l - base) m', at most
-  BoundTerms sum_least, sum_most, square_least;  ///< over cells where the map is observed
+  double cells = 0.0, sum = 0.0, square = 0.0;  ///< over the observed cells
+  BoundTerms cross;                             ///< sum of (l - base) m', at most
+  BoundTerms sum_min, sum_max, square_min;      ///< over cells where the map is observed
   std::vector<bool> inner, outer;  ///< blocks covered from every position of the nadir's block, from any; side x side
   int side = 0;                    ///< odd; the nadir's block in the middle
 

@@ -22,7 +22,7 @@ struct BoundedSearch {
   std::vector<int> headings;                       ///< bins to search, ascending
   GridGeometry positions;                          ///< cells of which the centres are searched
   std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all; from several threads
-  double least_cells = 1.0;                        ///< observed in both, below which a pose has no score
+  double min_cells = 1.0;                          ///< observed in both, below which a pose has no score
   double known = 0.0;                              ///< score of the best pose known so far
   int threads = 1;
 };

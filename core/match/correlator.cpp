@@ -20,15 +20,15 @@ int best_side(const FloatPlane& plane, int patch, int overlap) {
   // Measured: what a cell of a tile costs grows with the tile's side about as this plus the side, as caches run over.
   constexpr double kCellCost = 160.0;
   int best = 0;
-  double least = 0.0;
-  for (int side = FourierTransform::kLeastSide; best == 0 || side <= longest; side += kStripCols) {
+  double best_work = 0.0;
+  for (int side = FourierTransform::kMinSide; best == 0 || side <= longest; side += kStripCols) {
     if (!FourierTransform::is_side(side) || side < patch + overlap) continue;
     const double tiles =
         double{1} * tiles_along(plane.cols, patch, overlap, side) * tiles_along(plane.rows, patch, overlap, side);
     const double work = tiles * side * side * (kCellCost + side);
-    if (best != 0 && work >= least) continue;
+    if (best != 0 && work >= best_work) continue;
     best = side;
-    least = work;
+    best_work = work;
   }
   return best;
 }

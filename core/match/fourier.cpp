@@ -28,7 +28,7 @@ void ComplexPlane::fill(float real, float imaginary) {
 
 bool FourierTransform::is_side(int side) {
   const int twos = side % 3 == 0 ? side / 3 : side;
-  return twos >= kLeastSide && (twos & (twos - 1)) == 0;
+  return twos >= kMinSide && (twos & (twos - 1)) == 0;
 }
 
 FourierTransform::FourierTransform(int side) : side_(side) {

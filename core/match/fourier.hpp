@@ -22,8 +22,8 @@ struct Filled {
 /// Thread-safe.
 class FourierTransform {
  public:
-  static constexpr int kLeastSide = 16;
-  /// A power of two, or three times one that is no less than kLeastSide.
+  static constexpr int kMinSide = 16;
+  /// A power of two, or three times one that is no less than kMinSide.
   static bool is_side(int side);
 
   /// `side`: is_side().

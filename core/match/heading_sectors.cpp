@@ -36,10 +36,10 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
   std::vector<bool> inner(static_cast<std::size_t>(side * side), true);
   std::vector<bool> outer(inner.size(), false);
   BlockSums& sums = sector.features;
-  constexpr double kMost = std::numeric_limits<double>::max();
-  sums.cells = {kMost, 0.0};
-  sums.feature = {kMost, 0.0};
-  sums.feature_square_least = kMost;
+  constexpr double kMax = std::numeric_limits<double>::max();
+  sums.cells = {kMax, 0.0};
+  sums.feature = {kMax, 0.0};
+  sums.feature_square_min = kMax;
   sums.base = problem_.base;
   sums.span = problem_.map.span();
   for (std::size_t i = first; i < last; ++i) {
@@ -56,9 +56,9 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
         outer[to] = outer[to] || (within && turned.outer[from]);
       }
     }
-    sums.cells = {std::min(sums.cells.least, turned.cells), std::max(sums.cells.most, turned.cells)};
-    sums.feature = {std::min(sums.feature.least, turned.sum), std::max(sums.feature.most, turned.sum)};
-    sums.feature_square_least = std::min(sums.feature_square_least, turned.square);
+    sums.cells = {std::min(sums.cells.min, turned.cells), std::max(sums.cells.max, turned.cells)};
+    sums.feature = {std::min(sums.feature.min, turned.sum), std::max(sums.feature.max, turned.sum)};
+    sums.feature_square_min = std::min(sums.feature_square_min, turned.square);
   }
   sector.inner = runs_of(inner, side);
   sector.outer = runs_of(outer, side);
@@ -74,9 +74,9 @@ HeadingSectors::Covered HeadingSectors::covered(const Sector& sector, const Sect
   result.whole = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
   if (!result.whole) {
     sums.cells = {static_cast<double>(run.inner.cells[block]),
-                  std::min(sums.cells.most, static_cast<double>(run.outer.cells[block]))};
-    sums.feature.least = 0.0;
-    sums.feature_square_least = 0.0;
+                  std::min(sums.cells.max, static_cast<double>(run.outer.cells[block]))};
+    sums.feature.min = 0.0;
+    sums.feature_square_min = 0.0;
   }
   return result;
 }

@@ -94,7 +94,7 @@ LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, st
   LatticePose best{cell, task.bin, 0.0, task.scale};
   const int width = 2 * cells + 1;
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    const double score = score_of(sums[k], task.features->full_cells, task.features->least_cells);
+    const double score = score_of(sums[k], task.features->full_cells, task.features->min_cells);
     if (score <= best.score) continue;
     const int index = static_cast<int>(k);
     best.cell = {cell.col + index % width - cells, cell.row + index / width - cells};
@@ -127,15 +127,15 @@ GridPose Level::pose_of(const LatticePose& pose) const {
   return {{(pose.cell.col + 0.5) * cell_m(), -(pose.cell.row + 0.5) * cell_m()}, bins.heading(bins.wrapped(pose.bin))};
 }
 
-LevelFeatures::LevelFeatures(FeatureMap features, double least_share)
+LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
     : map(std::move(features)),
       turnable(map),
       full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
-      least_cells(std::max(1.0, least_share * static_cast<double>(full_cells))) {}
+      min_cells(std::max(1.0, min_share * static_cast<double>(full_cells))) {}
 
 LevelFeatures Level::at_scale(int index) const {
   if (index == 0) return features;
-  return {resampled(source, cell_m(), scales.factor(index)), least_share};
+  return {resampled(source, cell_m(), scales.factor(index)), min_share};
 }
 
 int Level::reach(int scale) const {
@@ -205,7 +205,7 @@ Peak peak_around(const Level& level, const LatticePose& pose) {
       for (int col = 0; col < kPeakSize; ++col) {
         const auto at = static_cast<std::size_t>(row * kPeakSize + col);
         peak.scores[static_cast<std::size_t>(d)][static_cast<std::size_t>(row)][static_cast<std::size_t>(col)] =
-            score_of(sums[at], features.full_cells, features.least_cells);
+            score_of(sums[at], features.full_cells, features.min_cells);
         if (d == kPeakRadius && row == kPeakRadius && col == kPeakRadius) peak.centre = sums[at];
       }
     }

@@ -19,9 +19,9 @@ struct LevelFeatures {
   FeatureMap map;
   TurnableMap turnable;
   std::int64_t full_cells = 0;  ///< observed
-  double least_cells = 1.0;     ///< observed in both, below which a pose has no score
+  double min_cells = 1.0;       ///< observed in both, below which a pose has no score
 
-  LevelFeatures(FeatureMap features, double least_share);
+  LevelFeatures(FeatureMap features, double min_share);
 };
 
 /// One level of the pyramid.
@@ -29,7 +29,7 @@ struct Level {
   const GridReader& read;
   const FeatureMap& source;  ///< what the search was given
   LevelFeatures features;    ///< in the cells of this level, as large as it was given
-  double least_share = 0.5;
+  double min_share = 0.5;
   HeadingBins bins{2};
   Scales scales;
   int threads = 1;

@@ -6,14 +6,14 @@
 
 namespace roadfix {
 
-double most_log_scale(double range) {
+double max_log_scale(double range) {
   assert(range >= 0.0 && range < 1.0);
   return -std::log1p(-range);
 }
 
 Scales Scales::for_footprint(double radius_m, double cell_m, double range) {
   if (range == 0.0) return {};
-  const double whole = most_log_scale(range);
+  const double whole = max_log_scale(range);
   const int reach = std::max(1, static_cast<int>(std::ceil(whole * radius_m / cell_m)));
   return {whole / reach, reach};
 }

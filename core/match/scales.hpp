@@ -6,7 +6,7 @@ namespace roadfix {
 
 /// Natural logarithm of the largest factor of a scale range in [0, 1): the ground in a feature map may be smaller by
 /// that share, or larger by as much, from 1 - range to 1 / (1 - range).
-double most_log_scale(double range);
+double max_log_scale(double range);
 
 /// Factors exp(index * step) on the feature map's size, for |index| <= reach. Reach 0: the size is as it was given.
 class Scales {

@@ -65,12 +65,12 @@ struct Means {
 
 HWY_INLINE HWY_ATTR Means means_at(Floats n, Floats l, Floats ll, Floats m, Floats mm, const MeansLimits& limits) {
   const Floats one = hn::Set(kFloats, 1.0F);
-  const auto enough = hn::Ge(n, hn::Set(kFloats, limits.least_cells));
+  const auto enough = hn::Ge(n, hn::Set(kFloats, limits.min_cells));
   const Floats per_cell = hn::Div(one, hn::IfThenElse(enough, n, one));
   const Floats map_spread = hn::NegMulAdd(hn::Mul(m, m), per_cell, mm);
   const Floats feature_spread = hn::NegMulAdd(hn::Mul(l, l), per_cell, ll);
-  const Floats least = hn::Mul(n, hn::Set(kFloats, limits.least_spread));
-  const auto scored = hn::And(enough, hn::And(hn::Ge(map_spread, least), hn::Ge(feature_spread, least)));
+  const Floats min = hn::Mul(n, hn::Set(kFloats, limits.min_spread));
+  const auto scored = hn::And(enough, hn::And(hn::Ge(map_spread, min), hn::Ge(feature_spread, min)));
   const Floats spreads = hn::IfThenElse(scored, hn::Mul(map_spread, feature_spread), one);
   const Floats share = hn::Mul(n, hn::Set(kFloats, 1.0F / limits.full_cells));
   return {hn::IfThenElseZero(scored, hn::Mul(hn::Mul(m, l), per_cell)),

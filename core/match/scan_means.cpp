@@ -36,7 +36,7 @@ ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks,
   map.block_values().spectrum_of(blocks.observed, {}, room.values, room.observed_of_patch);
 }
 
-void ScanMeansPatch::at(bool half_turn, double full_cells, double least_cells, ScanMeans& means) const {
+void ScanMeansPatch::at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const {
   map_.block_observed().correlate(room_.observed_and_value, half_turn, room_.observed, room_.counts_and_values);
   map_.block_observed().correlate(room_.square, half_turn, room_.observed, room_.squares);
   map_.block_values().correlate(room_.observed_of_patch, half_turn, room_.values, room_.of_map);
@@ -45,8 +45,8 @@ void ScanMeansPatch::at(bool half_turn, double full_cells, double least_cells, S
   means.gain.resize(n.cols, n.rows);
   const BlockRow sums{n.values.data(), room_.counts_and_values.second.values.data(), room_.squares.first.values.data(),
                       room_.of_map.first.values.data(), room_.of_map.second.values.data()};
-  const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(least_cells),
-                           static_cast<float>(kLeastSpread)};
+  const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(min_cells),
+                           static_cast<float>(kMinSpread)};
   means_of_blocks(sums, limits, static_cast<int>(n.values.size()), means.correction.values.data(),
                   means.gain.values.data());
 }

@@ -60,8 +60,8 @@ class ScanMeansPatch {
  public:
   /// `blocks`: ScanMeansGrid::block_means(). All outlive this.
   ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansRoom& room);
-  /// No score where less than `least_cells` of `full_cells` are observed in both, or too little road.
-  void at(bool half_turn, double full_cells, double least_cells, ScanMeans& means) const;
+  /// No score where less than `min_cells` of `full_cells` are observed in both, or too little road.
+  void at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const;
 
  private:
   const ScanMap& map_;

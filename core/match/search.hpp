@@ -28,11 +28,11 @@ namespace roadfix {
 /// Cells of the map at `geometry.cell_m` = finest cell * 2^k; unobserved where the map has none. Thread-safe.
 using GridReader = std::function<RoadGrid(const GridGeometry& geometry)>;
 
-inline constexpr double kMostScaleRange = 0.3;
+inline constexpr double kMaxScaleRange = 0.3;
 
 struct SearchOptions {
   int max_modes = 8;
-  /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMostScaleRange].
+  /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMaxScaleRange].
   double scale_range = 0.0;
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;

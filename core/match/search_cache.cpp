@@ -53,7 +53,7 @@ void SearchCache::keep(const Key& key, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   entries_.at(key).bytes = bytes;
   bytes_ += bytes;
-  while (bytes_ > most_bytes_) {
+  while (bytes_ > max_bytes_) {
     auto oldest = entries_.end();
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
       if (entry->second.bytes > 0 && (oldest == entries_.end() || entry->second.asked < oldest->second.asked))

@@ -21,7 +21,7 @@ class SearchCache {
   /// What beside the window tells two things of one type apart.
   using Parameters = std::array<int, 3>;
 
-  explicit SearchCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit SearchCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
   template <typename T, typename Build>
@@ -51,7 +51,7 @@ class SearchCache {
   std::shared_ptr<const void> entry(const Key& key, const std::function<Value()>& build);
   void keep(const Key& key, std::size_t bytes);
 
-  const std::size_t most_bytes_;
+  const std::size_t max_bytes_;
   mutable std::mutex mutex_;
   std::map<Key, Entry> entries_;
   std::size_t bytes_ = 0;

@@ -14,7 +14,7 @@ namespace roadfix {
 template <typename Key, typename Value, typename Hash = std::hash<Key>>
 class LruCache {
  public:
-  explicit LruCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit LruCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   std::optional<Value> find(const Key& key) {
     const std::lock_guard lock(mutex_);
@@ -31,7 +31,7 @@ class LruCache {
     entries_.push_front({key, std::move(value), bytes});
     places_.emplace(key, entries_.begin());
     bytes_ += bytes;
-    while (bytes_ > most_bytes_) {
+    while (bytes_ > max_bytes_) {
       bytes_ -= entries_.back().bytes;
       places_.erase(entries_.back().key);
       entries_.pop_back();
@@ -51,7 +51,7 @@ class LruCache {
   };
 
   mutable std::mutex mutex_;
-  const std::size_t most_bytes_;
+  const std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::list<Entry> entries_;  ///< most recently used first
   std::unordered_map<Key, typename std::list<Entry>::iterator, Hash> places_;

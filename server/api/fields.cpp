@@ -123,7 +123,7 @@ int Fields::integer(const std::string& name, int min, int max) const {
 }
 
 std::optional<std::int64_t> Fields::optional_large_integer(const std::string& name, int min) const {
-  const auto value = whole_number(name, {static_cast<double>(min), kMostExact});
+  const auto value = whole_number(name, {static_cast<double>(min), kMaxExactInteger});
   return value ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt;
 }
 

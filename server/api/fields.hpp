@@ -28,7 +28,7 @@ inline constexpr Range kLatitude{-90.0, 90.0};
 inline constexpr Range kLongitude{-180.0, 180.0};
 inline constexpr Range kDegrees{-360.0, 360.0};
 /// Integers up to here are exact as JSON numbers.
-inline constexpr double kMostExact = 9007199254740992.0;
+inline constexpr double kMaxExactInteger = 9007199254740992.0;
 
 class Fields {
  public:
@@ -46,7 +46,7 @@ class Fields {
   std::optional<double> optional_number(const std::string& name, const Range& range) const;
   int integer(const std::string& name, int min, int max) const;
   std::optional<int> optional_integer(const std::string& name, int min, int max) const;
-  /// Up to kMostExact, as numbers of steps and times may be.
+  /// Up to kMaxExactInteger, as numbers of steps and times may be.
   std::int64_t large_integer(const std::string& name, int min) const;
   std::optional<std::int64_t> optional_large_integer(const std::string& name, int min) const;
   std::string text(const std::string& name) const;

@@ -16,12 +16,12 @@ namespace {
 using http::InvalidField;
 using nlohmann::json;
 
-double number_of(const json& frame, const char* name, const std::string& place, double most) {
+double number_of(const json& frame, const char* name, const std::string& place, double max) {
   const auto found = frame.find(name);
   const double value = found != frame.end() && found->is_number() ? found->get<double>() : std::nan("");
-  if (!(std::abs(value) <= most)) {
+  if (!(std::abs(value) <= max)) {
     const std::string field = fmt::format("{}.{}", place, name);
-    throw InvalidField("bad-parameter", field, fmt::format("'{}' must be a number from {} to {}", field, -most, most));
+    throw InvalidField("bad-parameter", field, fmt::format("'{}' must be a number from {} to {}", field, -max, max));
   }
   return value;
 }

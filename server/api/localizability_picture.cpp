@@ -61,8 +61,8 @@ Pixel pixel_of(double probability, TileStyle style) {
 
 std::optional<double> square_m(const MapView& map, int zoom, double footprint_m) {
   double side_m = kFinest * footprint_m;
-  const double least_m = tile_m(map, zoom) / kSquaresAcross;
-  while (side_m < least_m) side_m *= 2.0;
+  const double min_m = tile_m(map, zoom) / kSquaresAcross;
+  while (side_m < min_m) side_m *= 2.0;
   return side_m > kCoarsest * footprint_m ? std::nullopt : std::optional(side_m);
 }
 

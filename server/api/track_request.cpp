@@ -31,7 +31,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
   noise.odometry_share = fields.optional_number("odometry_share", {0.0, 1.0}).value_or(noise.odometry_share);
   noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),
                         fields.optional_number("wind_walk", {0.0, 10.0}));
-  noise.scale_range = fields.optional_number("scale_range", {0.0, kMostScaleRange}).value_or(noise.scale_range);
+  noise.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(noise.scale_range);
   return noise;
 }
 

@@ -35,11 +35,11 @@ GridBox box_around(const GridPose& pose, double width_m, double height_m, double
 
 /// What of the map lies within the box. Around a long window on a slant that is far more than the window itself.
 RoadGrid ground_within(const MapView& map, const GridBox& box, double source_m, const Limits& limits) {
-  constexpr double kMostRead = 16.0;  // cells for each that may be asked for; of a square on a slant at most 8
+  constexpr double kMaxRead = 16.0;  // cells for each that may be asked for; of a square on a slant at most 8
   const GridBox needed = intersection(box, grown(map.extent, source_m));
   const double cols = needed.width_m() / source_m;
   const double rows = needed.height_m() / source_m;
-  if (cols * rows > kMostRead * static_cast<double>(limits.cells)) {
+  if (cols * rows > kMaxRead * static_cast<double>(limits.cells)) {
     throw LimitExceeded("too-many-cells",
                         fmt::format("the window lies on a slant, and {:.0f} x {:.0f} cells of the map around it would "
                                     "have to be read: ask for parts of it",

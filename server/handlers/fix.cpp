@@ -31,7 +31,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::Content content =
       api::read_content(request, joined(query_fields(), api::flight_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
-  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMostExact});
+  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMaxExactInteger});
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::TimeLimit limit(request.deadline, request.abandoned);

@@ -24,7 +24,7 @@ namespace {
 constexpr api::Range kFootprint{20.0, 5000.0};
 constexpr double kUsualFootprintM = 400.0;
 /// Less of a footprint on the map says nothing about the place.
-constexpr double kLeastObservedShare = 0.5;
+constexpr double kMinObservedShare = 0.5;
 /// Tiles are drawn one at a time, and those that wait leave most of the service's connections to others.
 constexpr int kTilesDrawn = 1;
 constexpr int kThreadsPerWaitingTile = 4;
@@ -85,7 +85,7 @@ std::optional<double> promise(const Service& service, const http::Request& reque
     if (found.reason == kTimeLimitReason) {
       throw Interrupted("request-deadline", "the request's time ended before the tile was complete; ask again");
     }
-    kept = found.observed_share < kLeastObservedShare ? "" : fmt::format("{:.4f}", found.probability);
+    kept = found.observed_share < kMinObservedShare ? "" : fmt::format("{:.4f}", found.probability);
     service.pictures.keep(key, *kept);
   }
   return api::parse_number(*kept);
@@ -105,7 +105,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
 std::string variation(const Service& service, const Layer& layer, const std::string& path) {
   const Calibration& c = service.calibration ? *service.calibration : default_calibration();
   std::string key = fmt::format("{} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest);
-  for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.most);
+  for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.max);
   return key;
 }
 

@@ -21,8 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostHistory = 10'000;
-constexpr int kMostParticlesShown = 10'000;
+constexpr int kMaxHistory = 10'000;
+constexpr int kMaxParticlesShown = 10'000;
 
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
 
@@ -129,7 +129,7 @@ http::Response get_track(const Service& service, const http::Request& request) {
   json answer = track_json(service, track);
   const auto last = service.tracks.last_step(track.id);
   if (last) answer["last"] = api::stored_json(last->answer);
-  if (const auto count = fields.optional_integer("particles", 1, kMostParticlesShown)) {
+  if (const auto count = fields.optional_integer("particles", 1, kMaxParticlesShown)) {
     answer["particles"] = api::particles_json(service.tracks.particles(track.id, static_cast<std::size_t>(*count)));
   }
   return json_response(answer);
@@ -138,7 +138,7 @@ http::Response get_track(const Service& service, const http::Request& request) {
 http::Response get_history(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
-  const int limit = fields.optional_integer("limit", 1, kMostHistory).value_or(kMostHistory);
+  const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {
     answers.push_back(std::move(step.answer));

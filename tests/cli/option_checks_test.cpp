@@ -38,7 +38,7 @@ TEST(Milliseconds, AreNoneForNoTimeAlone) {
   EXPECT_EQ(milliseconds(0.0).count(), 0);
   EXPECT_EQ(milliseconds(1e-9).count(), 1) << "0 would be no limit";
   EXPECT_EQ(milliseconds(0.25).count(), 250);
-  EXPECT_EQ(milliseconds(kMostOfAll).count(), 2'000'000'000'000);
+  EXPECT_EQ(milliseconds(kMaxNumber).count(), 2'000'000'000'000);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr int kWindows = 16;  // along each side
 constexpr int kWindowPx = 16;
 constexpr double kTolerance = 3.0;  // of a lossy compression
 constexpr double kWorthNoting = 0.02;
-constexpr std::size_t kMostImages = 8;
+constexpr std::size_t kMaxImages = 8;
 
 struct Shares {
   double black = 0.0;
@@ -30,11 +30,11 @@ Shares shares_of(RasterFile& file, const ValueRange& range) {
     const auto y = static_cast<int>(std::int64_t{size.height - part.height} * (i / kWindows) / (kWindows - 1));
     const RasterPixels pixels = file.read({x, y, part.width, part.height}, range);
     if (cv::countNonZero(pixels.valid) < part.area()) continue;
-    double least = 0.0;
-    double most = 0.0;
-    cv::minMaxIdx(pixels.values.reshape(1), &least, &most);
-    if (most <= kTolerance) shares.black += 1.0;
-    if (least >= 255.0 - kTolerance) shares.white += 1.0;
+    double min = 0.0;
+    double max = 0.0;
+    cv::minMaxIdx(pixels.values.reshape(1), &min, &max);
+    if (max <= kTolerance) shares.black += 1.0;
+    if (min >= 255.0 - kTolerance) shares.white += 1.0;
   }
   constexpr double kAll = kWindows * kWindows;
   return {shares.black / kAll, shares.white / kAll};
@@ -44,7 +44,7 @@ Shares shares_of(RasterFile& file, const ValueRange& range) {
 
 std::optional<std::string> note_on_collar(const std::vector<std::string>& paths, const RasterOptions& options) {
   if (options.collar) return std::nullopt;
-  const std::size_t step = std::max<std::size_t>(1, (paths.size() + kMostImages - 1) / kMostImages);
+  const std::size_t step = std::max<std::size_t>(1, (paths.size() + kMaxImages - 1) / kMaxImages);
   for (std::size_t i = 0; i < paths.size(); i += step) {
     RasterFile file(paths[i], options);
     if (!file.declared_range()) continue;

@@ -39,13 +39,13 @@ ValueRange share_range(const std::vector<float>& values, bool integers) {
 
 /// What the sampled values of an image say of its range.
 struct Sampled {
-  float most = 0.0F;
+  float max = 0.0F;
   bool mask = false;  ///< of 0 and the largest value alone
 };
 
 Sampled sampled_in(const std::vector<float>& values) {
-  const float most = values.empty() ? 0.0F : *std::ranges::max_element(values);
-  return {most, std::ranges::all_of(values, [most](float v) { return v == 0.0F || v == most; })};
+  const float max = values.empty() ? 0.0F : *std::ranges::max_element(values);
+  return {max, std::ranges::all_of(values, [max](float v) { return v == 0.0F || v == max; })};
 }
 
 std::string_view kind_of_values(const RasterFile& file) {
@@ -109,8 +109,8 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     images_.push_back(std::move(image));
   }
   if (rule == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
-    const auto [least, most] = std::ranges::minmax_element(values);
-    sampled_ = {static_cast<double>(*least), static_cast<double>(*most)};
+    const auto [min, max] = std::ranges::minmax_element(values);
+    sampled_ = {static_cast<double>(*min), static_cast<double>(*max)};
   }
   const bool all_declared = std::ranges::all_of(images_, [](const Image& image) { return image.declared.has_value(); });
   if (all_declared) {
@@ -124,7 +124,7 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
                      std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
-    if (masks && image.sampled.most == 1.0F) image.range = {0.0, 1.0};
+    if (masks && image.sampled.max == 1.0F) image.range = {0.0, 1.0};
     if (!options.collar) continue;
     RasterFile file(image.path, options);
     image.collar = std::make_shared<Collar>(file, *options.collar, image.range);

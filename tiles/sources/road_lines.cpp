@@ -73,7 +73,7 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
 
 /// Of the ground that a layer says something about: as much as its widest road, or the largest cell, on either side of
 /// a straight line.
-double least_side_m(std::span<const RoadLine> lines) {
+double min_side_m(std::span<const RoadLine> lines) {
   double side_m = 2.0 * kMaxCellM;
   for (const RoadLine& line : lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
   return side_m;
@@ -85,7 +85,7 @@ void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& pa
   const std::optional<OGREnvelope> box = file.extent_of(layer.layer());
   if (!box) return;
   const std::span<const RoadLine> lines = parts.lines_of_file(layer);
-  const double side_m = least_side_m(lines);
+  const double side_m = min_side_m(lines);
   const PlanePolygon covered = box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), path);
   if (layer.classified() || tile) parts.classified.covered.push_back(covered);
   if (!layer.classified() || tile) parts.plain.covered.push_back(covered);

@@ -52,9 +52,9 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
     if (grey.channels() == 3) {
       std::array<cv::Mat, 3> bands;
       cv::split(pixels.values, bands.data());
-      const cv::Mat most = cv::max(cv::max(bands[0], bands[1]), bands[2]);
-      const cv::Mat least = cv::min(cv::min(bands[0], bands[1]), bands[2]);
-      coloured += cv::countNonZero((most - least > kStillGrey) & pixels.valid);
+      const cv::Mat max = cv::max(cv::max(bands[0], bands[1]), bands[2]);
+      const cv::Mat min = cv::min(cv::min(bands[0], bands[1]), bands[2]);
+      coloured += cv::countNonZero((max - min > kStillGrey) & pixels.valid);
       cv::cvtColor(pixels.values, grey, cv::COLOR_BGR2GRAY);
     }
     seen += cv::countNonZero(pixels.valid);
@@ -68,11 +68,11 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
         path);
   }
   if (2 * bright <= seen || bright == seen) return std::nullopt;
-  const double most = file.channels() == 3 ? 255.0 : range.high;
+  const double max = file.channels() == 3 ? 255.0 : range.high;
   return fmt::format(
       "{}: {:.0f} % of it is road. If dark stands for roads here, turn its values round (gdal_translate -scale 0 {:g} "
       "{:g} 0, with -expand gray where it has a palette) and use --replace",
-      path, 100.0 * bright / seen, most, most);
+      path, 100.0 * bright / seen, max, max);
 }
 
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {
@@ -80,14 +80,14 @@ std::optional<std::string> note_on_likely_roads(const std::string& path, const R
   if (file.channels() != 1) return std::nullopt;
   const std::vector<float> values = file.sample_values();
   if (values.empty()) return std::nullopt;
-  const auto [least, most] = std::ranges::minmax(values);
+  const auto [min, max] = std::ranges::minmax(values);
   const bool mask =
-      least < most && std::ranges::all_of(values, [&, a = least, b = most](float v) { return v == a || v == b; });
-  const bool probabilities = !file.holds_integers() && least < most && least >= 0.0F && most <= 1.0F;
+      min < max && std::ranges::all_of(values, [&, a = min, b = max](float v) { return v == a || v == b; });
+  const bool probabilities = !file.holds_integers() && min < max && min >= 0.0F && max <= 1.0F;
   if (!mask && !probabilities) return std::nullopt;
   return fmt::format(
       "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, give --as roads",
-      path, least, mask ? "and" : "to", most, mask ? "a mask of roads are" : "probabilities are");
+      path, min, mask ? "and" : "to", max, mask ? "a mask of roads are" : "probabilities are");
 }
 
 }  // namespace roadfix

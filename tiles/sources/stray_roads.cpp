@@ -11,8 +11,8 @@
 namespace roadfix {
 namespace {
 
-constexpr double kMostStray = 0.05;
-constexpr double kLeastRatio = 4.0;
+constexpr double kMaxStray = 0.05;
+constexpr double kMinRatio = 4.0;
 constexpr double kWorthNotingM2 = 10e6;
 
 double area_m2(const GridBox& box) { return box.width_m() * box.height_m(); }
@@ -96,7 +96,7 @@ std::optional<std::string> note_on_stray_roads(const RoadNetwork& network, std::
   const Core core = core_of(boxes);
   const auto strays = static_cast<double>(std::ssize(boxes) - core.boxes);
   const double ground_m2 = area_m2(ground);
-  if (strays > kMostStray * static_cast<double>(boxes.size()) || ground_m2 < kLeastRatio * area_m2(core.box) ||
+  if (strays > kMaxStray * static_cast<double>(boxes.size()) || ground_m2 < kMinRatio * area_m2(core.box) ||
       ground_m2 - area_m2(core.box) < kWorthNotingM2) {
     return std::nullopt;
   }

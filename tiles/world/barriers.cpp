@@ -38,12 +38,12 @@ Polyline across(const Plan& plan, const Course& course, Random& random) {
 /// Of some lines the one that runs the least along roads.
 Polyline clear_of(const Corridor& roads, const Plan& plan, const Course& course, Random& random) {
   Polyline best;
-  double least = 2.0;
+  double min = 2.0;
   for (int i = 0; i < kTries; ++i) {
     Polyline line = across(plan, course, random);
     const double share = roads.share_of(line);
-    if (share < least) {
-      least = share;
+    if (share < min) {
+      min = share;
       best = std::move(line);
     }
   }

@@ -176,7 +176,7 @@ std::vector<std::uint8_t> text_chunk(std::size_t characters) {
   return chunk;
 }
 
-long most_memory_kib() {
+long max_memory_kib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return usage.ru_maxrss;
@@ -189,9 +189,9 @@ TEST(DecodeImage, TextsBesideThePixelsOfAPngCostNoMemory) {
   constexpr std::ptrdiff_t kHeaderEnd = 33;
   auto padded = png;
   for (int i = 0; i < kTexts; ++i) padded.insert(padded.begin() + kHeaderEnd, text.begin(), text.end());
-  const long before = most_memory_kib();
+  const long before = max_memory_kib();
   EXPECT_EQ(cv::norm(decode_image(padded, kMany), decode_image(png, kMany), cv::NORM_INF), 0.0);
-  EXPECT_LT(most_memory_kib() - before, 50'000);
+  EXPECT_LT(max_memory_kib() - before, 50'000);
 }
 
 TEST(DecodeImage, PrintsNothingWhateverItIsGiven) {

@@ -43,11 +43,11 @@ TEST(Tiling, TilesThatShowAConstantBlendToThatConstant) {
     return cv::Mat(tile.height / 2, tile.width / 2, CV_32FC1, cv::Scalar(3.0));
   });
   ASSERT_EQ(blended.size(), cv::Size(112, 80));
-  double least = 0.0;
-  double most = 0.0;
-  cv::minMaxLoc(blended, &least, &most);
-  EXPECT_NEAR(least, 3.0, 1e-5);
-  EXPECT_NEAR(most, 3.0, 1e-5);
+  double min = 0.0;
+  double max = 0.0;
+  cv::minMaxLoc(blended, &min, &max);
+  EXPECT_NEAR(min, 3.0, 1e-5);
+  EXPECT_NEAR(max, 3.0, 1e-5);
 }
 
 TEST(Tiling, OnlyThePartOfATileAroundWantedPixelsIsRun) {

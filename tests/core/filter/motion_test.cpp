@@ -139,14 +139,14 @@ TEST(ConstantVelocityMotion, GoesOnAsItWent) {
 
 TEST(ScaleWalk, GrowsWithTheRootOfTimeAndStaysWithinItsRange) {
   double sum2 = 0.0;
-  double most = 0.0;
+  double max = 0.0;
   for (int i = 0; i < kSamples; ++i) {
     const auto index = static_cast<std::uint64_t>(i);
     sum2 += std::pow(moved(ScaleWalk{4.0, 0.01, 1.0}, {}, index).log_scale, 2.0) / kSamples;
-    most = std::max(most, std::abs(moved(ScaleWalk{4.0, 0.1, 0.15}, {}, index).log_scale));
+    max = std::max(max, std::abs(moved(ScaleWalk{4.0, 0.1, 0.15}, {}, index).log_scale));
   }
   EXPECT_NEAR(std::sqrt(sum2), 0.02, 0.0004) << "five times the error of a standard deviation of 40,000 draws";
-  EXPECT_EQ(most, 0.15);
+  EXPECT_EQ(max, 0.15);
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ TEST(LocalProjection, StaysWithinItsErrorAllOverTheZones) {
     }
   }
   EXPECT_GT(tested, 100);
-  EXPECT_LT(worst_m, LocalProjection::kMostErrorM);
-  EXPECT_LT(worst_rad, LocalProjection::kMostTurn.radians());
+  EXPECT_LT(worst_m, LocalProjection::kMaxErrorM);
+  EXPECT_LT(worst_rad, LocalProjection::kMaxTurn.radians());
 }
 
 TEST(PointProjector, GivesWhatTheZoneGivesForFewAndForManyPoints) {
@@ -54,7 +54,7 @@ TEST(PointProjector, GivesWhatTheZoneGivesForFewAndForManyPoints) {
     const LatLon point{i % 50 == 0 ? -60.0 : between(random, -34.8, -34.7), between(random, -56.3, -56.2)};
     const auto found = project(point);
     ASSERT_TRUE(found);
-    EXPECT_LT(distance_m(found->point, zone.project(point)), LocalProjection::kMostErrorM);
+    EXPECT_LT(distance_m(found->point, zone.project(point)), LocalProjection::kMaxErrorM);
   }
 }
 

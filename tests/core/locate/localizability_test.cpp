@@ -60,13 +60,13 @@ TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
 
 TEST(Localizability, LooksAtLargeFootprintsInCoarserCellsThanThoseOfAFineMap) {
   MapView view = view_of({{0.25, {2'400'000, -25'600'000}, 1, 1}, CellArray(1, 1)});
-  std::int64_t most_cells = 0;
+  std::int64_t max_cells = 0;
   view.read = [&](const GridGeometry& geometry) {
-    most_cells = std::max(most_cells, std::int64_t{geometry.cols} * geometry.rows);
+    max_cells = std::max(max_cells, std::int64_t{geometry.cols} * geometry.rows);
     return RoadGrid{geometry, CellArray(1, 1)};  // beyond its cells it is unobserved, too
   };
   EXPECT_EQ(localizability(view, centre_of(view, 5000.0)).reason, "footprint-unobserved");
-  EXPECT_LE(most_cells, 8192 * 8192 + 1);
+  EXPECT_LE(max_cells, 8192 * 8192 + 1);
 }
 
 TEST(Localizability, RefusesAFootprintOfNoSize) {

@@ -77,17 +77,17 @@ TEST(RecentFrames, AreBoundedInNumberGroundAndReach) {
     for (int i = 0; i < 60; ++i) {
       recent.keep(blank(side));
       recent.move({0.26 * side * 2.0, 0.0, Angle::degrees(i % 7 * 20.0)}, kExact);
-      EXPECT_LE(recent.frames().size(), RecentFrames::kMostFrames);
-      EXPECT_LE(cells_of(recent), RecentFrames::kMostCells);
+      EXPECT_LE(recent.frames().size(), RecentFrames::kMaxFrames);
+      EXPECT_LE(cells_of(recent), RecentFrames::kMaxCells);
       for (const auto& frame : recent.frames()) {
         EXPECT_LE(std::hypot(frame.placed.offset.forward_m, frame.placed.offset.right_m),
-                  RecentFrames::kMostSides * 2.0 * side);
+                  RecentFrames::kMaxSides * 2.0 * side);
       }
     }
     EXPECT_GE(recent.frames().size(), 2U);
   }
   RecentFrames recent;
-  recent.keep(blank(RecentFrames::kMostAcross + 1));
+  recent.keep(blank(RecentFrames::kMaxAcross + 1));
   EXPECT_TRUE(recent.frames().empty()) << "shows enough by itself";
 }
 

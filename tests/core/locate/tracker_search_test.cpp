@@ -125,7 +125,7 @@ TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
     state_ = {};
     ASSERT_TRUE(fly(tracker, flight, 12).converged);
     int rejected = 0;
-    int most_rejected = 0;
+    int max_rejected = 0;
     for (int i = 0; i < 12; ++i) {
       StepInput step = flight.step();
       GridPose off = flight.pose();
@@ -134,10 +134,10 @@ TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
       step.features = testing::observed_at(map_, off, 128, 128, 2.0, {0.3, 0.3}, random);
       const TrackEstimate estimate = advance(tracker, step);
       rejected = estimate.measurement == Measurement::kRejected ? rejected + 1 : 0;
-      most_rejected = std::max(most_rejected, rejected);
+      max_rejected = std::max(max_rejected, rejected);
       EXPECT_FALSE(estimate.converged && rejected >= 3) << slip_m << " m a step, step " << i;
     }
-    EXPECT_GE(most_rejected, 3) << slip_m << " m a step";
+    EXPECT_GE(max_rejected, 3) << slip_m << " m a step";
   }
 }
 

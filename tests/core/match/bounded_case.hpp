@@ -49,7 +49,7 @@ class BoundedCase {
     search.positions = positions_;
     const bool part = seed % 5 == 0;
     search.eligible = [part](int col, int row) { return !part || (col + 2 * row) % 7 < 4; };
-    search.least_cells = std::max(1.0, 0.5 * static_cast<double>(features_.cells.observed_count()));
+    search.min_cells = std::max(1.0, 0.5 * static_cast<double>(features_.cells.observed_count()));
   }
   BoundedCase(const BoundedCase&) = delete;
   BoundedCase& operator=(const BoundedCase&) = delete;
@@ -67,7 +67,7 @@ class BoundedCase {
     for (const int bin : search.headings) {
       const PackedFootprint footprint = footprint_at(features_, search.bins.heading(bin));
       match_sums(MapPlane(map_.cells, 2 * footprint.reach()), footprint, places, sums);
-      for (const MatchSums& s : sums) best = std::max(best, score_of(s, full, search.least_cells));
+      for (const MatchSums& s : sums) best = std::max(best, score_of(s, full, search.min_cells));
     }
     return best;
   }

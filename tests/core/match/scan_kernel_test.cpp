@@ -95,9 +95,9 @@ TEST_P(ScanRowsOnEachTarget, HaveMeansOnlyWhereEnoughIsObservedAndVaries) {
           static_cast<double>(mm[i]) - static_cast<double>(m[i]) * static_cast<double>(m[i]) / cells;
       const double feature_spread =
           static_cast<double>(ll[i]) - static_cast<double>(l[i]) * static_cast<double>(l[i]) / cells;
-      const double least = std::min(map_spread, feature_spread) - 1e-3 * cells;
-      if (cells >= 30.0 && std::abs(least) < 1e-4) continue;  // may fall either way
-      const bool scored = cells >= 30.0 && least > 0.0;
+      const double min = std::min(map_spread, feature_spread) - 1e-3 * cells;
+      if (cells >= 30.0 && std::abs(min) < 1e-4) continue;  // may fall either way
+      const bool scored = cells >= 30.0 && min > 0.0;
       const double product = static_cast<double>(m[i]) * static_cast<double>(l[i]) / cells;
       EXPECT_NEAR(correction[i], scored ? product : 0.0, 1e-5) << i << " of " << count;
       const double expected = scored ? std::sqrt(cells / 150.0 / (map_spread * feature_spread)) : 0.0;

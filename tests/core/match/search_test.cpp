@@ -258,7 +258,7 @@ TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {
 }
 
 /// Best score over every cell and heading bin of the map.
-double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double least_share) {
+double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double min_share) {
   const auto full = static_cast<std::int64_t>(features.cells.observed_count());
   double best = 0.0;
   std::vector<PlaneCell> places;
@@ -270,7 +270,7 @@ double brute_force(const RoadGrid& map, const FeatureMap& features, const Headin
     const PackedFootprint footprint = footprint_at(features, bins.heading(bin));
     match_sums(MapPlane(map.cells, 2 * footprint.reach()), footprint, places, sums);
     for (const MatchSums& s : sums) {
-      best = std::max(best, score_of(s, full, least_share * static_cast<double>(full)));
+      best = std::max(best, score_of(s, full, min_share * static_cast<double>(full)));
     }
   }
   return best;

@@ -19,9 +19,9 @@ TEST(UnitInterval, HoldsItsLowerEndAndNotItsUpper) {
 }
 
 TEST(Uniform, CoversTheRangeFromItsLowerEnd) {
-  const auto least = [] { return std::uint64_t{0}; };
+  const auto lowest = [] { return std::uint64_t{0}; };
   const auto half = [] { return std::uint64_t{1} << 63U; };
-  EXPECT_EQ(uniform(least, -3.0, 5.0), -3.0);
+  EXPECT_EQ(uniform(lowest, -3.0, 5.0), -3.0);
   EXPECT_EQ(uniform(half, -3.0, 5.0), 1.0);
 }
 

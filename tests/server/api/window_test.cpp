@@ -50,14 +50,14 @@ TEST(Window, AlongTheGridGivesTheMapsOwnCellsAndTheNearestSuchCentre) {
 TEST(Window, ReadsNoMoreOfTheMapThanALongWindowOnASlantMeets) {
   MapView map = map_of(kPicture);
   const auto read = [&](const GridBox& extent, double width_m) {
-    double most_cells = 0.0;
+    double max_cells = 0.0;
     map.extent = extent;
     map.read = [&](const GridGeometry& asked) {
-      most_cells = std::max(most_cells, double{1} * asked.cols * asked.rows);
+      max_cells = std::max(max_cells, double{1} * asked.cols * asked.rows);
       return RoadGrid{asked, CellArray(1, 1)};  // beyond its cells it is unobserved, too
     };
     cut_window(map, {at(434010.0, 4179994.0), Angle::degrees(45.0), width_m, 2.0, std::nullopt}, {});
-    return most_cells;
+    return max_cells;
   };
   EXPECT_LT(read(map.extent, 100'000.0), 200.0);
   EXPECT_EQ(roadfix::testing::code_of([&] { read(grown(map.extent, 100'000.0), 100'000.0); }), "too-many-cells");

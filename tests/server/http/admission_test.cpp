@@ -76,7 +76,7 @@ TEST(Admission, LetsThemInInTheOrderTheyCame) {
 TEST(Admission, NeverLetsMoreInThanItMay) {
   Admission admission(3, 100);
   std::atomic<int> inside = 0;
-  std::atomic<int> most = 0;
+  std::atomic<int> max = 0;
   {
     std::vector<std::jthread> threads;
     const std::array tickets{admission.enter(Clock::now() + 10s), admission.enter(Clock::now() + 10s),
@@ -85,8 +85,8 @@ TEST(Admission, NeverLetsMoreInThanItMay) {
       threads.emplace_back([&] {
         const auto ticket = admission.enter(Clock::now() + 60s);
         const int now = ++inside;
-        int seen = most;
-        while (now > seen && !most.compare_exchange_weak(seen, now)) {
+        int seen = max;
+        while (now > seen && !max.compare_exchange_weak(seen, now)) {
         }
         std::this_thread::sleep_for(1ms);
         --inside;
@@ -95,8 +95,8 @@ TEST(Admission, NeverLetsMoreInThanItMay) {
     wait_for([&] { return admission.waiting() == 24; });
     EXPECT_EQ(admission.running(), 3);
   }
-  EXPECT_GE(most, 1);
-  EXPECT_LE(most, 3);
+  EXPECT_GE(max, 1);
+  EXPECT_LE(max, 3);
   EXPECT_EQ(admission.running(), 0);
 }
 

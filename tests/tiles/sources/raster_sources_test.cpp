@@ -223,13 +223,13 @@ TEST_F(RoadRaster, MasksOfAnyRangeCarryTheCertaintyOfDrawnRoads) {
 }
 
 TEST_F(RoadRaster, MasksOfZeroAndOneKeepTheirRangeBesideOthersButNotBesideGradedShares) {
-  const auto west_of_both = [&](double least, double most) {
+  const auto west_of_both = [&](double min, double max) {
     const auto raster = [&](const char* name, double west_m, double elsewhere, double road) {
       return write_raster(folder / name, {.transform = {{west_m, 1.0, 0.0, 4200064.0, 0.0, -1.0}}},
                           [=](int, int col, int) { return col < 31 ? road : elsewhere; });
     };
     const std::string small = raster("small.tif", 400000.0, 0.0, 1.0);
-    const std::string large = raster("large.tif", 400064.0, least, most);
+    const std::string large = raster("large.tif", 400064.0, min, max);
     const auto source = open_road_raster({small, large}, {}, kZone, 2.0);
     const CellArray result = source->read({2.0, {200000, -2100032}, 64, 32}, 1);
     return std::pair{result.at(14, 5), result.at(46, 5)};

@@ -164,11 +164,11 @@ BilinearSource::BilinearSource(const CellArray& cells)
     : cols_(cells.cols()),
       rows_(cells.rows()),
       quads_(static_cast<std::size_t>(cols_ + 1) * static_cast<std::size_t>(rows_ + 1)) {
-  CellArray framed(cols_ + 2, rows_ + 2);
-  paste(cells, framed, 1, 1);
+  CellArray padded(cols_ + 2, rows_ + 2);
+  paste(cells, padded, 1, 1);
   for (int row = 0; row <= rows_; ++row) {
-    const Cell* above = framed.row(row).data();
-    const Cell* below = framed.row(row + 1).data();
+    const Cell* above = padded.row(row).data();
+    const Cell* below = padded.row(row + 1).data();
     std::int32_t* out = quads_.data() + static_cast<std::ptrdiff_t>(row) * (cols_ + 1);
     for (int col = 0; col <= cols_; ++col) {
       const auto quad = static_cast<std::uint32_t>(above[col]) | static_cast<std::uint32_t>(above[col + 1]) << 8U |

@@ -17,7 +17,7 @@ namespace roadfix {
 namespace {
 
 /// Variance of the observed cells; 0 when none is.
-double spread_of(const CellArray& cells) {
+double variance_of(const CellArray& cells) {
   double sum = 0.0;
   double squares = 0.0;
   double n = 0.0;
@@ -50,7 +50,7 @@ bool hopeless(const FeatureMap& features, Fix& fix) {
         ground_m2, kMinGroundM2);
     return true;
   }
-  if (spread_of(features.cells) < kMinSpread) {
+  if (variance_of(features.cells) < kMinVariance) {
     fix.reason = "too-few-roads";
     fix.explanation = "the feature map shows hardly any road, or road everywhere: there is nothing to match";
     return true;

@@ -29,9 +29,9 @@ class BoundMap {
   /// Runs of blocks are read in vectors of so many.
   static constexpr int kRun = 64;
 
-  /// Bounds hold for positions from which a footprint stays kFrame cells or more within the grid.
+  /// Bounds hold for positions from which a footprint stays kBorder cells or more within the grid.
   explicit BoundMap(const RoadGrid& grid);
-  static constexpr int kFrame = 16;
+  static constexpr int kBorder = 16;
 
   const GridGeometry& geometry() const { return geometry_; }
   /// Geometry in whole blocks: block (0, 0) is the north-western one; its cells start at geometry().origin.

@@ -15,7 +15,7 @@
 namespace roadfix {
 
 struct BoundedSearch {
-  /// Covers `positions` with the footprint's reach and BoundMap::kFrame on every side.
+  /// Covers `positions` with the footprint's reach and BoundMap::kBorder on every side.
   const BoundMap* map = nullptr;
   const FeatureMap* features = nullptr;  ///< in cells of the map, not constant
   HeadingBins bins{2};

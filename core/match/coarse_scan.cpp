@@ -27,16 +27,16 @@ int widened_for_vectors(int cols) { return cols + kRowOverrun; }
 /// Planes that a thread uses again and again.
 struct ScanBuffers {
   Spectrum cross;
-  Correlator::Room room;
-  ScanMeansRoom means_room;
+  Correlator::Workspace workspace;
+  ScanMeansWorkspace means_workspace;
   std::array<ScanMeans, 2> means;  ///< of the headings as they are, and turned by half a turn
   FloatPlane correction, gain, scores;
   std::vector<int> peaks;
 
   explicit ScanBuffers(const ScanMap& map)
       : cross(map.values().side()),
-        room(map.values().side()),
-        means_room(map),
+        workspace(map.values().side()),
+        means_workspace(map),
         scores(widened_for_vectors(map.values().side()), map.values().side()) {}
 };
 
@@ -101,7 +101,7 @@ class Scan {
     if (deadline_.over()) return;
     std::unique_ptr<ScanBuffers> buffers = taken_buffers();
     const CellArray first = patch_at(bases.front());
-    const ScanMeansPatch means(map_, means_grid_.block_means(first, feature_mean_), buffers->means_room);
+    const ScanMeansPatch means(map_, means_grid_.block_means(first, feature_mean_), buffers->means_workspace);
     std::vector<Direction> directions;
     for (const bool half_turn : {false, true}) {
       Direction direction;
@@ -117,7 +117,7 @@ class Scan {
     }
     map_.values().spectrum_of(values_of(first, feature_mean_),
                               bases.size() > 1 ? values_of(patch_at(bases.back()), feature_mean_) : FloatPlane(),
-                              buffers->room, buffers->cross);
+                              buffers->workspace, buffers->cross);
     Found found;
     const float floor = current_floor();
     for (const Direction& direction : directions) {
@@ -149,7 +149,7 @@ class Scan {
 
   void scan_tile(std::size_t tile, const Direction& direction, float floor, ScanBuffers& buffers, Found& found) const {
     const Correlator::TileSums sums =
-        map_.values().correlate_tile(tile, buffers.cross, direction.half_turn, buffers.room);
+        map_.values().correlate_tile(tile, buffers.cross, direction.half_turn, buffers.workspace);
     // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
     const int shift = (direction.half_turn ? reach_ : -reach_) + Correlator::kLead;
     const auto positions = [&](int place, int count, int lead, int size) {

@@ -98,24 +98,25 @@ std::size_t Correlator::bytes() const {
 
 Spectrum Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
   Spectrum spectrum(side());
-  Room room(side());
-  spectrum_of(first, second, room, spectrum);
+  Workspace workspace(side());
+  spectrum_of(first, second, workspace, spectrum);
   return spectrum;
 }
 
-void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, Room& room, Spectrum& spectrum) const {
+void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace,
+                             Spectrum& spectrum) const {
   assert(first.cols <= patch_ && first.rows <= patch_);
   assert(second.values.empty() || !pair_);
   const Filled filled{std::max(first.cols, second.cols), std::max(first.rows, second.rows)};
-  ComplexPlane& plane = room.sums;
+  ComplexPlane& plane = workspace.sums;
   plane.clear(filled.rows);
   fill(first, 0, 0, side(), plane.re(), plane.stride());
   if (!second.values.empty()) fill(second, 0, 0, side(), plane.im(), plane.stride());
-  fourier_.forward(plane, filled, room.scratch, spectrum);
+  fourier_.forward(plane, filled, workspace.scratch, spectrum);
 }
 
 Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectrum& patch_spectrum, bool half_turn,
-                                                Room& room) const {
+                                                Workspace& workspace) const {
   const Tile& tile = tiles_[index];
   // Where a tile's cyclic sums do not wrap around.
   const int inset = half_turn ? patch_ - 1 : 0;
@@ -126,19 +127,19 @@ Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectru
   result.cols = std::min(size, sum_cols() - result.col);
   result.rows = std::min(size, sum_rows() - result.row);
   if (result.cols <= 0 || result.rows <= 0) return {};
-  result.first = room.sums.re(inset) + inset;
-  result.second = room.sums.im(inset) + inset;
+  result.first = workspace.sums.re(inset) + inset;
+  result.second = workspace.sums.im(inset) + inset;
   if (!tile.spectrum) {
     // The patches' own sums are known; one row of them stands for all.
     const float patch_first = patch_spectrum.sum_re();
     const float patch_second = patch_spectrum.sum_im();
-    std::fill_n(room.sums.re(inset), side(), tile.first * patch_first);
-    std::fill_n(room.sums.im(inset), side(), pair_ ? tile.second * patch_first : tile.first * patch_second);
+    std::fill_n(workspace.sums.re(inset), side(), tile.first * patch_first);
+    std::fill_n(workspace.sums.im(inset), side(), pair_ ? tile.second * patch_first : tile.first * patch_second);
     return result;
   }
   const Columns wanted{inset, inset + result.cols};
-  fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, room.sums, room.scratch);
-  result.stride = room.sums.stride();
+  fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, workspace.sums, workspace.scratch);
+  result.stride = workspace.sums.stride();
   result.first_scale = 1.0F / (static_cast<float>(side()) * static_cast<float>(side()));
   // The conjugate of a pair of patches is the pair with its second one negative.
   result.second_scale = pair_ || half_turn ? result.first_scale : -result.first_scale;
@@ -147,18 +148,19 @@ Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectru
 
 FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn) const {
   FloatPlanes result;
-  Room room(side());
-  correlate(patch_spectrum, half_turn, room, result);
+  Workspace workspace(side());
+  correlate(patch_spectrum, half_turn, workspace, result);
   return result;
 }
 
-void Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn, Room& room, FloatPlanes& result) const {
+void Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace,
+                           FloatPlanes& result) const {
   for (FloatPlane* plane : {&result.first, &result.second}) {
     plane->resize(sum_cols(), sum_rows());
     std::ranges::fill(plane->values, 0.0F);
   }
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, room);
+    const TileSums tile = correlate_tile(i, patch_spectrum, half_turn, workspace);
     for (int r = 0; r < tile.rows; ++r) {
       float* first = result.first.row(tile.row + r) + tile.col;
       float* second = result.second.row(tile.row + r) + tile.col;

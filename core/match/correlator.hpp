@@ -22,14 +22,14 @@ class Correlator {
   Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap = 0);
 
   /// Planes of side() that are used again and again; what they held is lost.
-  struct Room {
+  struct Workspace {
     ComplexPlane sums, scratch;
-    explicit Room(int side) : sums(side), scratch(side) {}
+    explicit Workspace(int side) : sums(side), scratch(side) {}
   };
 
   /// Of a patch, or of two where there is one plane; `second` is empty for one.
   Spectrum spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
-  void spectrum_of(const FloatPlane& first, const FloatPlane& second, Room& room, Spectrum& spectrum) const;
+  void spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace, Spectrum& spectrum) const;
 
   /// Size of the planes that correlate() returns.
   int sum_cols() const { return cols_ + 2 * kLead; }
@@ -39,7 +39,7 @@ class Correlator {
   /// patch's last cell, counted in the turned patch.
   FloatPlanes correlate(const Spectrum& patch_spectrum, bool half_turn) const;
   /// The same.
-  void correlate(const Spectrum& patch_spectrum, bool half_turn, Room& room, FloatPlanes& result) const;
+  void correlate(const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace, FloatPlanes& result) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.
   struct TileSums {
@@ -55,8 +55,8 @@ class Correlator {
   };
   int side() const { return fourier_.side(); }
   std::size_t tiles() const { return tiles_.size(); }
-  /// The result points into the room, which is of side(). Without places where the tile has none.
-  TileSums correlate_tile(std::size_t tile, const Spectrum& patch_spectrum, bool half_turn, Room& room) const;
+  /// The result points into the workspace, which is of side(). Without places where the tile has none.
+  TileSums correlate_tile(std::size_t tile, const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace) const;
 
   std::size_t bytes() const;
 

@@ -39,7 +39,7 @@ class FourierTransform {
 
  private:
   int side_;
-  std::vector<float> turns_;  ///< of each butterfly of a stage, stage by stage: see fourier_kernel.hpp
+  std::vector<float> twiddles_;  ///< of each butterfly of a stage, stage by stage: see fourier_kernel.hpp
 };
 
 }  // namespace roadfix

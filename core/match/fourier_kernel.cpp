@@ -33,8 +33,8 @@ HWY_INLINE HWY_ATTR Complex times_conjugate(Complex a, Complex b) {
   return {hn::MulAdd(a.im, b.im, hn::Mul(a.re, b.re)), hn::NegMulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
 }
 HWY_INLINE HWY_ATTR Complex times_i(Complex a) { return {hn::Neg(a.im), a.re}; }
-HWY_INLINE HWY_ATTR Complex turn_at(const float* turn) {
-  return {hn::Set(kFloats, turn[0]), hn::Set(kFloats, turn[1])};
+HWY_INLINE HWY_ATTR Complex twiddle_at(const float* twiddle) {
+  return {hn::Set(kFloats, twiddle[0]), hn::Set(kFloats, twiddle[1])};
 }
 HWY_INLINE HWY_ATTR Complex load(const float* re, const float* im) {
   return {hn::Load(kFloats, re), hn::Load(kFloats, im)};
@@ -53,8 +53,8 @@ struct Strip {
   }
 };
 
-/// The transform of three numbers; backward it is the conjugate's.
-HWY_INLINE HWY_ATTR void three(Complex a0, Complex a1, Complex a2, bool forward, Complex out[3]) {
+/// The transform of three numbers (radix 3); backward it is the conjugate's.
+HWY_INLINE HWY_ATTR void butterfly3(Complex a0, Complex a1, Complex a2, bool forward, Complex out[3]) {
   const Floats half = hn::Set(kFloats, 0.5F);
   const Floats height = hn::Set(kFloats, 0.8660254037844386F);  // sine of 60 degrees
   const Complex sum = a1 + a2;
@@ -66,8 +66,8 @@ HWY_INLINE HWY_ATTR void three(Complex a0, Complex a1, Complex a2, bool forward,
   out[2] = middle - across;
 }
 
-/// The same of four.
-HWY_INLINE HWY_ATTR void four(Complex a0, Complex a1, Complex a2, Complex a3, bool forward, Complex out[4]) {
+/// The same of four (radix 4).
+HWY_INLINE HWY_ATTR void butterfly4(Complex a0, Complex a1, Complex a2, Complex a3, bool forward, Complex out[4]) {
   const Complex even = a0 + a2;
   const Complex odd = a1 + a3;
   const Complex difference = a0 - a2;
@@ -78,27 +78,27 @@ HWY_INLINE HWY_ATTR void four(Complex a0, Complex a1, Complex a2, Complex a3, bo
   out[3] = difference - turned;
 }
 
-HWY_ATTR void forward_strip(const Strip& strip, int side, const float* turns) {
+HWY_ATTR void forward_strip(const Strip& strip, int side, const float* twiddles) {
   int length = side;
   Complex out[4];
   if (side % 3 == 0) {
     length /= 3;
-    for (int j = 0; j < length; ++j, turns += 4) {
-      three(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true, out);
+    for (int j = 0; j < length; ++j, twiddles += 4) {
+      butterfly3(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true, out);
       strip.put(j, out[0]);
       for (int k = 1; k < 3; ++k)
-        strip.put(j + k * length, times(out[k], turn_at(turns + std::ptrdiff_t{2} * (k - 1))));
+        strip.put(j + k * length, times(out[k], twiddle_at(twiddles + std::ptrdiff_t{2} * (k - 1))));
     }
   }
   for (; length >= 4; length /= 4) {
     const int quarter = length / 4;
-    for (int j = 0; j < quarter; ++j, turns += 6) {
+    for (int j = 0; j < quarter; ++j, twiddles += 6) {
       for (int row = j; row < side; row += length) {
-        four(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter), strip.at(row + 3 * quarter), true,
-             out);
+        butterfly4(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter), strip.at(row + 3 * quarter),
+                   true, out);
         strip.put(row, out[0]);
         for (int k = 1; k < 4; ++k)
-          strip.put(row + k * quarter, times(out[k], turn_at(turns + std::ptrdiff_t{2} * (k - 1))));
+          strip.put(row + k * quarter, times(out[k], twiddle_at(twiddles + std::ptrdiff_t{2} * (k - 1))));
       }
     }
   }
@@ -110,53 +110,54 @@ HWY_ATTR void forward_strip(const Strip& strip, int side, const float* turns) {
   }
 }
 
-/// Undoes the last stage, which has no turns, or the last two where the last one is of two parts: in one go, from
-/// wherever `at(row)` takes the numbers. `turns` points behind those of the stages undone.
+/// Undoes the last stage of radix 4, all twiddles of which are 1, or that of radix 2 and the one before it
+/// (`with_radix2`): in one go, from wherever `at(row)` takes the numbers. `twiddles` points behind those of the stages
+/// undone.
 template <typename At>
-HWY_INLINE HWY_ATTR void first_backward(const At& at, bool eights, const Strip& strip, int first, int last,
-                                        const float* turns) {
+HWY_INLINE HWY_ATTR void first_backward(const At& at, bool with_radix2, const Strip& strip, int first, int last,
+                                        const float* twiddles) {
   Complex out[4];
-  if (!eights) {
+  if (!with_radix2) {
     for (int row = first; row < last; row += 4) {
-      four(at(row), at(row + 1), at(row + 2), at(row + 3), false, out);
+      butterfly4(at(row), at(row + 1), at(row + 2), at(row + 3), false, out);
       for (int k = 0; k < 4; ++k) strip.put(row + k, out[k]);
     }
     return;
   }
-  const Complex turn1 = turn_at(turns - 6);
-  const Complex turn2 = turn_at(turns - 4);
-  const Complex turn3 = turn_at(turns - 2);
+  const Complex twiddle1 = twiddle_at(twiddles - 6);
+  const Complex twiddle2 = twiddle_at(twiddles - 4);
+  const Complex twiddle3 = twiddle_at(twiddles - 2);
   for (int row = first; row < last; row += 8) {
     Complex a[8];
     for (int k = 0; k < 8; ++k) a[k] = at(row + k);
-    four(a[0] + a[1], a[2] + a[3], a[4] + a[5], a[6] + a[7], false, out);
+    butterfly4(a[0] + a[1], a[2] + a[3], a[4] + a[5], a[6] + a[7], false, out);
     for (int k = 0; k < 4; ++k) strip.put(row + 2 * k, out[k]);
-    four(a[0] - a[1], times_conjugate(a[2] - a[3], turn1), times_conjugate(a[4] - a[5], turn2),
-         times_conjugate(a[6] - a[7], turn3), false, out);
+    butterfly4(a[0] - a[1], times_conjugate(a[2] - a[3], twiddle1), times_conjugate(a[4] - a[5], twiddle2),
+               times_conjugate(a[6] - a[7], twiddle3), false, out);
     for (int k = 0; k < 4; ++k) strip.put(row + 2 * k + 1, out[k]);
   }
 }
 
-/// Undoes a stage of four parts for the rows [first, last).
-HWY_INLINE HWY_ATTR void fours_backward(const Strip& strip, int length, int first, int last, const float* turn) {
+/// Undoes a stage of radix 4 for the rows [first, last).
+HWY_INLINE HWY_ATTR void radix4_backward(const Strip& strip, int length, int first, int last, const float* twiddle) {
   const int quarter = length / 4;
   Complex out[4];
-  for (int j = first; j < first + quarter; ++j, turn += 6) {
-    const Complex turn1 = turn_at(turn);
-    const Complex turn2 = turn_at(turn + 2);
-    const Complex turn3 = turn_at(turn + 4);
+  for (int j = first; j < first + quarter; ++j, twiddle += 6) {
+    const Complex twiddle1 = twiddle_at(twiddle);
+    const Complex twiddle2 = twiddle_at(twiddle + 2);
+    const Complex twiddle3 = twiddle_at(twiddle + 4);
     for (int row = j; row < last; row += length) {
-      four(strip.at(row), times_conjugate(strip.at(row + quarter), turn1),
-           times_conjugate(strip.at(row + 2 * quarter), turn2), times_conjugate(strip.at(row + 3 * quarter), turn3),
-           false, out);
+      butterfly4(strip.at(row), times_conjugate(strip.at(row + quarter), twiddle1),
+                 times_conjugate(strip.at(row + 2 * quarter), twiddle2),
+                 times_conjugate(strip.at(row + 3 * quarter), twiddle3), false, out);
       for (int k = 0; k < 4; ++k) strip.put(row + k * quarter, out[k]);
     }
   }
 }
 
-/// The stages of forward_strip() undone, last one first; `turns` points behind the last ones.
+/// The stages of forward_strip() undone, last one first; `twiddles` points behind the last ones.
 template <typename At>
-HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int side, const float* turns) {
+HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int side, const float* twiddles) {
   const int whole = side % 3 == 0 ? side / 3 : side;
   int twos = whole;
   while (twos > 2) twos /= 4;
@@ -164,26 +165,26 @@ HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int si
   // What the first cache holds goes through all stages that it can.
   int block = shortest;
   while (block * 4 <= std::min(kCachedRows, whole)) block *= 4;
-  const float* turn = turns;
+  const float* twiddle = twiddles;
   for (int first = 0; first < side; first += block) {
-    turn = turns;
-    first_backward(at, twos == 2, strip, first, first + block, turn);
-    turn -= twos == 2 ? 12 : 6;
+    twiddle = twiddles;
+    first_backward(at, twos == 2, strip, first, first + block, twiddle);
+    twiddle -= twos == 2 ? 12 : 6;
     for (int length = 4 * shortest; length <= block; length *= 4) {
-      turn -= std::ptrdiff_t{6} * (length / 4);
-      fours_backward(strip, length, first, first + block, turn);
+      twiddle -= std::ptrdiff_t{6} * (length / 4);
+      radix4_backward(strip, length, first, first + block, twiddle);
     }
   }
   for (int length = 4 * block; length <= whole; length *= 4) {
-    turn -= std::ptrdiff_t{6} * (length / 4);
-    fours_backward(strip, length, 0, side, turn);
+    twiddle -= std::ptrdiff_t{6} * (length / 4);
+    radix4_backward(strip, length, 0, side, twiddle);
   }
   if (whole == side) return;
-  turn -= std::ptrdiff_t{4} * whole;
+  twiddle -= std::ptrdiff_t{4} * whole;
   Complex out[3];
-  for (int j = 0; j < whole; ++j, turn += 4) {
-    three(strip.at(j), times_conjugate(strip.at(j + whole), turn_at(turn)),
-          times_conjugate(strip.at(j + 2 * whole), turn_at(turn + 2)), false, out);
+  for (int j = 0; j < whole; ++j, twiddle += 4) {
+    butterfly3(strip.at(j), times_conjugate(strip.at(j + whole), twiddle_at(twiddle)),
+               times_conjugate(strip.at(j + 2 * whole), twiddle_at(twiddle + 2)), false, out);
     for (int k = 0; k < 3; ++k) strip.put(j + k * whole, out[k]);
   }
 }
@@ -226,7 +227,7 @@ HWY_INLINE HWY_ATTR void copy_rows(const ComplexPlane& from, int col, int filled
   for (int row = filled_rows; row < side; ++row) to.put(row, {hn::Zero(kFloats), hn::Zero(kFloats)});
 }
 
-HWY_ATTR void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* turns,
+HWY_ATTR void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* twiddles,
                       Spectrum& spectrum) {
   const int lanes = static_cast<int>(hn::Lanes(kFloats));
   const int side = plane.side();
@@ -239,14 +240,14 @@ HWY_ATTR void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& sc
   for (; filled_cols < filled.cols; filled_cols += lanes) {
     const Strip strip = strip_at(0);
     copy_rows(plane, filled_cols, filled.rows, strip);
-    forward_strip(strip, side, turns);
+    forward_strip(strip, side, twiddles);
     transpose(strip.re, strip.stride, 0, side, lanes, scratch.re(filled_cols), stride);
     transpose(strip.im, strip.stride, 0, side, lanes, scratch.im(filled_cols), stride);
   }
   for (int col = 0; col < side; col += lanes) {
     const Strip strip = strip_at(col);
     copy_rows(scratch, col, filled_cols, strip);
-    forward_strip(strip, side, turns);
+    forward_strip(strip, side, twiddles);
   }
 }
 
@@ -265,7 +266,7 @@ struct ProductStrip {
 };
 
 template <bool kConjugate>
-HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* turns, Columns wanted, ComplexPlane& sums,
+HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* twiddles, Columns wanted, ComplexPlane& sums,
                        ComplexPlane& scratch) {
   const int lanes = static_cast<int>(hn::Lanes(kFloats));
   const int side = a.side();
@@ -276,22 +277,22 @@ HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* turns,
   for (int col = 0; col < side; col += lanes) {
     const ProductStrip<kConjugate> product{a.strip(col / kStripCols) + col % kStripCols,
                                            b.strip(col / kStripCols) + col % kStripCols};
-    backward_strip(product, strip, side, turns);
+    backward_strip(product, strip, side, twiddles);
     transpose(strip.re, lanes, first, last, lanes, sums.re(col), sums.stride());
     transpose(strip.im, lanes, first, last, lanes, sums.im(col), sums.stride());
   }
   for (int col = first; col < last; col += lanes) {
     const Strip rows{sums.re() + col, sums.im() + col, sums.stride()};
-    backward_strip([&](int row) HWY_ATTR { return rows.at(row); }, rows, side, turns);
+    backward_strip([&](int row) HWY_ATTR { return rows.at(row); }, rows, side, twiddles);
   }
 }
 
-HWY_ATTR void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* turns,
+HWY_ATTR void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* twiddles,
                                   Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
   if (conjugate) {
-    backward<true>(a, b, turns, wanted, sums, scratch);
+    backward<true>(a, b, twiddles, wanted, sums, scratch);
   } else {
-    backward<false>(a, b, turns, wanted, sums, scratch);
+    backward<false>(a, b, twiddles, wanted, sums, scratch);
   }
 }
 
@@ -306,14 +307,14 @@ namespace roadfix {
 HWY_EXPORT(forward);
 HWY_EXPORT(backward_of_product);
 
-void forward_transform(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* turns,
+void forward_transform(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, const float* twiddles,
                        Spectrum& spectrum) {
-  HWY_DYNAMIC_DISPATCH(forward)(plane, filled, scratch, turns, spectrum);
+  HWY_DYNAMIC_DISPATCH(forward)(plane, filled, scratch, twiddles, spectrum);
 }
 
-void backward_transform_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* turns,
+void backward_transform_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* twiddles,
                                    Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
-  HWY_DYNAMIC_DISPATCH(backward_of_product)(a, b, conjugate, turns, wanted, sums, scratch);
+  HWY_DYNAMIC_DISPATCH(backward_of_product)(a, b, conjugate, twiddles, wanted, sums, scratch);
 }
 
 }  // namespace roadfix

@@ -20,7 +20,7 @@ namespace {
 /// The ground around a pose, wide enough for the footprint at the poses up to `cells` away.
 GridGeometry window_around(const Level& level, const LatticePose& pose, int cells) {
   const int reach = level.reach(std::min(pose.scale + 1, level.scales.reach())) + cells;
-  return framed({level.cell_m(), pose.cell, 1, 1}, reach);
+  return padded({level.cell_m(), pose.cell, 1, 1}, reach);
 }
 
 std::int64_t cells_of(const GridGeometry& window) { return std::int64_t{window.cols} * window.rows; }
@@ -143,7 +143,7 @@ int Level::reach(int scale) const {
   return scale == 0 ? reach : static_cast<int>(std::ceil(scales.factor(scale) * reach)) + 1;
 }
 
-GridGeometry framed(const GridGeometry& geometry, int cells) {
+GridGeometry padded(const GridGeometry& geometry, int cells) {
   return {geometry.cell_m,
           {geometry.origin.col - cells, geometry.origin.row - cells},
           geometry.cols + 2 * cells,

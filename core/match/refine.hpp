@@ -42,7 +42,7 @@ struct Level {
 };
 
 /// So many cells more on every side.
-GridGeometry framed(const GridGeometry& geometry, int cells);
+GridGeometry padded(const GridGeometry& geometry, int cells);
 
 /// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it. False if
 /// time was over before: then they are left as they were.

@@ -69,7 +69,7 @@ HWY_INLINE HWY_ATTR Means means_at(Floats n, Floats l, Floats ll, Floats m, Floa
   const Floats per_cell = hn::Div(one, hn::IfThenElse(enough, n, one));
   const Floats map_spread = hn::NegMulAdd(hn::Mul(m, m), per_cell, mm);
   const Floats feature_spread = hn::NegMulAdd(hn::Mul(l, l), per_cell, ll);
-  const Floats min = hn::Mul(n, hn::Set(kFloats, limits.min_spread));
+  const Floats min = hn::Mul(n, hn::Set(kFloats, limits.min_variance));
   const auto scored = hn::And(enough, hn::And(hn::Ge(map_spread, min), hn::Ge(feature_spread, min)));
   const Floats spreads = hn::IfThenElse(scored, hn::Mul(map_spread, feature_spread), one);
   const Floats share = hn::Mul(n, hn::Set(kFloats, 1.0F / limits.full_cells));

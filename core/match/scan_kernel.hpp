@@ -37,12 +37,12 @@ RowTotals summarize_row(const float* above, const float* row, const float* below
 struct BlockRow {
   const float *n, *l, *ll, *m, *mm;
 };
-/// Where fewer than min_cells of full_cells are observed, or the variance is less than min_spread, there is no
+/// Where fewer than min_cells of full_cells are observed, or the variance is less than min_variance, there is no
 /// score.
 struct MeansLimits {
   float full_cells = 1.0F;
   float min_cells = 1.0F;
-  float min_spread = 0.0F;
+  float min_variance = 0.0F;
 };
 /// correction = m l / n, gain = sqrt(n / full_cells / ((mm - m m / n) (ll - l l / n))); both 0 where there is no score.
 /// Nothing is read or written beyond `count`.

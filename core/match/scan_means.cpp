@@ -29,24 +29,26 @@ BlockSumPlanes ScanMeansGrid::block_means(const CellArray& cells, double mean) c
   return sums;
 }
 
-ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansRoom& room)
-    : map_(map), room_(room) {
-  map.block_observed().spectrum_of(blocks.observed, blocks.value, room.observed, room.observed_and_value);
-  map.block_observed().spectrum_of(blocks.square, {}, room.observed, room.square);
-  map.block_values().spectrum_of(blocks.observed, {}, room.values, room.observed_of_patch);
+ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansWorkspace& workspace)
+    : map_(map), workspace_(workspace) {
+  map.block_observed().spectrum_of(blocks.observed, blocks.value, workspace.observed, workspace.observed_and_value);
+  map.block_observed().spectrum_of(blocks.square, {}, workspace.observed, workspace.square);
+  map.block_values().spectrum_of(blocks.observed, {}, workspace.values, workspace.observed_of_patch);
 }
 
 void ScanMeansPatch::at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const {
-  map_.block_observed().correlate(room_.observed_and_value, half_turn, room_.observed, room_.counts_and_values);
-  map_.block_observed().correlate(room_.square, half_turn, room_.observed, room_.squares);
-  map_.block_values().correlate(room_.observed_of_patch, half_turn, room_.values, room_.of_map);
-  const FloatPlane& n = room_.counts_and_values.first;
+  map_.block_observed().correlate(workspace_.observed_and_value, half_turn, workspace_.observed,
+                                  workspace_.counts_and_values);
+  map_.block_observed().correlate(workspace_.square, half_turn, workspace_.observed, workspace_.squares);
+  map_.block_values().correlate(workspace_.observed_of_patch, half_turn, workspace_.values, workspace_.of_map);
+  const FloatPlane& n = workspace_.counts_and_values.first;
   means.correction.resize(n.cols, n.rows);
   means.gain.resize(n.cols, n.rows);
-  const BlockRow sums{n.values.data(), room_.counts_and_values.second.values.data(), room_.squares.first.values.data(),
-                      room_.of_map.first.values.data(), room_.of_map.second.values.data()};
+  const BlockRow sums{n.values.data(), workspace_.counts_and_values.second.values.data(),
+                      workspace_.squares.first.values.data(), workspace_.of_map.first.values.data(),
+                      workspace_.of_map.second.values.data()};
   const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(min_cells),
-                           static_cast<float>(kMinSpread)};
+                           static_cast<float>(kMinVariance)};
   means_of_blocks(sums, limits, static_cast<int>(n.values.size()), means.correction.values.data(),
                   means.gain.values.data());
 }

@@ -43,11 +43,11 @@ class ScanMeansGrid {
 };
 
 /// What a thread uses again and again for means.
-struct ScanMeansRoom {
-  Correlator::Room observed, values;
+struct ScanMeansWorkspace {
+  Correlator::Workspace observed, values;
   Spectrum observed_and_value, square, observed_of_patch;
   FloatPlanes counts_and_values, squares, of_map;
-  explicit ScanMeansRoom(const ScanMap& map)
+  explicit ScanMeansWorkspace(const ScanMap& map)
       : observed(map.block_observed().side()),
         values(map.block_values().side()),
         observed_and_value(observed.sums.side()),
@@ -59,13 +59,13 @@ struct ScanMeansRoom {
 class ScanMeansPatch {
  public:
   /// `blocks`: ScanMeansGrid::block_means(). All outlive this.
-  ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansRoom& room);
+  ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansWorkspace& workspace);
   /// No score where less than `min_cells` of `full_cells` are observed in both, or too little road.
   void at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const;
 
  private:
   const ScanMap& map_;
-  ScanMeansRoom& room_;
+  ScanMeansWorkspace& workspace_;
 };
 
 }  // namespace roadfix

@@ -60,8 +60,8 @@ class SearchCache {
 
 /// From the cache, or without one just built.
 template <typename T, typename Build>
-std::shared_ptr<const T> kept_or_built(const std::shared_ptr<SearchCache>& cache, const GridGeometry& window,
-                                       const SearchCache::Parameters& parameters, Build build) {
+std::shared_ptr<const T> get_or_build(const std::shared_ptr<SearchCache>& cache, const GridGeometry& window,
+                                      const SearchCache::Parameters& parameters, Build build) {
   if (!cache) return std::make_shared<const T>(build());
   return cache->get<T>(window, parameters, build);
 }

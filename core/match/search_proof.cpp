@@ -46,10 +46,10 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const Level& level = levels.at(levels.proof_level());
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
   const int largest = level.scales.reach();
-  const GridGeometry window = framed(bounded.positions, level.reach(largest) + BoundMap::kFrame);
+  const GridGeometry window = padded(bounded.positions, level.reach(largest) + BoundMap::kBorder);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  const auto map = kept_or_built<BoundMap>(options.cache, window, {levels.proof_level()},
-                                           [&] { return BoundMap(level.read(window)); });
+  const auto map = get_or_build<BoundMap>(options.cache, window, {levels.proof_level()},
+                                          [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();
   const Deadline deadline = end_of_proof(options);
   SearchProof proof{level.cell_m(), static_cast<int>(bounded.headings.size()), 2 * largest + 1, 0.0, 0.0, true, 0.0};

@@ -63,11 +63,11 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   const int largest = coarse.scales.reach();
   const int reach = coarse.reach(largest);
   const GridGeometry& positions = asked.positions;
-  const GridGeometry window = framed(positions, reach);
+  const GridGeometry window = padded(positions, reach);
   const int block = scan_block(coarse.features.map);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  const auto map = kept_or_built<ScanMap>(options_.cache, window, {reach, block, levels_.coarsest()},
-                                          [&] { return ScanMap(coarse.read(window), reach, block); });
+  const auto map = get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.coarsest()},
+                                         [&] { return ScanMap(coarse.read(window), reach, block); });
   const Deadline end = deadline.after(kScanTimeShare);
   std::vector<LatticePose> inside;
   std::vector<LatticePose> outside;

@@ -25,7 +25,7 @@ class LruCache {
   }
 
   /// `bytes`: of all that it takes. A key that is kept already keeps its value.
-  void keep(const Key& key, Value value, std::size_t bytes) {
+  void insert(const Key& key, Value value, std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     if (places_.contains(key)) return;
     entries_.push_front({key, std::move(value), bytes});

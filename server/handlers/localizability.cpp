@@ -86,7 +86,7 @@ std::optional<double> promise(const Service& service, const http::Request& reque
       throw Interrupted("request-deadline", "the request's time ended before the tile was complete; ask again");
     }
     kept = found.observed_share < kMinObservedShare ? "" : fmt::format("{:.4f}", found.probability);
-    service.pictures.keep(key, *kept);
+    service.pictures.insert(key, *kept);
   }
   return api::parse_number(*kept);
 }

@@ -17,7 +17,7 @@ std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const 
   if (auto kept = pictures.find(key)) return *std::move(kept);
   const auto png = draw();
   std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
-  pictures.keep(key, bytes);
+  pictures.insert(key, bytes);
   return bytes;
 }
 

@@ -14,8 +14,8 @@ class PictureCache {
 
   /// Empty bytes stand for a tile that shows nothing; nullopt for one that is not kept.
   std::optional<std::string> find(const std::string& key) { return pictures_.find(key); }
-  void keep(const std::string& key, const std::string& bytes) {
-    pictures_.keep(key, bytes, 2 * key.size() + bytes.size() + kEntryBytes);
+  void insert(const std::string& key, const std::string& bytes) {
+    pictures_.insert(key, bytes, 2 * key.size() + bytes.size() + kEntryBytes);
   }
   std::size_t bytes() const { return pictures_.bytes(); }
 

@@ -29,7 +29,7 @@ class TileCache {
   Tile get(const Key& key, const Load& load) {
     if (auto kept = tiles_.find(key)) return *std::move(kept);
     Tile tile = load();
-    tiles_.keep(key, tile, cost(tile));
+    tiles_.insert(key, tile, cost(tile));
     return tile;
   }
 

@@ -35,13 +35,13 @@ class BoundedCase {
     }
     make_features(seed);
     positions_ = geometry;
-    const int reach = footprint_reach(features_) + BoundMap::kFrame;
-    RoadGrid framed = RoadGrid::unobserved({4.0,
+    const int reach = footprint_reach(features_) + BoundMap::kBorder;
+    RoadGrid padded = RoadGrid::unobserved({4.0,
                                             {geometry.origin.col - reach, geometry.origin.row - reach},
                                             geometry.cols + 2 * reach,
                                             geometry.rows + 2 * reach});
-    paste(map_.cells, framed.cells, reach, reach);
-    bound_map_ = std::make_unique<BoundMap>(framed);
+    paste(map_.cells, padded.cells, reach, reach);
+    bound_map_ = std::make_unique<BoundMap>(padded);
     search.map = bound_map_.get();
     search.features = &features_;
     search.bins = HeadingBins::for_footprint(2.0 * std::max(features_.cells.cols(), features_.cells.rows()), 4.0);

@@ -12,7 +12,7 @@ using Cache = LruCache<int, std::string>;
 TEST(LruCache, ForgetsTheLeastRecentlyUsedAndStaysWithinItsBytes) {
   Cache cache(10);
   for (int key = 0; key < 20; ++key) {
-    cache.keep(key, std::to_string(key), 2);
+    cache.insert(key, std::to_string(key), 2);
     EXPECT_EQ(cache.find(0), "0") << "used again and again";
     EXPECT_LE(cache.bytes(), 10U);
   }
@@ -23,16 +23,16 @@ TEST(LruCache, ForgetsTheLeastRecentlyUsedAndStaysWithinItsBytes) {
 
 TEST(LruCache, KeepsTheFirstValueOfAKeyAndCountsItOnce) {
   Cache cache(10);
-  cache.keep(1, "first", 5);
-  cache.keep(1, "second", 5);
+  cache.insert(1, "first", 5);
+  cache.insert(1, "second", 5);
   EXPECT_EQ(cache.find(1), "first");
   EXPECT_EQ(cache.bytes(), 5U);
 }
 
 TEST(LruCache, DoesNotKeepWhatIsLargerThanAllOfIt) {
   Cache cache(10);
-  cache.keep(1, "small", 5);
-  cache.keep(2, "large", 11);
+  cache.insert(1, "small", 5);
+  cache.insert(2, "large", 11);
   EXPECT_EQ(cache.find(2), std::nullopt);
   EXPECT_EQ(cache.bytes(), 0U) << "it made room for it first";
 }

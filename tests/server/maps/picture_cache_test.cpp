@@ -8,7 +8,7 @@ namespace {
 TEST(PictureCache, ForgetsTheLeastRecentlyUsedAndStaysWithinItsBytes) {
   PictureCache cache(10'000);
   for (int i = 0; i < 20; ++i) {
-    cache.keep("tile" + std::to_string(i), std::string(1000, 'x'));
+    cache.insert("tile" + std::to_string(i), std::string(1000, 'x'));
     EXPECT_TRUE(cache.find("tile0")) << "used again and again";
     EXPECT_LE(cache.bytes(), 10'000U);
   }
@@ -19,7 +19,7 @@ TEST(PictureCache, ForgetsTheLeastRecentlyUsedAndStaysWithinItsBytes) {
 TEST(PictureCache, KnowsTilesThatShowNothing) {
   PictureCache cache(10'000);
   EXPECT_EQ(cache.find("sea"), std::nullopt);
-  cache.keep("sea", "");
+  cache.insert("sea", "");
   EXPECT_EQ(cache.find("sea"), "");
 }
 

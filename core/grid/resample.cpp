@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/grid/feature_rotator.hpp"
 #include "core/grid/sampling.hpp"
-#include "core/grid/turnable_map.hpp"
 
 namespace roadfix {
 namespace {
@@ -116,7 +116,7 @@ FeatureMap resampled(const FeatureMap& map, double cell_m, double scale) {
   return {sampled(map.cells, placement, cols, rows), cell_m, nadir};
 }
 
-FeatureMap rotated(const FeatureMap& map, Angle heading) { return TurnableMap(map).at(heading); }
+FeatureMap rotated(const FeatureMap& map, Angle heading) { return FeatureRotator(map).rotated(heading); }
 
 CellArray quarter_turned(const CellArray& cells) {
   CellArray turned(cells.rows(), cells.cols());

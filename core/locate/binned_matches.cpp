@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/grid/feature_rotator.hpp"
 #include "core/grid/resample.hpp"
-#include "core/grid/turnable_map.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/work.hpp"
@@ -162,7 +162,7 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
   assert(bins.count() % 4 == 0);
   const int quarter = bins.count() / 4;
   const int reach = footprint_reach(features);
-  const TurnableMap turnable(features);
+  const FeatureRotator rotator(features);
   const Deadline deadline(stop, {});
   const auto same_heading = [](const BinnedPose& a, const BinnedPose& b) { return a.bin == b.bin; };
   put_in_order(poses, bins);
@@ -173,7 +173,7 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
     const Window window(map.read(geometry), worth_turning(geometry, reach, spared));
     parallel_for(static_cast<int>(families.size()), threads, [&](int task) {
       const Poses family = families[static_cast<std::size_t>(task)];
-      FeatureMap turned = turnable.at(bins.heading(family.front().bin % quarter));
+      FeatureMap turned = rotator.rotated(bins.heading(family.front().bin % quarter));
       PackedFootprint footprint(turned);
       int turns = 0;
       for (const Poses members : runs(family, same_heading)) {

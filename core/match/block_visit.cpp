@@ -9,7 +9,7 @@
 namespace roadfix {
 
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
-  const FeatureMap turned = problem_.turnable.at(problem_.heading(heading));
+  const FeatureMap turned = problem_.rotator.rotated(problem_.heading(heading));
   const PackedFootprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(heading, nodes);
   parts = surviving(std::move(parts), above, kBlockCells);

@@ -1,7 +1,7 @@
 // What the stages of a proof share: the question, and where its positions lie on the map.
 #pragma once
 
-#include "core/grid/turnable_map.hpp"
+#include "core/grid/feature_rotator.hpp"
 #include "core/match/bound_terms.hpp"
 #include "core/match/branch_and_bound.hpp"
 
@@ -10,7 +10,7 @@ namespace roadfix {
 struct BoundProblem {
   const BoundedSearch& search;
   const BoundMap& map;
-  TurnableMap turnable;
+  FeatureRotator rotator;
   int shift_col;  ///< of the positions within the map, cells
   int shift_row;
   double full_cells;
@@ -19,7 +19,7 @@ struct BoundProblem {
   explicit BoundProblem(const BoundedSearch& asked)
       : search(asked),
         map(*asked.map),
-        turnable(*asked.features),
+        rotator(*asked.features),
         shift_col(asked.positions.origin.col - map.geometry().origin.col),
         shift_row(asked.positions.origin.row - map.geometry().origin.row),
         full_cells(static_cast<double>(asked.features->cells.observed_count())),

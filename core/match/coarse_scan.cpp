@@ -8,7 +8,7 @@
 #include <mutex>
 #include <span>
 
-#include "core/grid/turnable_map.hpp"
+#include "core/grid/feature_rotator.hpp"
 #include "core/match/correlator.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/scan_kernel.hpp"
@@ -51,7 +51,7 @@ struct Found {
 class Scan {
  public:
   Scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request, const Deadline& deadline)
-      : features_(features),
+      : rotator_(features),
         request_(request),
         deadline_(deadline),
         map_(map),
@@ -132,7 +132,7 @@ class Scan {
 
   /// The footprint at a heading: a square of the full reach, so that its nadir is always the same cell.
   CellArray patch_at(int bin) const {
-    const FeatureMap turned = features_.at(request_.bins.heading(bin));
+    const FeatureMap turned = rotator_.rotated(request_.bins.heading(bin));
     CellArray square(2 * reach_ + 1, 2 * reach_ + 1);
     paste(turned.cells, square, reach_ - static_cast<int>(turned.nadir.col),
           reach_ - static_cast<int>(turned.nadir.row));
@@ -257,7 +257,7 @@ class Scan {
     return buffers;
   }
 
-  TurnableMap features_;
+  FeatureRotator rotator_;
   const ScanRequest& request_;
   const Deadline& deadline_;
   const ScanMap& map_;

@@ -116,8 +116,8 @@ PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeom
   return PackedFootprint(rotated(shifted, grid_heading));
 }
 
-PackedFootprint footprint_at(const TurnableMap& map, Angle grid_heading) {
-  return PackedFootprint(map.at(grid_heading));
+PackedFootprint footprint_at(const FeatureRotator& features, Angle grid_heading) {
+  return PackedFootprint(features.rotated(grid_heading));
 }
 
 }  // namespace roadfix

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
-#include "core/grid/turnable_map.hpp"
+#include "core/grid/feature_rotator.hpp"
 
 namespace roadfix {
 
@@ -67,6 +67,6 @@ int footprint_reach(const FeatureMap& features);
 /// component within +-0.5): exact to sub-cell by resampling.
 PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
 /// With its nadir in the middle of a cell.
-PackedFootprint footprint_at(const TurnableMap& map, Angle grid_heading);
+PackedFootprint footprint_at(const FeatureRotator& features, Angle grid_heading);
 
 }  // namespace roadfix

@@ -19,7 +19,7 @@ bool HeadingSectors::turn(const Deadline& deadline) {
       return;
     }
     const Angle heading = problem_.heading(at);
-    turned_[at].emplace(problem_.turnable.at(heading), heading, problem_.base, hints, problem_.map.span(),
+    turned_[at].emplace(problem_.rotator.rotated(heading), heading, problem_.base, hints, problem_.map.span(),
                         problem_.map.all_observed());
   });
   if (!whole) return false;

@@ -105,7 +105,7 @@ LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, st
 
 void run(RefineTask& task, const Level& level, int cells, const GroundAround& ground,
          const std::vector<LatticePose>& poses) {
-  const PackedFootprint footprint = footprint_at(task.features->turnable, level.bins.heading(task.bin));
+  const PackedFootprint footprint = footprint_at(task.features->rotator, level.bins.heading(task.bin));
   std::vector<PlaneCell> places;
   for (const std::size_t i : task.candidates) add_places_around(ground.place(i, poses[i].cell), cells, places);
   std::vector<MatchSums> sums(places.size());
@@ -129,7 +129,7 @@ GridPose Level::pose_of(const LatticePose& pose) const {
 
 LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
     : map(std::move(features)),
-      turnable(map),
+      rotator(map),
       full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
       min_cells(std::max(1.0, min_share * static_cast<double>(full_cells))) {}
 
@@ -199,7 +199,7 @@ Peak peak_around(const Level& level, const LatticePose& pose) {
   Peak peak;
   for (int d = 0; d < kPeakSize; ++d) {
     const PackedFootprint footprint =
-        footprint_at(features.turnable, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
+        footprint_at(features.rotator, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
     match_sums(plane, footprint, places, sums);
     for (int row = 0; row < kPeakSize; ++row) {
       for (int col = 0; col < kPeakSize; ++col) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/grid/turnable_map.hpp"
+#include "core/grid/feature_rotator.hpp"
 #include "core/match/correlation.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
@@ -17,7 +17,7 @@ namespace roadfix {
 /// The feature map in the cells of a level, at one scale.
 struct LevelFeatures {
   FeatureMap map;
-  TurnableMap turnable;
+  FeatureRotator rotator;
   std::int64_t full_cells = 0;  ///< observed
   double min_cells = 1.0;       ///< observed in both, below which a pose has no score
 

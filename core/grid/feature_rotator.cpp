@@ -1,4 +1,4 @@
-#include "core/grid/turnable_map.hpp"
+#include "core/grid/feature_rotator.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 
 namespace roadfix {
 
-TurnableMap::TurnableMap(const FeatureMap& map)
+FeatureRotator::FeatureRotator(const FeatureMap& map)
     : cols_(map.cells.cols()), rows_(map.cells.rows()), cell_m_(map.cell_m), nadir_(map.nadir), source_(map.cells) {}
 
-FeatureMap TurnableMap::at(Angle heading) const {
+FeatureMap FeatureRotator::rotated(Angle heading) const {
   const double c = cos(heading);
   const double s = sin(heading);
   // Farthest corner in each direction decides the size; body right = (c, s), body down = (-s, c) in (col, row).

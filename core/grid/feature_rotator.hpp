@@ -1,4 +1,4 @@
-// A feature map made ready to be turned to many headings.
+// A feature map made ready to be rotated to many headings.
 #pragma once
 
 #include "core/grid/bilinear_kernel.hpp"
@@ -7,12 +7,12 @@
 namespace roadfix {
 
 /// Thread-safe.
-class TurnableMap {
+class FeatureRotator {
  public:
-  explicit TurnableMap(const FeatureMap& map);
+  explicit FeatureRotator(const FeatureMap& map);
 
-  /// What rotated() gives.
-  FeatureMap at(Angle heading) const;
+  /// As rotated() of core/grid/resample.hpp.
+  FeatureMap rotated(Angle heading) const;
 
  private:
   double cols_, rows_;

@@ -3,8 +3,8 @@
 #include <atomic>
 #include <utility>
 
-#include "core/match/work.hpp"
 #include "core/units/error.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix::fly {
 namespace {

@@ -8,9 +8,10 @@
 
 #include "core/grid/feature_rotator.hpp"
 #include "core/grid/resample.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
-#include "core/match/work.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {
@@ -163,7 +164,6 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
   const int quarter = bins.count() / 4;
   const int reach = footprint_reach(features);
   const FeatureRotator rotator(features);
-  const Deadline deadline(stop, {});
   const auto same_heading = [](const BinnedPose& a, const BinnedPose& b) { return a.bin == b.bin; };
   put_in_order(poses, bins);
   for (const Poses block : runs(poses, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
@@ -177,7 +177,7 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
       PackedFootprint footprint(turned);
       int turns = 0;
       for (const Poses members : runs(family, same_heading)) {
-        deadline.check();
+        require_not_stopped(stop);
         const int quarters = members.front().bin / quarter;
         if (!window.turned() && turns < quarters) {
           for (; turns < quarters; ++turns) turned = quarter_turned(turned);

@@ -8,9 +8,10 @@
 #include "core/geodesy/local_projection.hpp"
 #include "core/locate/binned_matches.hpp"
 #include "core/locate/prepare.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
-#include "core/match/work.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {
@@ -57,9 +58,8 @@ void match_exactly(const MapView& map, const FeatureMap& features, std::span<con
   std::vector<GridQuery> queries;
   for_each_on_map(map, features, poses, [&](const GridQuery& query) { queries.push_back(query); });
   const int reach = footprint_reach(features) + 1;  // a nadir off its cell's centre may need one more
-  const Deadline deadline(options.stop, {});
   parallel_for(static_cast<int>(queries.size()), options.threads, [&](int i) {
-    deadline.check();
+    require_not_stopped(options.stop);
     const GridQuery& query = queries[static_cast<std::size_t>(i)];
     sums[query.index] = sums_at(map, features, query, reach);
   });

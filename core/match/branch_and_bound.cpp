@@ -10,6 +10,7 @@
 #include "core/match/block_scan.hpp"
 #include "core/match/block_visit.hpp"
 #include "core/match/heading_sectors.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {

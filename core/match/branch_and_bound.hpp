@@ -8,9 +8,9 @@
 
 #include "core/grid/feature_map.hpp"
 #include "core/match/bound_map.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
-#include "core/match/work.hpp"
 
 namespace roadfix {
 

@@ -14,6 +14,7 @@
 #include "core/match/scan_kernel.hpp"
 #include "core/match/scan_means.hpp"
 #include "core/match/scan_planes.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {

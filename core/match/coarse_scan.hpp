@@ -7,9 +7,9 @@
 
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/scan_map.hpp"
-#include "core/match/work.hpp"
 
 namespace roadfix {
 

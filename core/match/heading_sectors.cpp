@@ -4,6 +4,8 @@
 #include <atomic>
 #include <limits>
 
+#include "core/units/parallel_for.hpp"
+
 namespace roadfix {
 
 bool HeadingSectors::turn(const Deadline& deadline) {

@@ -13,6 +13,7 @@
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "core/grid/feature_rotator.hpp"
 #include "core/match/correlation.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
 #include "core/match/scales.hpp"
 #include "core/match/search.hpp"
-#include "core/match/work.hpp"
 
 namespace roadfix {
 

@@ -1,0 +1,23 @@
+#include "core/match/deadline.hpp"
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+
+void require_not_stopped(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Interrupted("search-stopped", "the search was asked to stop before it was done");
+}
+
+bool Deadline::over() const {
+  require_not_stopped(stop_);
+  return end_ && std::chrono::steady_clock::now() >= *end_;
+}
+
+Deadline Deadline::after(double share) const {
+  if (!end_) return *this;
+  const auto now = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> left = *end_ - now;
+  return {stop_, now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(share * left)};
+}
+
+}  // namespace roadfix

@@ -1,0 +1,30 @@
+// When a search has to give up: at a time, or when it is asked to.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+namespace roadfix {
+
+/// Throws Interrupted ("search-stopped") once a stop is requested.
+void require_not_stopped(const std::stop_token& stop);
+
+class Deadline {
+ public:
+  /// `end`: nullopt = no limit.
+  Deadline(std::stop_token stop, std::optional<std::chrono::steady_clock::time_point> end)
+      : stop_(std::move(stop)), end_(end) {}
+
+  /// Whether the time is over. Throws as require_not_stopped().
+  bool over() const;
+  /// A deadline after this share, in [0, 1], of the time that is left.
+  Deadline after(double share) const;
+
+ private:
+  std::stop_token stop_;
+  std::optional<std::chrono::steady_clock::time_point> end_;
+};
+
+}  // namespace roadfix

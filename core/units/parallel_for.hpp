@@ -1,0 +1,12 @@
+// A loop over several threads.
+#pragma once
+
+#include <functional>
+
+namespace roadfix {
+
+/// Calls work(i) for 0 <= i < count, in order of i, from up to `threads` threads, the caller's among them. The first
+/// exception ends the loop and is thrown here.
+void parallel_for(int count, int threads, const std::function<void(int)>& work);
+
+}  // namespace roadfix

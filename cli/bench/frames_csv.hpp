@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/locate/fix.hpp"
+#include "core/geodesy/geo_pose.hpp"
 
 namespace roadfix::bench {
 

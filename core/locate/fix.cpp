@@ -113,15 +113,6 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
 
 }  // namespace
 
-GridPose on_grid(const GeoPose& pose, const UtmZone& zone) {
-  const GridPoint at = zone.project(pose.position);
-  return {at, zone.grid_from_true(pose.heading, at)};
-}
-
-GeoPose on_earth(const GridPose& pose, const UtmZone& zone) {
-  return {zone.unproject(pose.position), zone.true_from_grid(pose.heading, pose.position).wrapped()};
-}
-
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   const PoseRegion region = region_of(map, prior);

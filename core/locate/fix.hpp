@@ -6,47 +6,17 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include "core/geodesy/geo_box.hpp"
+#include "core/geodesy/geo_pose.hpp"
 #include "core/grid/feature_map.hpp"
 #include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
-#include "core/match/correlation.hpp"
+#include "core/locate/prior.hpp"
 
 namespace roadfix {
-
-/// Position and *true* heading (clockwise from true north) as the API speaks of them.
-struct GeoPose {
-  LatLon position;
-  Angle heading;
-};
-
-/// The same on the plane of the zone, its heading from grid north.
-GridPose on_grid(const GeoPose& pose, const UtmZone& zone);
-/// And back, its heading within (-180, 180] degrees.
-GeoPose on_earth(const GridPose& pose, const UtmZone& zone);
-
-struct GeoCircle {
-  LatLon centre;
-  double radius_m = 0.0;
-};
-
-/// True headings within +- half_width of centre.
-struct HeadingRange {
-  Angle centre;
-  Angle half_width;
-};
-
-/// What is known before the search. Nothing set = the whole map and all headings; circle and box intersect.
-struct Prior {
-  std::optional<GeoCircle> circle;
-  std::optional<GeoBox> box;
-  std::optional<HeadingRange> heading;
-};
 
 struct FixOptions {
   double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it

@@ -1,4 +1,4 @@
-// The port through which localization asks for the global map. tiles/store reads a file, tests draw ASCII:
+// The port through which localization asks for the global map. tiles/view reads a file, tests draw ASCII:
 // the caller composes it, so core knows no storage.
 #pragma once
 

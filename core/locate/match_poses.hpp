@@ -5,7 +5,10 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/locate/fix.hpp"
+#include "core/geodesy/geo_pose.hpp"
+#include "core/grid/feature_map.hpp"
+#include "core/locate/map_view.hpp"
+#include "core/match/correlation.hpp"
 
 namespace roadfix {
 

@@ -1,8 +1,8 @@
-// What the outside gives, made ready for the grid of a map: feature map in its cells, prior in its plane.
+// What the outside gives of a feature map, made ready for the grid of a map.
 #pragma once
 
-#include "core/locate/fix.hpp"
-#include "core/match/search.hpp"
+#include "core/grid/feature_map.hpp"
+#include "core/locate/map_view.hpp"
 
 namespace roadfix {
 
@@ -12,8 +12,5 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
 /// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMaxScaleRange.
 void require_scale_range(double range);
-
-/// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing.
-PoseRegion region_of(const MapView& map, const Prior& prior);
 
 }  // namespace roadfix

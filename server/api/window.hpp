@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/geodesy/geo_pose.hpp"
 #include "core/grid/feature_map.hpp"
-#include "core/locate/fix.hpp"
+#include "core/locate/map_view.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/limits.hpp"
 

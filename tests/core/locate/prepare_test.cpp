@@ -10,41 +10,9 @@
 namespace roadfix {
 namespace {
 
-MapView map_of(int epsg, const GridBox& extent) {
-  return {"country", "1", UtmZone::from_epsg(epsg).value(), 16.0, extent, 0.0, {}};
-}
-
-GridBox region(const MapView& map, const GeoBox& box) {
-  Prior prior;
-  prior.box = box;
-  return region_of(map, prior).box;
-}
-
-TEST(RegionOf, TakesABoxThatReachesFarBeyondTheZone) {
-  const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
-  const MapView map = map_of(32637, city);
-  for (const GeoBox& box : {GeoBox{{36.0, 26.0}, {42.0, 45.0}}, GeoBox{{-90.0, -180.0}, {90.0, 180.0}},
-                            GeoBox{{30.0, 10.0}, {40.0, 179.0}}}) {
-    const GridBox found = region(map, box);
-    EXPECT_EQ(found.min, city.min);
-    EXPECT_EQ(found.max, city.max);
-  }
-  for (const GeoBox& box : {GeoBox{{36.0, 100.0}, {42.0, 120.0}}, GeoBox{{36.0, -140.0}, {42.0, 30.0}},
-                            GeoBox{{-40.0, 36.0}, {-30.0, 42.0}}}) {
-    EXPECT_EQ(testing::code_of([&] { region(map, box); }), "prior-outside-map");
-  }
-}
-
-TEST(RegionOf, TakesBoxesOnEitherSideOfTheAntimeridian) {
-  const MapView map = map_of(32701, {{150'000.0, 8'000'000.0}, {250'000.0, 8'010'000.0}});  // Fiji, 179.7 E to 179.4 W
-  const double antimeridian_m = map.zone.project({-18.0, 180.0}).east_m;
-  EXPECT_LT(region(map, {{-19.0, 179.0}, {-17.0, 180.0}}).max.east_m, antimeridian_m + 1000.0);
-  EXPECT_GT(region(map, {{-19.0, -180.0}, {-17.0, -179.0}}).min.east_m, antimeridian_m - 1000.0);
-}
-
 TEST(InCellsOf, TakesANadirAsFarOffAsATelephotoCameraLooksAndNoFarther) {
-  MapView map = map_of(32637, {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}});
-  map.cell_m = 0.25;
+  const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
+  const MapView map{"city", "1", UtmZone::from_epsg(32637).value(), 0.25, city, 0.0, {}};
   const auto code = [&](int side, double nadir_row) {
     FeatureMap features = FeatureMap::centred(CellArray(side, side, kNoRoad), map.cell_m);
     features.nadir.row = nadir_row;

@@ -1,0 +1,66 @@
+#include "core/locate/prior.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
+  if (!std::isfinite(circle.radius_m) || circle.radius_m <= 0.0) {
+    throw InvalidInput("prior-radius-out-of-range",
+                       fmt::format("the radius of the prior is {} m: give metres above 0", circle.radius_m));
+  }
+  return {zone.project(circle.centre), circle.radius_m};
+}
+
+GridBox box_in(const MapView& map, const GeoBox& box) {
+  if (box.empty()) {
+    throw InvalidInput(
+        "prior-box-empty",
+        fmt::format("the box of the prior runs from {}, {} to {}, {}: the first corner must lie south and "
+                    "west of the second",
+                    box.south_west.lat_deg, box.south_west.lon_deg, box.north_east.lat_deg, box.north_east.lon_deg));
+  }
+  return grid_box_around(map.zone, box, map.extent);
+}
+
+}  // namespace
+
+PoseRegion region_of(const MapView& map, const Prior& prior) {
+  if (map.extent.empty() || map.extent.width_m() <= 0.0 || map.extent.height_m() <= 0.0) {
+    throw InvalidInput("map-unobserved",
+                       fmt::format("the map {} holds no observed cell: ingest imagery or roads first", map.name));
+  }
+  PoseRegion region;
+  region.box = map.extent;
+  if (prior.circle) {
+    region.circle = circle_in(map.zone, *prior.circle);
+    const auto& [centre, radius_m] = *region.circle;
+    region.box = intersection(region.box, grown({centre, centre}, radius_m));
+  }
+  if (prior.box) region.box = intersection(region.box, box_in(map, *prior.box));
+  const GridPoint middle = region.box.centre();
+  if (region.box.empty() || (region.circle && !contains(*region.circle, nearest(region.box, region.circle->centre)))) {
+    throw InvalidInput(
+        "prior-outside-map",
+        fmt::format("the prior does not meet the map {}: check its position, or search without it", map.name));
+  }
+  if (prior.heading) {
+    const double half_deg = prior.heading->half_width.degrees();
+    if (!(half_deg >= 0.0) || !std::isfinite(half_deg) || !(std::abs(prior.heading->centre.degrees()) <= 360.0)) {
+      throw InvalidInput(
+          "prior-heading-out-of-range",
+          "the heading range must be given as a heading of -360 to 360 and half a width of 0 to 180 degrees");
+    }
+    region.heading = map.zone.grid_from_true(prior.heading->centre, middle);
+    region.heading_half_width = Angle::degrees(std::min(half_deg, 180.0));
+  }
+  return region;
+}
+
+}  // namespace roadfix

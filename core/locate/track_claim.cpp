@@ -17,18 +17,18 @@ void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 
 void TrackClaim::reject() {
   supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
-  if (!is_supported()) compared = false;
+  if (!is_supported()) confirmed = false;
 }
 
 void TrackClaim::weigh(double log_ratio) {
   log_odds = std::clamp(log_odds + log_ratio, 0.0, kMaxLogOdds);
-  if (log_odds == 0.0) compared = false;
+  if (log_odds == 0.0) confirmed = false;
 }
 
 void TrackClaim::confirm(double probability) {
   accept();
   weigh(std::log(probability / (1.0 - probability)));
-  compared = true;
+  confirmed = true;
 }
 
 bool TrackClaim::is_supported() const { return supported >= kMinSupport; }

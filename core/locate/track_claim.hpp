@@ -18,7 +18,7 @@ struct TrackClaim {
   double log_odds = 0.0;
   /// A search has told the belief from all other places: a fix, or nearly one at the place that was believed before
   /// it. Until measurements speak against it.
-  bool compared = false;
+  bool confirmed = false;
 
   void accept();
   /// A claim that is taken back waits for a search.

@@ -32,8 +32,8 @@ bool is_beside(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
 
 }  // namespace
 
-void Tracker::Step::look_around_where_due() {
-  const bool sure = state_.claim.outweighs_chance() && state_.claim.compared;
+void Tracker::Step::look_around_if_due() {
+  const bool sure = state_.claim.outweighs_chance() && state_.claim.confirmed;
   if (!settings_.recovers || !sure || estimate_.measurement == Measurement::kUseless) return;
   if (state_.looked_time_us && input_.time_us - *state_.looked_time_us < kLookEveryUs) return;
   state_.looked_time_us = input_.time_us;
@@ -46,7 +46,7 @@ void Tracker::Step::look_around() {
   const auto around = prior_near(map, belief.mean, kLookRadiusM, kLookHeading);
   if (!around) return;
   const FeatureMap seen = resampled(*features_, features_->cell_m, std::exp(belief.log_scale));
-  const std::optional<Fix> fix = searched(seen, *around, 0.0);
+  const std::optional<Fix> fix = search_for(seen, *around, 0.0);
   if (!fix || !is_beside(*fix, belief, map.zone)) return;
   state_.claim.reject();
   if (!state_.drifts) {

@@ -27,19 +27,19 @@ bool Tracker::Step::start_by_search() {
   const std::optional<Prior> prior = first ? settings_.prior : prior_around(tracker_.map_, filter_.particles());
   if (!prior) return false;
   state_.searched = true;
-  const std::optional<Fix> fix = searched(*prior);
+  const std::optional<Fix> fix = search_within(*prior);
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
   filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMaxFixShare, 0.9),
                        first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
-  if (fix->status == FixStatus::kFix) believe(*fix);
+  if (fix->status == FixStatus::kFix) confirm(*fix);
   return true;
 }
 
-void Tracker::Step::search_where_due() {
-  const bool claim_waits = state_.claim.outweighs_chance() && !state_.claim.compared;
+void Tracker::Step::search_if_due() {
+  const bool claim_waits = state_.claim.outweighs_chance() && !state_.claim.confirmed;
   const std::int64_t wait = claim_waits ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
   if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= wait) recover();
 }
@@ -48,22 +48,22 @@ bool Tracker::Step::wants_search() const {
   // Nothing has spoken for the belief for long, be it that nothing could.
   const bool stale = since_accepted_s().value_or(0.0) >= kStaleAfterS;
   if (filter_.doubt() > kMaxDoubt || stale) return true;
-  if (state_.claim.outweighs_chance()) return !state_.claim.compared;
+  if (state_.claim.outweighs_chance()) return !state_.claim.confirmed;
   return state_.claim.log_odds == 0.0 && estimate_.measurement != Measurement::kUseless;
 }
 
 void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
-  std::optional<Fix> fix = searched({});
+  std::optional<Fix> fix = search_within({});
   if (!fix) {
     Prior near;
     near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = searched(near);
+    fix = search_within(near);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
   if (agrees && fix->probability >= kProbabilityForClaim) {
-    state_.claim.compared = true;
+    state_.claim.confirmed = true;
   } else if (fix->status != FixStatus::kFix) {
     filter_.inject(proposals_of(tracker_.map_, *fix, *features_), kInjectedShare);
   } else {
@@ -71,24 +71,24 @@ void Tracker::Step::recover() {
     estimate_.measurement = Measurement::kSearched;
     forget_support();
     state_.searched = true;
-    believe(*fix);
+    confirm(*fix);
   }
 }
 
-void Tracker::Step::believe(const Fix& fix) {
+void Tracker::Step::confirm(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
   state_.looked_time_us = input_.time_us;
 }
 
-std::optional<Fix> Tracker::Step::searched(const Prior& prior) {
+std::optional<Fix> Tracker::Step::search_within(const Prior& prior) {
   state_.last_search = state_.measured;
-  return searched(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
+  return search_for(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
 }
 
 /// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it
 /// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
-std::optional<Fix> Tracker::Step::searched(const FeatureMap& features, const Prior& prior, double scale_range) {
+std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const Prior& prior, double scale_range) {
   FixOptions options;
   options.scale_range = scale_range;
   options.max_search_km2 = settings_.max_search_km2;

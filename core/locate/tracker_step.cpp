@@ -54,7 +54,7 @@ StepResult Tracker::Step::run() {
   }
   state_.sequence = input_.sequence;
   state_.time_us = input_.time_us;
-  describe();
+  fill_estimate();
   if (estimate_.converged) state_.recent.clear();
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate_)};
@@ -88,7 +88,7 @@ void Tracker::Step::move() {
     state_.recent.clear();
     return;
   }
-  if (!moved()) forget_support();
+  if (!predict_motion()) forget_support();
 }
 
 template <MotionModel Motion>
@@ -116,7 +116,7 @@ AcceptanceRegion Tracker::Step::region() const {
 }
 
 /// False where the belief left the region and began anew.
-bool Tracker::Step::moved() {
+bool Tracker::Step::predict_motion() {
   const VehicleNoise& vehicle = settings_.vehicle;
   const double wind_walk = wind().walk;
   if (input_.odometry) {
@@ -164,8 +164,8 @@ void Tracker::Step::measure() {
   } else {
     weigh(matches, frame_cells);
   }
-  look_around_where_due();
-  search_where_due();
+  look_around_if_due();
+  search_if_due();
 }
 
 void Tracker::Step::weigh(const ParticleMatches& matches, std::int64_t frame_cells) {
@@ -204,7 +204,7 @@ bool Tracker::Step::is_unseen_by_map(std::span<const MatchSums> sums, std::int64
   return seen < kMinShare * static_cast<double>(frame_cells);
 }
 
-void Tracker::Step::describe() {
+void Tracker::Step::fill_estimate() {
   estimate_.sequence = state_.sequence;
   estimate_.time_us = state_.time_us;
   const std::vector<Cluster> clusters = clusters_of(filter_.particles(), settings_.clusters);
@@ -229,7 +229,7 @@ bool Tracker::Step::has_converged(const Cluster& best) const {
 /// Equation (7) is no ratio to chance, and bears out what it does not reject.
 bool Tracker::Step::is_borne_out() const {
   if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return true;
-  return state_.claim.outweighs_chance() && (state_.claim.compared || !settings_.recovers);
+  return state_.claim.outweighs_chance() && (state_.claim.confirmed || !settings_.recovers);
 }
 
 }  // namespace roadfix

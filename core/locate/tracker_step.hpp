@@ -26,7 +26,7 @@ class Tracker::Step {
   std::optional<double> since_accepted_s() const;
 
   void move();
-  bool moved();
+  bool predict_motion();
   Wind wind() const;
   AcceptanceRegion region() const;
   template <MotionModel Motion>
@@ -41,18 +41,18 @@ class Tracker::Step {
   // tracker_search.cpp
   bool may_search() const;
   bool start_by_search();
-  void search_where_due();
+  void search_if_due();
   bool wants_search() const;
   void recover();
-  void believe(const Fix& fix);
-  std::optional<Fix> searched(const Prior& prior);
-  std::optional<Fix> searched(const FeatureMap& features, const Prior& prior, double scale_range);
+  void confirm(const Fix& fix);
+  std::optional<Fix> search_within(const Prior& prior);
+  std::optional<Fix> search_for(const FeatureMap& features, const Prior& prior, double scale_range);
 
   // tracker_look.cpp
-  void look_around_where_due();
+  void look_around_if_due();
   void look_around();
 
-  void describe();
+  void fill_estimate();
   bool has_converged(const Cluster& best) const;
   bool is_borne_out() const;
 

@@ -99,7 +99,7 @@ json counters_json(const TrackerState& state) {
   return {{"sequence", state.sequence},
           {"time_us", state.time_us},
           {"searched", state.searched},
-          {"compared", state.claim.compared},
+          {"compared", state.claim.confirmed},
           {"measured", state.measured},
           {"last_search", state.last_search},
           {"supported", state.claim.supported},
@@ -117,7 +117,7 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.sequence = whole(counters.at("sequence"));
     state.time_us = whole(counters.at("time_us"));
     state.searched = counters.at("searched");
-    state.claim.compared = counters.at("compared");
+    state.claim.confirmed = counters.at("compared");
     state.measured = whole(counters.at("measured"));
     state.last_search = whole(counters.at("last_search"));
     state.claim.supported = whole(counters.at("supported"));

@@ -31,11 +31,11 @@ TEST(TrackClaim, IsTakenBackByThreeRejectionsInARowHoweverLongItWasSupported) {
 
 TEST(TrackClaim, WaitsForAnotherSearchWhereItWasTakenBack) {
   TrackClaim claim = supported_by(3);
-  claim.compared = true;
+  claim.confirmed = true;
   claim.reject();
   claim.accept();
   EXPECT_TRUE(claim.is_supported());
-  EXPECT_FALSE(claim.compared);
+  EXPECT_FALSE(claim.confirmed);
 }
 
 TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
@@ -48,9 +48,9 @@ TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
 
 TEST(TrackClaim, ForgetsWhatSpokeAgainstItBeforeMeasurementsSpeakForIt) {
   TrackClaim claim;
-  claim.compared = true;
+  claim.confirmed = true;
   claim.weigh(-1000.0);
-  EXPECT_FALSE(claim.compared);
+  EXPECT_FALSE(claim.confirmed);
   claim.weigh(kHundredToOne);
   EXPECT_TRUE(claim.outweighs_chance());
 }
@@ -65,7 +65,7 @@ TEST(TrackClaim, IsLostSoonAlsoWhereItWasRightForLong) {
 TEST(TrackClaim, IsAsSureOfAFixAsTheFixIs) {
   TrackClaim claim;
   claim.confirm(0.98);
-  EXPECT_TRUE(claim.compared);
+  EXPECT_TRUE(claim.confirmed);
   EXPECT_NEAR(claim.log_odds, std::log(49.0), 1e-9);
   EXPECT_FALSE(claim.is_supported());
 }

@@ -34,28 +34,29 @@ double variance_of(const CellArray& cells) {
 // holds.
 constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
-/// Sets status and reason and returns true where the feature map alone tells that there is nothing to search for.
-bool hopeless(const FeatureMap& features, Fix& fix) {
+struct Refusal {
+  const char* reason;
+  std::string explanation;
+};
+
+/// nullopt where there is something to search for, as far as the feature map alone tells.
+std::optional<Refusal> refusal_of(const FeatureMap& features) {
   const double ground_m2 = features.cell_m * features.cell_m * static_cast<double>(features.cells.observed_count());
   if (ground_m2 == 0.0) {
-    fix.reason = "footprint-unobserved";
-    fix.explanation = "no cell of the feature map was observed: the frame showed no ground";
-    return true;
+    return Refusal{"footprint-unobserved", "no cell of the feature map was observed: the frame showed no ground"};
   }
   if (ground_m2 < kMinGroundM2) {
-    fix.reason = "footprint-too-small";
-    fix.explanation = fmt::format(
-        "the frame shows {:.0f} m2 of ground, less than the {:.0f} m2 from which roads tell places apart: check its "
-        "scale (metres per pixel or cell), fly higher, or lay several frames together",
-        ground_m2, kMinGroundM2);
-    return true;
+    return Refusal{
+        "footprint-too-small",
+        fmt::format("the frame shows {:.0f} m2 of ground, less than the {:.0f} m2 from which roads tell places apart: "
+                    "check its scale (metres per pixel or cell), fly higher, or lay several frames together",
+                    ground_m2, kMinGroundM2)};
   }
   if (variance_of(features.cells) < kMinVariance) {
-    fix.reason = "too-few-roads";
-    fix.explanation = "the feature map shows hardly any road, or road everywhere: there is nothing to match";
-    return true;
+    return Refusal{"too-few-roads",
+                   "the feature map shows hardly any road, or road everywhere: there is nothing to match"};
   }
-  return false;
+  return std::nullopt;
 }
 
 /// One road across the footprint places a frame nowhere: it looks like every other road.
@@ -123,8 +124,13 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.map_version = map.version;
   const FeatureMap compared = compared_cells(cells);
   // As it was given, too: of one smaller than a cell of the map next to nothing is left.
-  if (hopeless(features, fix) || hopeless(cells, fix) || hopeless(compared, fix)) return fix;
-
+  for (const FeatureMap* seen : {&features, &cells, &compared}) {
+    if (auto refusal = refusal_of(*seen)) {
+      fix.reason = refusal->reason;
+      fix.explanation = std::move(refusal->explanation);
+      return fix;
+    }
+  }
   const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region,
                                     search_options_of(options, map, started));
 

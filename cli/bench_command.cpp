@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "cli/bench/calibrate.hpp"
 #include "cli/bench/curves.hpp"
@@ -21,6 +20,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
+#include "cli/threads_option.hpp"
 #include "core/detect/make_detector.hpp"
 
 namespace roadfix::cli {
@@ -184,10 +184,8 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--confidence", a->options.fix.confidence, "Probability that a fix must reach")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
-  a->options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command->add_option("--jobs", a->options.jobs, "Blocks or queries in work at a time; 1 for honest times of a query")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, "--jobs", a->options.jobs,
+                     "Blocks or queries in work at a time; 1 for honest times of a query");
   command->add_option("--map-cache", a->cache, "Folder that keeps the maps; default: the user's cache folder");
   add_detector_options(*command, a->detector);
   command->callback([a] { run_bench(*a); });

@@ -61,8 +61,7 @@ void run_export(const Options& options) {
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
   if (!options.bbox.empty()) what.box = box_of(map.info(), options.bbox);
   Progress progress("export", "%", 0.1);
-  export_map(
-      map, options.target, what, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+  export_map(map, options.target, what, progress.updates(), stop);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/calibration_option.hpp"
@@ -14,6 +13,7 @@
 #include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
+#include "cli/threads_option.hpp"
 #include "core/locate/fix.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/view/map_file_view.hpp"
@@ -28,9 +28,8 @@ struct Options {
   double lon = 0.0;
   double radius_m = 0.0;
   std::vector<double> bbox;  ///< west, south, east, north
-  double heading_deg = 0.0;
+  std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
-  bool heading_known = false;
   double time_limit_s = 0.0;
   double proof_s = 0.0;
   std::string calibration;
@@ -44,8 +43,8 @@ Prior prior_of(const Options& options) {
   if (!options.bbox.empty()) {
     prior.box = GeoBox{{options.bbox[1], options.bbox[0]}, {options.bbox[3], options.bbox[2]}};
   }
-  if (options.heading_known) {
-    prior.heading = HeadingRange{Angle::degrees(options.heading_deg), Angle::degrees(options.heading_range_deg)};
+  if (options.heading_deg) {
+    prior.heading = HeadingRange{Angle::degrees(*options.heading_deg), Angle::degrees(options.heading_range_deg)};
   }
   return prior;
 }
@@ -85,8 +84,7 @@ void print_text(const Fix& fix) {
 }
 
 void run_fix(const Options& options) {
-  const auto reader = std::make_shared<const MapReader>(options.map);
-  const MapView view = view_of(reader, std::filesystem::path(options.map).stem().string());
+  const MapView view = view_of_file(options.map);
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
@@ -107,7 +105,6 @@ void add_fix_command(CLI::App& app) {
   auto* command = app.add_subcommand("fix", "Says where a feature map or a frame was seen");
   command->footer("Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
   const auto o = std::make_shared<Options>();
-  o->fix.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);
   auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");
@@ -133,18 +130,13 @@ void add_fix_command(CLI::App& app) {
       ->add_option("--scale-range", o->fix.scale_range, "The ground may be smaller by this share, or larger by as much")
       ->capture_default_str()
       ->check(CLI::Range(0.0, kMaxScaleRange));
-  command->add_option("--threads", o->fix.threads, "Threads of the search")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   command->add_option("--proof", o->proof_s, "Look so many seconds for a better place than the best candidate")
       ->check(positive());
   command->add_option("--time-limit", o->time_limit_s, "End the search after so many seconds and say what it has")
       ->check(positive());
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
-  command->callback([o, heading] {
-    o->heading_known = heading->count() > 0;
-    run_fix(*o);
-  });
+  command->callback([o] { run_fix(*o); });
 }
 
 }  // namespace roadfix::cli

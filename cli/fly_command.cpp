@@ -106,7 +106,7 @@ void run_fly(const FlyOptions& options) {
     screening.show(filter, record, localizer);
   };
   Progress progress("flying", "steps");
-  campaign.progress = [&](std::int64_t done, std::int64_t total) { progress.update(done, total); };
+  campaign.progress = progress.updates();
   const auto results = fly::run(campaign, map.zone);
   screening.finish();
   const fly::Events events{plan.kidnapping, plan.outage};

@@ -47,7 +47,7 @@ fly::CameraErrors camera_errors_of(const FlyOptions& options) {
 
 void look_at_map(const FlyOptions& options, const MapView& map, Ground& ground) {
   const bool itself = options.over.empty();
-  const MapView from = itself ? map : view_of(std::make_shared<const MapReader>(options.over), options.over);
+  const MapView from = itself ? map : view_of_file(options.over);
   if (!(from.zone == map.zone)) {
     throw InvalidInput("map-of-another-zone", fmt::format("{} lies in another UTM zone than {}: take maps of one place",
                                                           options.over, options.map));
@@ -78,8 +78,7 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
   recorded.seed = options.seed;
   Progress progress("reading", "frames");
-  ground.recordings = fly::read_recordings(
-      options.over, map.zone, recorded, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+  ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
   ground.footprint = ground.recordings.front().frames.front().footprint;
 }
 
@@ -150,9 +149,8 @@ fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
 }  // namespace
 
 MapView map_of(const FlyOptions& options) {
-  const auto reader = std::make_shared<const MapReader>(options.map);
   constexpr std::size_t kSearchCacheBytes = std::size_t{1} << 30;  // all flights search the same map
-  MapView map = view_of(reader, std::filesystem::path(options.map).stem().string(), kSearchCacheBytes);
+  MapView map = view_of_file(options.map, kSearchCacheBytes);
   return options.area_m > 0.0 ? fly::middle_of(map, options.area_m) : map;
 }
 

@@ -1,10 +1,10 @@
 #include "cli/fly_options.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include "cli/fly/localizer.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/threads_option.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -31,10 +31,7 @@ void add_basics(CLI::App& command, FlyOptions& o) {
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
   command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str()->check(seed());
-  o.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command.add_option("--jobs", o.jobs, "Flights at a time; results do not depend on it")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(command, "--jobs", o.jobs, "Flights at a time; results do not depend on it");
 }
 
 void add_belief_options(CLI::App& command, FlyOptions& o) {

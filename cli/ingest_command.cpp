@@ -56,8 +56,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     Progress reading(record.name, lines ? "features" : "MP",
                      lines ? lines_per_block : kTileCells * kTileCells * cell_mp);
     Progress fusing("fusing", "tiles");
-    const IngestProgress progress{[&](std::int64_t done, std::int64_t total) { reading.update(done, total); },
-                                  [&](std::int64_t done, std::int64_t total) { fusing.update(done, total); }};
+    const IngestProgress progress{reading.updates(), fusing.updates()};
     report = ingest(*source, record, settings, *writer, arguments.options, progress, stop);
   }
   if (report.observed_cells == 0 && report.blocks_before == 0) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/threads_option.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
@@ -105,9 +105,7 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
   add_content_options(command, a);
   add_detector_options(command, a.detector);
   add_provenance_options(command, a);
-  a.options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command.add_option("--jobs", a.options.jobs, "Blocks in work at a time; default: number of processors")
-      ->check(CLI::Range(1, 1024));
+  add_threads_option(command, "--jobs", a.options.jobs, "Blocks in work at a time");
   command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());
   command.add_flag("--replace", a.options.replace, "Replace a source of the same name");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
 #include "cli/json_text.hpp"
 #include "cli/terminal.hpp"
+#include "cli/threads_option.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
 #include "server/api/fix_json.hpp"
@@ -87,8 +86,7 @@ void run_match(const Options& options) {
   for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--pose"));
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
-  const auto reader = std::make_shared<const MapReader>(options.map);
-  const MapView view = view_of(reader, std::filesystem::path(options.map).stem().string());
+  const MapView view = view_of_file(options.map);
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
   MatchOptions match_options;
   match_options.heading_step = Angle::degrees(options.heading_step_deg);
@@ -108,7 +106,6 @@ void add_match_command(CLI::App& app) {
   auto* command = app.add_subcommand("match", "Says how well a feature map or a frame fits the map at given poses");
   command->footer("Example: roadfix match town.gpkg window.png --cell 2 --pose 57.70,11.97,45");
   const auto o = std::make_shared<Options>();
-  o->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);
   command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");
@@ -117,7 +114,7 @@ void add_match_command(CLI::App& app) {
       ->add_option("--heading-step", o->heading_step_deg,
                    "Round headings to so many degrees and positions to cells: faster for many poses")
       ->check(CLI::Range(0.0, 90.0));
-  command->add_option("--threads", o->threads, "Threads")->capture_default_str()->check(CLI::Range(1, 1024));
+  add_threads_option(*command, "--threads", o->threads, "Threads");
   command->add_flag("--json", o->as_json, "Answer as JSON");
   command->callback([o] { run_match(*o); });
 }

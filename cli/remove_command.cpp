@@ -24,8 +24,7 @@ void remove_source(const Options& options) {
   bool was_there = false;
   {
     Progress progress("fusing", "tiles");
-    was_there = writer.remove_source(
-        options.source, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+    was_there = writer.remove_source(options.source, progress.updates(), stop);
   }
   fmt::print("{}: source '{}' {}\n", options.map, options.source,
              was_there ? "is removed" : "was not there any more; what was left to fuse is fused");

@@ -10,7 +10,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/calibration_option.hpp"
@@ -18,6 +17,7 @@
 #include "cli/detector_options.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
+#include "cli/threads_option.hpp"
 #include "server/application.hpp"
 
 namespace roadfix::cli {
@@ -45,8 +45,6 @@ struct ServeOptions {
   std::string calibration;
   std::vector<std::string> proxies;
 };
-
-int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;

@@ -56,6 +56,10 @@ void Progress::update(std::int64_t done, std::int64_t total) {
   print(done, total);
 }
 
+std::function<void(std::int64_t done, std::int64_t total)> Progress::updates() {
+  return [this](std::int64_t done, std::int64_t total) { update(done, total); };
+}
+
 void Progress::print(std::int64_t done, std::int64_t total) {
   const double seconds = std::chrono::duration<double>(Clock::now() - started_).count();
   const auto items = static_cast<double>(done - first_done_);

@@ -63,7 +63,7 @@ void repair(const std::string& path, const std::stop_token& stop) {
   std::vector<std::string> lost;
   {
     Progress progress("repair", "tiles");
-    lost = writer.repair([&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+    lost = writer.repair(progress.updates(), stop);
   }
   for (const std::string& source : lost) {
     fmt::print(stderr, "source '{}' had damaged evidence, which was dropped: ingest it again with --replace\n", source);
@@ -76,8 +76,7 @@ void verify(const Options& options) {
   MapVerdict verdict;
   {
     Progress progress("verify", "tiles");
-    verdict = verify_map(
-        options.map, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+    verdict = verify_map(options.map, progress.updates(), stop);
   }
   options.as_json ? print_json(options.map, verdict) : print_text(options.map, verdict);
   if (!verdict.problems.empty()) {

@@ -40,8 +40,7 @@ void render(const Options& options) {
   const std::stop_token stop = stop_on_signals();
   const world::WorldReport report = [&] {
     Progress progress("world", "MP", world::kTilePx * world::kTilePx / 1e6);
-    return world::render_world(
-        settings, options.folder, [&](std::int64_t done, std::int64_t total) { progress.update(done, total); }, stop);
+    return world::render_world(settings, options.folder, progress.updates(), stop);
   }();
   if (report.frames > 0) write_bench(options.folder);
   fmt::print(

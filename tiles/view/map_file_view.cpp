@@ -21,4 +21,8 @@ MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::
           search_cache_bytes > 0 ? std::make_shared<SearchCache>(search_cache_bytes) : nullptr};
 }
 
+MapView view_of_file(const std::filesystem::path& file, std::size_t search_cache_bytes) {
+  return view_of(std::make_shared<const MapReader>(file), file.stem().string(), search_cache_bytes);
+}
+
 }  // namespace roadfix

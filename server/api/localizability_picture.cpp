@@ -20,11 +20,11 @@ double tile_m(const MapView& map, int zoom) {
   return kTilePixels * metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
 }
 
-/// The promises of the squares, each asked for once.
+/// The probabilities of the squares, each asked for once.
 class Squares {
  public:
-  Squares(const MapView& map, double side_m, const PromiseOf& promise_of)
-      : map_(map), side_m_(side_m), promise_of_(promise_of) {}
+  Squares(const MapView& map, double side_m, const ProbabilityAt& probability_at)
+      : map_(map), side_m_(side_m), probability_at_(probability_at) {}
 
   std::optional<double> at(GridPoint point) {
     if (!map_.extent.contains(point)) return std::nullopt;
@@ -33,14 +33,14 @@ class Squares {
     if (known != known_.end()) return known->second;
     // The middle of a square that the border of the map cuts may lie outside.
     const GridPoint middle{side_m_ * static_cast<double>(index.first), side_m_ * static_cast<double>(index.second)};
-    return known_[index] = map_.extent.contains(middle) ? promise_of_(middle) : std::nullopt;
+    return known_[index] = map_.extent.contains(middle) ? probability_at_(middle) : std::nullopt;
   }
 
  private:
   using Index = std::pair<long, long>;
   const MapView& map_;
   double side_m_;
-  const PromiseOf& promise_of_;
+  const ProbabilityAt& probability_at_;
   std::map<Index, std::optional<double>> known_;
 };
 
@@ -75,13 +75,13 @@ ZoomRange localizability_zooms(const MapView& map, double footprint_m) {
 }
 
 std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const PromiseOf& promise_of) {
+                                                            TileStyle style, const ProbabilityAt& probability_at) {
   if (map.extent.empty()) return std::nullopt;
   const std::optional<double> side_m = square_m(map, tile.z, footprint_m);
   const PixelBox box = touched_pixels(map, tile);
   if (!side_m || box.empty()) return std::nullopt;
   const PixelToGrid ground(map.zone, tile, box);
-  Squares squares(map, *side_m, promise_of);
+  Squares squares(map, *side_m, probability_at);
   return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
     const auto probability = squares.at(point);
     return probability ? std::optional(pixel_of(*probability, style)) : std::nullopt;

@@ -14,7 +14,7 @@
 namespace roadfix::api {
 
 /// Probability that a frame of the place gets its place right; nullopt where the map shows too little to say.
-using PromiseOf = std::function<std::optional<double>(GridPoint place)>;
+using ProbabilityAt = std::function<std::optional<double>(GridPoint place)>;
 
 /// At most so many squares side by side in a tile, beside those that its borders cut.
 inline constexpr int kSquaresAcross = 4;
@@ -33,6 +33,6 @@ ZoomRange localizability_zooms(const MapView& map, double footprint_m);
 /// PNG of 256 x 256 pixels: from red (0) over yellow to green (1), half transparent, or grey = probability; nullopt
 /// where there is nothing to show. Asks for each square at most once, and only within the map's extent.
 std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const PromiseOf& promise_of);
+                                                            TileStyle style, const ProbabilityAt& probability_at);
 
 }  // namespace roadfix::api

@@ -1,4 +1,4 @@
-// The operator's console: the maps, a fix for a picture at hand, and what a place promises before the flight. All of it
+// The operator's console: the maps, a fix for a picture at hand, and whether a place can give a fix. All of it
 // is what the HTTP interface offers to any program.
 import { square } from './geometry.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
@@ -8,7 +8,7 @@ import { Tracks } from './tracks.js';
 const by = (id) => document.getElementById(id);
 const view = L.map('map', { preferCanvas: true, zoomSnap: 0.5 }).setView([0, 0], 2);
 const answers = L.layerGroup().addTo(view);
-const promises = L.layerGroup().addTo(view);
+const localizability = L.layerGroup().addTo(view);
 L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
 const MAPS_REFRESH_MS = 10_000;
@@ -45,7 +45,7 @@ async function drawMap() {
 
 async function openMap() {
   answers.clearLayers();
-  promises.clearLayers();
+  localizability.clearLayers();
   by('answer').replaceChildren();
   by('place').replaceChildren();
   shown = { name: by('maps').value, version: null };
@@ -117,21 +117,21 @@ async function ask(event) {
   });
 }
 
-async function promiseOf({ latlng }) {
+async function showLocalizability({ latlng }) {
   if (!tiles) return;
   const side = Number(by('footprint').value);
   const at = latlng.wrap();
-  promises.clearLayers();
-  const frame = L.polygon(square([at.lat, at.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(promises);
+  localizability.clearLayers();
+  const frame = L.polygon(square([at.lat, at.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(localizability);
   showStatus(by('place'), 'looking …', []);
   await attempt(by('place'), async () => {
     const query = new URLSearchParams({ lat: at.lat, lon: at.lng, footprint_m: side });
-    const promise = await request(`${mapUrl()}/localizability?${query}`);
-    showStatus(by('place'), promise.status, [
-      promise.explanation ?? promise.reason,
-      `probability ${promise.probability.toFixed(3)}, ${(100 * promise.road_share).toFixed(0)} % road, ${(100 * promise.observed_share).toFixed(0)} % of the ground is on the map`]);
-    frame.setStyle({ color: { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' }[promise.status] });
-    if (promise.alike) drawModes(promises, promise.alike, 'ambiguous');
+    const place = await request(`${mapUrl()}/localizability?${query}`);
+    showStatus(by('place'), place.status, [
+      place.explanation ?? place.reason,
+      `probability ${place.probability.toFixed(3)}, ${(100 * place.road_share).toFixed(0)} % road, ${(100 * place.observed_share).toFixed(0)} % of the ground is on the map`]);
+    frame.setStyle({ color: { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' }[place.status] });
+    if (place.alike) drawModes(localizability, place.alike, 'ambiguous');
   });
 }
 
@@ -169,7 +169,7 @@ function acceptDrops(target, input) {
 
 by('maps').addEventListener('change', () => attempt(by('about'), openMap));
 by('ask').addEventListener('submit', ask);
-view.on('click', promiseOf);
+view.on('click', showLocalizability);
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', () => attempt(by('place'), drawLayer));
 acceptDrops(by('drop'), by('ask').elements.picture);
 attempt(by('about'), async () => showMaps(await request('/v1/maps')));

@@ -71,8 +71,8 @@ Layer layer_of(const Service& service, const http::Request& request) {
 
 /// Of a place, searched for once and kept beside the tiles that show it: a tile that runs out of time goes on where it
 /// was when it is asked for again.
-std::optional<double> promise(const Service& service, const http::Request& request, const Layer& layer,
-                              GridPoint place) {
+std::optional<double> fix_probability(const Service& service, const http::Request& request, const Layer& layer,
+                                      GridPoint place) {
   const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
   std::optional<std::string> kept = service.pictures.find(key);
   if (!kept) {
@@ -97,7 +97,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
   return kept_or_drawn(service.pictures, key, [&] {
     const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
     return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
-                                   [&](GridPoint place) { return promise(service, request, layer, place); });
+                                   [&](GridPoint place) { return fix_probability(service, request, layer, place); });
   });
 }
 

@@ -28,10 +28,6 @@ RoadGrid doubtful_streets() {
 
 class ComparedCells : public ::testing::Test {
  protected:
-  GeoPose geo(const GridPose& pose) const {
-    return {view_.zone.unproject(pose.position), view_.zone.true_from_grid(pose.heading, pose.position)};
-  }
-
   RoadGrid map_ = doubtful_streets();
   MapView view_ = view_of(map_);
   const GridPose pose_{{map_.geometry.box().min.east_m + 451.3, map_.geometry.box().min.north_m + 402.9},
@@ -75,7 +71,7 @@ TEST_F(ComparedCells, HoldTheMeanOfWhatIsComparedWhereTheyAreCoarser) {
 
 TEST_F(ComparedCells, LeaveEquationFiveToTheCellsAsTheyAre) {
   const FeatureMap window = cut_out(map_, pose_, 120, 90, 2.0);
-  const std::vector<GeoPose> poses{geo(pose_)};
+  const std::vector<GeoPose> poses{on_earth(pose_, view_.zone)};
   const double matched = match(view_, window, poses).at(0).rho.value();
   EXPECT_NEAR(rho_at(view_, window, pose_, 1.0), matched, 1e-6);
 

@@ -10,6 +10,7 @@
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
+#include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -17,6 +18,7 @@ namespace {
 
 using testing::code_of;
 using testing::observed_at;
+using testing::pose_within;
 using testing::street_map;
 using testing::view_of;
 
@@ -27,21 +29,12 @@ GridGeometry town(double width_m, double height_m) {
   return {2.0, {300'000, -3'200'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};
 }
 
-GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& random) {
-  return {{uniform(random, box.min.east_m + margin_m, box.max.east_m - margin_m),
-           uniform(random, box.min.north_m + margin_m, box.max.north_m - margin_m)},
-          Angle::degrees(uniform(random, 0, 360))};
-}
-
 class Locate : public ::testing::Test {
  protected:
   RoadGrid map_ = street_map(21, town(2400, 1800));
   MapView view_ = view_of(map_);
   std::mt19937_64 random_{22};
 
-  GeoPose geo(const GridPose& pose) const {
-    return {view_.zone.unproject(pose.position), view_.zone.true_from_grid(pose.heading, pose.position)};
-  }
   double error_m(const GeoPose& found, const GridPose& truth) const {
     return distance_m(view_.zone.project(found.position), truth.position);
   }
@@ -54,7 +47,7 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason << ' ' << fix.probability;
   EXPECT_GE(fix.probability, 0.99);
   EXPECT_LT(error_m(fix.modes[0].pose, truth), 2.0);
-  EXPECT_LT(angular_distance(fix.modes[0].pose.heading, geo(truth).heading).degrees(), 0.5);
+  EXPECT_LT(angular_distance(fix.modes[0].pose.heading, on_earth(truth, view_.zone).heading).degrees(), 0.5);
   EXPECT_EQ(fix.map_name, view_.name);
   EXPECT_NEAR(fix.searched_km2, 2.4 * 1.8, 1e-6);
   EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
@@ -63,7 +56,7 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
 TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   Prior prior;
-  prior.circle = GeoCircle{geo(truth).position, 200.0};
+  prior.circle = GeoCircle{on_earth(truth, view_.zone).position, 200.0};
   FixOptions options;
   options.proof_time = std::chrono::minutes(5);
   const FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.2, 0.2}, random_);
@@ -80,7 +73,7 @@ TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
 TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   Prior prior;
-  prior.circle = GeoCircle{geo(truth).position, 100.0};
+  prior.circle = GeoCircle{on_earth(truth, view_.zone).position, 100.0};
   FixOptions options;
   const FeatureMap features = observed_at(map_, truth, 150, 150, 2.0, {0.1, 0.1}, random_);
   EXPECT_FALSE(locate(view_, features, prior, options).proof.has_value());
@@ -113,7 +106,7 @@ TEST_F(Locate, ReportsTheNadirWhereverItLiesInTheFeatureMap) {
 
 TEST_F(Locate, WithANarrowPriorIsSureOfSmallerFootprints) {
   const GridPose truth = pose_within(view_.extent, 400.0, random_);
-  const GeoPose geo_truth = geo(truth);
+  const GeoPose geo_truth = on_earth(truth, view_.zone);
   Prior prior;
   prior.circle = GeoCircle{geo_truth.position, 60.0};
   prior.heading = HeadingRange{geo_truth.heading, Angle::degrees(15.0)};
@@ -248,7 +241,7 @@ TEST_F(Locate, TheEllipseHoldsTheErrors) {
   for (int round = 0; round < 8; ++round) {
     const GridPose truth = pose_within(view_.extent, 300.0, random_);
     Prior prior;
-    prior.circle = GeoCircle{geo(truth).position, 100.0};
+    prior.circle = GeoCircle{on_earth(truth, view_.zone).position, 100.0};
     const Fix fix = locate(view_, observed_at(map_, truth, 150, 150, 2.0, {0.2, 0.2}, random_), prior, {});
     if (fix.status != FixStatus::kFix) continue;
     ++fixes;
@@ -259,7 +252,8 @@ TEST_F(Locate, TheEllipseHoldsTheErrors) {
     const Angle major = view_.zone.grid_from_true(mode.ellipse_heading, at);
     const double along = east * sin(major) + north * cos(major);
     const double across = east * cos(major) - north * sin(major);
-    const double turn = (mode.pose.heading - geo(truth).heading).wrapped().radians() / mode.heading_sigma.radians();
+    const double turn =
+        (mode.pose.heading - on_earth(truth, view_.zone).heading).wrapped().radians() / mode.heading_sigma.radians();
     nees += std::pow(along / mode.sigma_m[0], 2) + std::pow(across / mode.sigma_m[1], 2) + turn * turn;
   }
   ASSERT_GT(fixes, 4);
@@ -274,8 +268,11 @@ TEST_F(Locate, MatchScoresPosesExactlyAndInBins) {
   off.position.east_m += 12.0;
   GridPose turned = truth;
   turned.heading += Angle::degrees(20.0);
-  const std::vector<GeoPose> poses{
-      geo(truth), geo(off), geo(turned), {{10.0, 10.0 + 11.0}, Angle()}, {{40.0, -140.0}, Angle()}};
+  const std::vector<GeoPose> poses{on_earth(truth, view_.zone),
+                                   on_earth(off, view_.zone),
+                                   on_earth(turned, view_.zone),
+                                   {{10.0, 10.0 + 11.0}, Angle()},
+                                   {{40.0, -140.0}, Angle()}};
   for (const double step_deg : {0.0, 0.5}) {
     MatchOptions options;
     options.heading_step = Angle::degrees(step_deg);

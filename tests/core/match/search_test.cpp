@@ -12,23 +12,19 @@
 #include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/random_cells.hpp"
+#include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
 namespace {
 
 using testing::observed_at;
+using testing::pose_within;
 using testing::reader_of;
 using testing::street_map;
 
 GridGeometry town(double width_m, double height_m) {
   return {2.0, {150'000, -2'000'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};
-}
-
-GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& random) {
-  return {{uniform(random, box.min.east_m + margin_m, box.max.east_m - margin_m),
-           uniform(random, box.min.north_m + margin_m, box.max.north_m - margin_m)},
-          Angle::degrees(uniform(random, 0, 360))};
 }
 
 TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "server/api/json_body.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -98,8 +99,7 @@ http::Response rendered(int status, json members) {
   members["type"] = fmt::format("urn:roadfix:problem:{}", members["code"].get<std::string>());
   members["title"] = title_of(status);
   members["status"] = status;
-  http::Response response{status, "application/problem+json",
-                          members.dump(-1, ' ', false, json::error_handler_t::replace)};
+  http::Response response{status, "application/problem+json", json_text(members)};
   response.problem = members["code"];
   return response;
 }

@@ -8,6 +8,7 @@
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
+#include "server/api/fix_json.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -133,11 +134,6 @@ std::array<double, 6> geotransform(const Window& window) {
   return {p.east_m - half_cols * c + half_rows * s, c, 0.0 - s, p.north_m + half_cols * s + half_rows * c, 0.0 - s, -c};
 }
 
-json to_json(const GeoPose& pose) {
-  return {
-      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
-}
-
 json to_json(const FeatureMap& features) {
   return {{"cols", features.cells.cols()},   {"rows", features.cells.rows()},
           {"cell_m", features.cell_m},       {"nadir_col", features.nadir.col},
@@ -146,7 +142,7 @@ json to_json(const FeatureMap& features) {
 
 json to_json(const Window& window) {
   json answer = to_json(window.cells);
-  answer["pose"] = to_json(window.pose);
+  answer["pose"] = pose_json(window.pose);
   answer["map"] = {{"name", window.map_name}, {"version", window.map_version}};
   answer["footprint"] = footprint(window);
   answer["epsg"] = window.zone.epsg();

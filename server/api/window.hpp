@@ -41,7 +41,6 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
 nlohmann::json to_json(const Window& window);
 /// The cells of a feature map: cols, rows, cell_m, nadir, base64.
 nlohmann::json to_json(const FeatureMap& features);
-nlohmann::json to_json(const GeoPose& pose);
 
 /// GDAL's six coefficients from (column, row) to the zone's east and north, rotated with the window.
 std::array<double, 6> geotransform(const Window& window);

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "server/api/json_body.hpp"
+
 namespace roadfix::server {
 
-http::Response json_response(const nlohmann::json& body) {
-  return {200, "application/json", body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
-}
+http::Response json_response(const nlohmann::json& body) { return {200, "application/json", api::json_text(body)}; }
 
 std::string base_url(const http::Request& request) {
   const std::string& host = request.header("host");

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/detect/image_codec.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"
@@ -38,7 +39,7 @@ http::Response get_window(const Service& service, const http::Request& request) 
   const api::Window window = api::cut_window(map->view, asked, service.limits);
   http::Response response = rendered(window, format);
   // What a picture cannot say about itself, so that it can be posted back: its pose and cell size.
-  response.headers.emplace_back("Roadfix-Pose", api::to_json(window.pose).dump());
+  response.headers.emplace_back("Roadfix-Pose", api::pose_json(window.pose).dump());
   response.headers.emplace_back("Roadfix-Cell-M", fmt::format("{}", window.cells.cell_m));
   response.headers.emplace_back("Vary", "Accept");
   response.headers.emplace_back("Cache-Control", "no-cache");

@@ -52,8 +52,6 @@ NotFound track_ended(const std::string& id, const std::string& how) {
                                      how == "expired" ? "expired without a step" : "been finished")};
 }
 
-std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
-
 }  // namespace
 
 TrackRegistry::TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
@@ -227,8 +225,8 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   json answer = api::to_json(result.estimate);
   answer["track"] = id;
-  std::string text = text_of(answer);
-  const StoredState state{text_of(api::counters_json(result.state)), to_bytes(result.state.filter),
+  std::string text = api::json_text(answer);
+  const StoredState state{api::json_text(api::counters_json(result.state)), to_bytes(result.state.filter),
                           result.state.recent.to_bytes()};
   turn.doubt();
   if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {

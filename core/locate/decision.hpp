@@ -1,8 +1,8 @@
 // Is the best place the true one? From the scores of a search to a status and a probability.
 //
-// The probability comes from the figures of the search by the calibration. The other places that
-// fit are to the best one as their posteriors from the tempered log-likelihood are (ScoreBackground), as far as the
-// probability leaves room for them.
+// The calibration makes the probability of the best place from the figures of the search. The weights of the other
+// places that fit are in proportion to their posteriors (by the tempered ScoreBackground::log_likelihood()), but sum to
+// no more than the probability leaves.
 #pragma once
 
 #include <optional>

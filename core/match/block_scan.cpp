@@ -39,7 +39,7 @@ BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline)
     cover(sector, tile, rows);
     for (std::size_t h = sector.first; h < sector.last; ++h) {
       for (std::size_t r = 0; r < rows.size(); ++r) {
-        if (rows[r].hopeless) continue;
+        if (rows[r].excluded) continue;
         result.blocks += BoundMap::kRun;
         scan_row(h, tile.col, tile.row + static_cast<int>(r), rows[r], result.nodes);
       }
@@ -70,14 +70,14 @@ void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<R
     const int block_row = tile.row + static_cast<int>(r);
     covered_sums(problem_.map, sector.inner, tile.col, block_row, row.run.inner);
     covered_sums(problem_.map, sector.outer, tile.col, block_row, row.run.outer);
-    row.hopeless = true;
+    row.excluded = true;
     for (std::size_t i = 0; i < BoundMap::kRun; ++i) {
       row.needed[i] = std::numeric_limits<double>::infinity();
       if (!row.eligible[i]) continue;
       const BlockSums sums = HeadingSectors::covered(sector, row.run, i).sums;
       row.needed[i] = cross_needed(sums, problem_.full_cells, problem_.search.min_cells, goal);
       const double reachable = (kRoad - problem_.base) * sums.map.max;
-      if (row.needed[i] <= reachable) row.hopeless = false;
+      if (row.needed[i] <= reachable) row.excluded = false;
     }
   }
 }
@@ -91,9 +91,9 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
   for (std::size_t i = 0; i < BoundMap::kRun; ++i) {
     const double cross_max = cross[i] * turned.cross.unit;
     if (cross_max < known.needed[i]) continue;
-    auto [sums, whole] = HeadingSectors::covered(headings_.sector_of(heading), known.run, i);
+    auto [sums, map_observed] = HeadingSectors::covered(headings_.sector_of(heading), known.run, i);
     sums.cross_max = cross_max;
-    if (whole) {
+    if (map_observed) {
       sums.cells = {turned.cells, turned.cells};
       sums.feature = {turned.sum, turned.sum};
       sums.feature_square_min = turned.square;
@@ -117,7 +117,7 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
     node.map_max = known.run.outer.value[i];
     node.square_min = known.run.inner.square[i];
     node.square_max = known.run.outer.square[i];
-    node.whole = whole;
+    node.map_observed = map_observed;
     nodes.push_back(node);
   }
 }

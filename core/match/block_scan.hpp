@@ -17,9 +17,9 @@ struct BoundNode {
   std::int32_t row = 0;
   std::int32_t heading = 0;  ///< index into the headings searched
   float bound = 0.0F;
-  /// Of the map under the footprint, where all of it is observed; else `whole` is false.
+  /// Sums of the map under the footprint, set only where all of it is observed.
   std::uint32_t map_min = 0, map_max = 0, square_min = 0, square_max = 0;
-  bool whole = false;
+  bool map_observed = false;
 };
 
 /// Blocks that are bounded together.
@@ -33,7 +33,7 @@ struct BlockScanResult {
   std::vector<BoundNode> nodes;
   std::int64_t blocks = 0;    ///< blocks x headings of which all terms were summed
   std::int64_t eligible = 0;  ///< blocks x headings with a position that counts
-  bool whole = true;          ///< false if time was over
+  bool complete = true;       ///< false if time was over before
 };
 
 class BlockScan {
@@ -53,7 +53,7 @@ class BlockScan {
     SectorRun run;
     PerBlock<double> needed{};  ///< of the cross sum, for a score above the best
     PerBlock<bool> eligible{};
-    bool hopeless = true;  ///< in none of the blocks
+    bool excluded = true;  ///< in every block
   };
 
   std::vector<Row> rows_of(const BlockTile& tile) const;

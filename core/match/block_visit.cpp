@@ -57,7 +57,7 @@ std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, con
 BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const {
   const Sector& sector = headings_.sector_of(heading);
   const TurnedFeatures& turned = headings_.turned(heading);
-  if (node.whole) {
+  if (node.map_observed) {
     BlockSums sums = sector.features;
     sums.map = {static_cast<double>(node.map_min), static_cast<double>(node.map_max)};
     sums.map_square = {static_cast<double>(node.square_min), static_cast<double>(node.square_max)};

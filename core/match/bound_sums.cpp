@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 void sum_terms(const BoundTerms& terms, const std::uint8_t* const* planes, std::ptrdiff_t stride, std::uint32_t* out) {
   for (int i = 0; i < BoundMap::kRun; ++i) out[i] = 0;
   std::size_t t = 0;
-  for (const BoundTerms::Class& group : terms.classes) {
+  for (const BoundTerms::Group& group : terms.groups) {
     for (; t < group.end; ++t) {
       const BoundTerms::Term& term = terms.terms[t];
       const std::uint8_t* from = planes[term.plane] + term.row * stride + term.col;
@@ -61,7 +61,7 @@ HWY_ATTR void sum_terms(const BoundTerms& terms, const std::uint8_t* const* plan
     Ints sum2 = sum0;
     Ints sum3 = sum0;
     std::size_t t = 0;
-    for (const BoundTerms::Class& group : terms.classes) {
+    for (const BoundTerms::Group& group : terms.groups) {
       Shorts even = hn::Zero(kShorts);
       Shorts odd = even;
       // Neighbours part: even and odd bytes, later even and odd shorts.

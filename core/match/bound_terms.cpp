@@ -9,8 +9,8 @@
 namespace roadfix {
 namespace {
 
-constexpr std::size_t kClasses = 64;
-constexpr std::size_t kMaxTermsOfClass = 1000;  // their sum has to fit into 16 bits
+constexpr std::size_t kGroups = 64;
+constexpr std::size_t kMaxTermsOfGroup = 1000;  // their sum has to fit into 16 bits
 constexpr double kHighestSum = 2147483648.0;
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
@@ -58,18 +58,18 @@ bool holds(const std::vector<CellOffset>& piece, int share, int level, double mi
 
 }  // namespace
 
-BoundTerms classified(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding) {
+BoundTerms quantized(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding) {
   BoundTerms result;
   std::erase_if(weighted, [](const auto& term) { return term.first <= 0.0; });
   if (weighted.empty()) return result;
   std::ranges::sort(weighted, [](const auto& a, const auto& b) { return a.first < b.first; });
   const double max_sum = BoundMap::kFull * weighted.back().first * static_cast<double>(weighted.size());
   result.unit = std::max(1.0, max_sum / kHighestSum);
-  const std::size_t size = std::clamp<std::size_t>((weighted.size() + kClasses - 1) / kClasses, 1, kMaxTermsOfClass);
+  const std::size_t size = std::clamp<std::size_t>((weighted.size() + kGroups - 1) / kGroups, 1, kMaxTermsOfGroup);
   for (std::size_t first = 0; first < weighted.size(); first += size) {
     const std::size_t end = std::min(first + size, weighted.size());
     const double weight = weighted[rounding == Rounding::kUp ? end - 1 : first].first / result.unit;
-    result.classes.push_back(
+    result.groups.push_back(
         {static_cast<std::uint32_t>(rounding == Rounding::kUp ? std::ceil(weight) : std::floor(weight)),
          static_cast<std::uint32_t>(end)});
     for (std::size_t i = first; i < end; ++i) result.terms.push_back(weighted[i].second);
@@ -238,16 +238,16 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
   };
   const Weighted single = blocks(BoundMap::kCellPlane, span, [&](int c, int r) { return rest.at(c, r); });
   pieces.insert(pieces.end(), single.begin(), single.end());
-  cross = classified(std::move(pieces), Rounding::kUp);
+  cross = quantized(std::move(pieces), Rounding::kUp);
   const auto value = [&](int c, int r) { return is_observed(array.at(c, r)) ? double{1} * array.at(c, r) : 0.0; };
   if (whole_map) {
     cover(array, nadir_col, nadir_row);
     return;
   }
-  sum_min = classified(blocks(BoundMap::kAllObserved, 1.0, value), Rounding::kDown);
-  sum_max = classified(blocks(BoundMap::kAnyObserved, 1.0, value), Rounding::kUp);
+  sum_min = quantized(blocks(BoundMap::kAllObserved, 1.0, value), Rounding::kDown);
+  sum_max = quantized(blocks(BoundMap::kAnyObserved, 1.0, value), Rounding::kUp);
   const auto squared = [&](int c, int r) { return value(c, r) * value(c, r); };
-  square_min = classified(blocks(BoundMap::kAllObserved, 1.0, squared), Rounding::kDown);
+  square_min = quantized(blocks(BoundMap::kAllObserved, 1.0, squared), Rounding::kDown);
 
   cover(array, nadir_col, nadir_row);
 }

@@ -11,26 +11,28 @@
 
 namespace roadfix {
 
-/// Weighted blocks of planes: weight[class] * plane value, summed. Terms of a class lie side by side.
+/// A sum over blocks of planes: of the weight of each group of terms times their plane values. Terms of a group lie
+/// side by side.
 struct BoundTerms {
   struct Term {
     std::int16_t col = 0;  ///< block relative to the nadir's
     std::int16_t row = 0;
     std::int16_t plane = 0;
   };
-  struct Class {
+  struct Group {
     std::uint32_t weight = 0;
-    std::uint32_t end = 0;  ///< of its terms, after those of the classes before
+    std::uint32_t end = 0;  ///< of its terms, after those of the groups before
   };
   std::vector<Term> terms;
-  std::vector<Class> classes;
+  std::vector<Group> groups;
   double unit = 1.0;  ///< of the weights: sums stay below 2^32
 };
 
 enum class Rounding { kUp, kDown };
 
-/// Few classes for terms of any weight (>= 0); sums are at least (kUp) or at most (kDown) those of the exact weights.
-BoundTerms classified(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding);
+/// Weights (>= 0) rounded to a few, so that many terms share one: sums are at least (kUp) or at most (kDown) those of
+/// the exact weights.
+BoundTerms quantized(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding);
 
 /// Straight pieces of the feature map, in its body frame; found once, then turned.
 struct LineHint {

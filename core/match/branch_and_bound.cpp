@@ -54,14 +54,14 @@ class BranchAndBound {
     const std::vector<BlockTile> tiles = block_scan_.tiles();
     for (std::size_t next = 0; next < tiles.size();) {
       const std::size_t end = std::min(next + static_cast<std::size_t>(search_.threads), tiles.size());
-      std::atomic<bool> whole{true};
+      std::atomic<bool> complete{true};
       parallel_for(static_cast<int>(end - next), search_.threads, [&](int i) {
         const BlockScanResult found = block_scan_.scan(tiles[next + static_cast<std::size_t>(i)], deadline_);
-        if (!found.whole) whole = false;
+        if (!found.complete) complete = false;
         add(found);
       });
       // What is remembered must not grow without end.
-      if (!whole || (nodes_.size() > kBatch && !visit())) return false;
+      if (!complete || (nodes_.size() > kBatch && !visit())) return false;
       next = end;
     }
     return true;
@@ -99,10 +99,10 @@ class BranchAndBound {
     std::map<std::int32_t, std::vector<BoundNode>> of_heading;
     for (const BoundNode& node : nodes) of_heading[node.heading].push_back(node);
     const std::vector<std::pair<std::int32_t, std::vector<BoundNode>>> tasks(of_heading.begin(), of_heading.end());
-    std::atomic<bool> whole{true};
+    std::atomic<bool> complete{true};
     parallel_for(static_cast<int>(tasks.size()), search_.threads, [&](int t) {
       if (deadline_.over()) {
-        whole = false;
+        complete = false;
         return;
       }
       const auto& [heading, members] = tasks[static_cast<std::size_t>(t)];
@@ -111,7 +111,7 @@ class BranchAndBound {
       result_.poses.insert(result_.poses.end(), poses.begin(), poses.end());
       for (const LatticePose& pose : poses) best_ = std::max(best_.load(), pose.score);
     });
-    return whole;
+    return complete;
   }
 
   const BoundedSearch& search_;

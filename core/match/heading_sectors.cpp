@@ -13,18 +13,18 @@ bool HeadingSectors::turn(const Deadline& deadline) {
   const LineHints hints = find_lines(*search.features, problem_.base);
   const std::size_t count = search.headings.size();
   turned_.resize(count);
-  std::atomic<bool> whole{true};
+  std::atomic<bool> complete{true};
   parallel_for(static_cast<int>(count), search.threads, [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     if (deadline.over()) {
-      whole = false;
+      complete = false;
       return;
     }
     const Angle heading = problem_.heading(at);
     turned_[at].emplace(problem_.rotator.rotated(heading), heading, problem_.base, hints, problem_.map.span(),
                         problem_.map.all_observed());
   });
-  if (!whole) return false;
+  if (!complete) return false;
   for (std::size_t first = 0; first < count; first += kSectorHeadings) {
     sectors_.push_back(sector_between(first, std::min(first + kSectorHeadings, count)));
   }
@@ -73,8 +73,8 @@ HeadingSectors::Covered HeadingSectors::covered(const Sector& sector, const Sect
   BlockSums& sums = result.sums;
   sums.map = {static_cast<double>(run.inner.value[block]), static_cast<double>(run.outer.value[block])};
   sums.map_square = {static_cast<double>(run.inner.square[block]), static_cast<double>(run.outer.square[block])};
-  result.whole = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
-  if (!result.whole) {
+  result.map_observed = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
+  if (!result.map_observed) {
     sums.cells = {static_cast<double>(run.inner.cells[block]),
                   std::min(sums.cells.max, static_cast<double>(run.outer.cells[block]))};
     sums.feature.min = 0.0;

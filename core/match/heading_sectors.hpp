@@ -36,8 +36,8 @@ class HeadingSectors {
   const TurnedFeatures& turned(std::size_t heading) const { return *turned_[heading]; }
 
   struct Covered {
-    BlockSums sums;      ///< for all headings of the sector
-    bool whole = false;  ///< all of the map under the block's positions is observed
+    BlockSums sums;             ///< for all headings of the sector
+    bool map_observed = false;  ///< all of it under the footprint, from every position of the block
   };
   static Covered covered(const Sector& sector, const SectorRun& run, std::size_t block);
 

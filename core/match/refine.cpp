@@ -36,7 +36,7 @@ GridGeometry joined(const GridGeometry& a, const GridGeometry& b) {
 /// each.
 class GroundAround {
  public:
-  /// `whole()` is false, and the rest must not be used, if time was over before.
+  /// `complete()` is false, and the rest must not be used, if time was over before.
   GroundAround(const Level& level, int cells, const Deadline& deadline, const std::vector<LatticePose>& candidates) {
     std::vector<GridGeometry> windows;
     std::int64_t apart = 0;
@@ -52,10 +52,10 @@ class GroundAround {
       if (deadline.over()) return;
       planes_.push_back({window.origin, MapPlane(level.read(window).cells, 0)});
     }
-    whole_ = true;
+    complete_ = true;
   }
 
-  bool whole() const { return whole_; }
+  bool complete() const { return complete_; }
   bool shared() const { return planes_.size() == 1; }
   const MapPlane& plane(std::size_t candidate) const { return at(candidate).plane; }
   PlaneCell place(std::size_t candidate, LatticeIndex cell) const {
@@ -71,7 +71,7 @@ class GroundAround {
   const Plane& at(std::size_t candidate) const { return planes_[shared() ? 0 : candidate]; }
 
   std::vector<Plane> planes_;
-  bool whole_ = false;
+  bool complete_ = false;
 };
 
 /// The places up to `cells` around one, row by row.
@@ -153,7 +153,7 @@ GridGeometry padded(const GridGeometry& geometry, int cells) {
 
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
   const GroundAround ground(level, cells, deadline, candidates);
-  if (!ground.whole()) return false;
+  if (!ground.complete()) return false;
   std::map<std::pair<int, int>, std::vector<std::size_t>> candidates_of;  // scale and bin
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
@@ -170,15 +170,15 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
     if (!features.contains(scale)) features.emplace(scale, level.at_scale(scale));
     tasks.push_back({scale, bin, &features.at(scale), std::move(members), {}});
   }
-  std::atomic<bool> whole{true};
+  std::atomic<bool> complete{true};
   parallel_for(static_cast<int>(tasks.size()), level.threads, [&](int t) {
     if (deadline.over()) {
-      whole = false;
+      complete = false;
     } else {
       run(tasks[static_cast<std::size_t>(t)], level, cells, ground, candidates);
     }
   });
-  if (!whole) return false;
+  if (!complete) return false;
   std::vector<LatticePose> refined = candidates;
   for (LatticePose& pose : refined) pose.score = 0.0;
   for (const RefineTask& task : tasks) {

@@ -7,9 +7,9 @@
 
 namespace roadfix {
 
-/// Modes from the best candidates of the region (at the finest level, distinct and best first), rivals from all others.
-/// `scanned`: the region that they come from. Candidates that were flanks of one peak give one mode. At the deadline it
-/// ends after the first mode.
+/// Sets the modes of the result, from the best candidates within the region, and its background: the scores of all
+/// others. `candidates` are poses of the finest level, distinct and best first; `scanned` is the region that they come
+/// from. Candidates that were flanks of one peak give one mode. At the deadline it ends after the first mode.
 void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
           const std::vector<LatticePose>& candidates, SearchResult& result);
 

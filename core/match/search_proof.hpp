@@ -7,8 +7,8 @@
 
 namespace roadfix {
 
-/// At SearchLevels::proof_level(), whose candidates are given: poses that are better than the best of them within the
-/// region are added. Ends after options.proof_time, or halfway to the deadline.
+/// `candidates` are those of the level SearchLevels::proof_level(); poses of the region that score more than the best
+/// of them are appended. Ends after options.proof_time, or halfway to the deadline.
 SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates);
 
 }  // namespace roadfix

@@ -10,7 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/fly/campaign.hpp"
 #include "cli/fly/flight_files.hpp"
-#include "cli/fly/screening.hpp"
+#include "cli/fly/flight_pictures.hpp"
 #include "cli/fly/service_localizer.hpp"
 #include "cli/fly_ground.hpp"
 #include "cli/json_text.hpp"
@@ -101,14 +101,14 @@ void run_fly(const FlyOptions& options) {
   const Ground ground = ground_of(options, map);
   const fly::FlightPlan plan = plan_of(options, map, ground);
   fly::Campaign campaign = campaign_of(options, map, ground, plan);
-  fly::Screening screening(map, ground.imagery ? &*ground.imagery : nullptr, ground.footprint, options.screening);
+  fly::FlightPictures pictures(map, ground.imagery ? &*ground.imagery : nullptr, ground.footprint, options.pictures);
   campaign.watch = [&](const std::string& filter, const fly::Record& record, const fly::Localizer& localizer) {
-    screening.show(filter, record, localizer);
+    pictures.show(filter, record, localizer);
   };
   Progress progress("flying", "steps");
   campaign.progress = progress.updates();
   const auto results = fly::run(campaign, map.zone);
-  screening.finish();
+  pictures.finish();
   const fly::Events events{plan.kidnapping, plan.outage};
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));

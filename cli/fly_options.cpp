@@ -126,13 +126,13 @@ void add_output_options(CLI::App& command, FlyOptions& o) {
   add("--json", o.json_file, "Figures of every filter")->type_name("FILE");
   add("--csv", o.csv_file, "Truth, estimate and covariance of every step")->type_name("FILE");
   add("--geojson", o.geojson_file, "True paths, estimated paths, ellipses")->type_name("FILE");
-  add("--pictures", o.screening.folder, "Draw steps of the first flight into this folder")->type_name("DIR");
-  add("--picture-steps", o.screening.steps, "Which steps; default: 0,1,5,20,80 and the last")->delimiter(',');
-  add("--film", o.screening.film, "The first flight as an animated GIF, filters side by side")->type_name("FILE");
-  add("--film-rate", o.screening.frames_per_second, "Steps per second of the film")
+  add("--pictures", o.pictures.folder, "Draw steps of the first flight into this folder")->type_name("DIR");
+  add("--picture-steps", o.pictures.steps, "Which steps; default: 0,1,5,20,80 and the last")->delimiter(',');
+  add("--film", o.pictures.film, "The first flight as an animated GIF, filters side by side")->type_name("FILE");
+  add("--film-rate", o.pictures.frames_per_second, "Steps per second of the film")
       ->capture_default_str()
       ->check(CLI::Range(1, 50));
-  add("--picture-px", o.screening.longest_px, "Longer side of a picture")
+  add("--picture-px", o.pictures.longest_px, "Longer side of a picture")
       ->capture_default_str()
       ->check(CLI::Range(100, 8000));
 }

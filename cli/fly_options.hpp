@@ -9,7 +9,7 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/fly/flight.hpp"
-#include "cli/fly/screening.hpp"
+#include "cli/fly/flight_pictures.hpp"
 #include "cli/fly/sensor.hpp"
 
 namespace roadfix::cli {
@@ -53,7 +53,7 @@ struct FlyOptions {
   std::string json_file;
   std::string csv_file;
   std::string geojson_file;
-  fly::ScreeningOptions screening;
+  fly::FlightPictureOptions pictures;
 };
 
 void add_fly_options(CLI::App& command, FlyOptions& options);

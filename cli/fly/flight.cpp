@@ -49,11 +49,11 @@ class Sight {
     scale_ = std::max(0.5, 1.0 + plan.altitude_bias * normal(random));
   }
 
-  Sighting at(int step, const GridPose& pose) const {
+  Observation at(int step, const GridPose& pose) const {
     Random random = camera_stream(seed_, step);
     if (!frame_comes(plan_, step, random)) return {};
-    return sensor_.see({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
-                       scale_, random);
+    return sensor_.observe({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
+                           scale_, random);
   }
 
  private:
@@ -94,7 +94,7 @@ Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Senso
     if (plan.kidnapping && plan.kidnapping->step == step) {
       vehicle.jump_to(jumped(vehicle.pose(), plan.kidnapping->distance_m, box, sensor, random));
     }
-    Sighting seen_now = sight.at(step, vehicle.pose());
+    Observation seen_now = sight.at(step, vehicle.pose());
     input.features = std::move(seen_now.features);
     input.frame = std::move(seen_now.frame);
     flight.push_back({vehicle.pose(), std::move(input)});

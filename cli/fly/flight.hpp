@@ -46,17 +46,17 @@ struct FlightPlan {
 
 /// What the vehicle tells at a step.
 struct Report : StepInput {
-  Shutter frame;  ///< in place of features, where the detector is elsewhere
+  FrameSource frame;  ///< in place of features, where the detector is elsewhere
 
   bool saw() const { return features.has_value() || frame != nullptr; }
 };
 
-struct Moment {
+struct FlightStep {
   GridPose truth;
   Report input;
 };
 
-using Flight = std::vector<Moment>;
+using Flight = std::vector<FlightStep>;
 
 /// Streams of a flight's seed: what is drawn for the motion, and for the camera at each step.
 bench::Random motion_stream(std::uint64_t seed);

@@ -43,19 +43,19 @@ class LibraryLocalizer : public Localizer {
   TrackerState state_;
 };
 
-Record judged(const Moment& moment, TrackEstimate estimate, const UtmZone& zone) {
+Record judged(const FlightStep& step, TrackEstimate estimate, const UtmZone& zone) {
   Record record;
-  record.sequence = moment.input.sequence;
-  record.time_s = 1e-6 * static_cast<double>(moment.input.time_us);
-  record.truth = moment.truth;
-  record.saw = moment.input.saw();
+  record.sequence = step.input.sequence;
+  record.time_s = 1e-6 * static_cast<double>(step.input.time_us);
+  record.truth = step.truth;
+  record.saw = step.input.saw();
   record.estimate = std::move(estimate);
   const TrackCluster& best = record.estimate.clusters.front();
   record.best = on_grid(best.pose, zone);
   const GridPoint at = record.best.position;
-  record.error_m = distance_m(at, moment.truth.position);
-  record.heading_error_deg = angular_distance(record.best.heading, moment.truth.heading).degrees();
-  record.nees = bench::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, moment.truth.position);
+  record.error_m = distance_m(at, step.truth.position);
+  record.heading_error_deg = angular_distance(record.best.heading, step.truth.heading).degrees();
+  record.nees = bench::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, step.truth.position);
   return record;
 }
 
@@ -88,11 +88,11 @@ TrackSettings filter_named(const std::string& name, int particles) {
 
 std::vector<Record> localize(const Flight& flight, Localizer& localizer, const UtmZone& zone, const Watcher& watch) {
   std::vector<Record> records;
-  for (const Moment& moment : flight) {
+  for (const FlightStep& step : flight) {
     const double before = localizer.clock_ms();
-    TrackEstimate estimate = localizer.advance(moment.input);
+    TrackEstimate estimate = localizer.advance(step.input);
     const double spent = localizer.clock_ms() - before;
-    records.push_back(judged(moment, std::move(estimate), zone));
+    records.push_back(judged(step, std::move(estimate), zone));
     records.back().step_ms = spent;
     watch(records.back(), localizer);
   }

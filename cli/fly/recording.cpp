@@ -59,10 +59,10 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
                       {picture.pixels.cols * picture.gsd_m, picture.pixels.rows * picture.gsd_m},
                       {}};
   if (options.detector != nullptr) {
-    frame.sighting.features =
+    frame.observation.features =
         detect_features(*options.detector, rectified(std::move(picture)), options.cell_m, options.seed);
   } else {
-    frame.sighting.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
+    frame.observation.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
       return CameraFrame{bench::read_frame(folder, truth, border), cell_m, seed};
     };
   }
@@ -105,12 +105,12 @@ Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t 
     input.time_us = std::llround(1e6 * frame.time_s);
     if (before != nullptr && plan.tells_odometry) {
       const double seconds = frame.time_s - before->time_s;
-      const Odometry moved = offset_from(before->truth, odometry.blown(frame.truth, -seconds));
-      input.odometry = odometry.tell(moved, std::hypot(moved.forward_m, moved.right_m), seconds, motion);
+      const Odometry moved = offset_from(before->truth, odometry.drifted(frame.truth, -seconds));
+      input.odometry = odometry.measure(moved, std::hypot(moved.forward_m, moved.right_m), seconds, motion);
     }
     if (frame_comes(plan, step, camera)) {
-      input.features = frame.sighting.features;
-      input.frame = frame.sighting.frame;
+      input.features = frame.observation.features;
+      input.frame = frame.observation.frame;
     }
     flight.push_back({frame.truth, std::move(input)});
     before = &frame;

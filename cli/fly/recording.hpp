@@ -17,7 +17,7 @@ struct RecordedFrame {
   GridPose truth;
   double time_s = 0.0;  ///< since a step before the first frame
   Footprint footprint;
-  Sighting sighting;
+  Observation observation;
 };
 
 struct Recording {

@@ -67,7 +67,7 @@ class ImagingSensor : public Sensor {
  public:
   ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
 
-  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
     CameraFrame frame = camera_.take(camera_.aim(pose, scale, random));
     return {detect_features(detector_, rectified(std::move(frame.image)), frame.cell_m, frame.seed), {}};
   }
@@ -83,7 +83,7 @@ class CameraSensor : public Sensor {
  public:
   explicit CameraSensor(const Camera& camera) : camera_(camera) {}
 
-  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
     return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] { return camera.take(shot); }};
   }
 
@@ -98,7 +98,7 @@ class SimulatedSensor : public Sensor {
   SimulatedSensor(const MapView& map, const Footprint& footprint, const FeatureQuality& quality)
       : ground_(map.read(GridGeometry::covering(map.extent, map.cell_m))), footprint_(footprint), quality_(quality) {}
 
-  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
     const double cell_m = ground_.geometry.cell_m;
     const auto cells = [&](double metres) { return static_cast<int>(std::lround(scale * metres / cell_m)); };
     FeatureMap features =

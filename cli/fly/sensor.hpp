@@ -24,20 +24,20 @@ struct CameraFrame {
 };
 
 /// Called when the picture is needed: those of whole flights would fill the memory. Equal calls give equal pictures.
-using Shutter = std::function<CameraFrame()>;
+using FrameSource = std::function<CameraFrame()>;
 
 /// One of the two.
-struct Sighting {
+struct Observation {
   std::optional<FeatureMap> features;
-  Shutter frame;
+  FrameSource frame;
 };
 
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// `scale`: the ground that is seen is so many times as large as the sighting says. Safe to call from several threads
-  /// with generators of their own.
-  virtual Sighting see(const GridPose& pose, double scale, bench::Random& random) const = 0;
+  /// `scale`: the ground that is seen is so many times as large as the observation says. Safe to call from several
+  /// threads with generators of their own.
+  virtual Observation observe(const GridPose& pose, double scale, bench::Random& random) const = 0;
   /// Whether the middle of the frame would show ground.
   virtual bool shows(GridPoint point) const = 0;
 };

@@ -21,13 +21,13 @@ OdometrySensor::OdometrySensor(const OdometryErrors& errors, bench::Random& rand
   if (errors.wind_m_s > 0.0) wind_m_s_ = {errors.wind_m_s * normal(random), errors.wind_m_s * normal(random)};
 }
 
-Odometry OdometrySensor::tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const {
+Odometry OdometrySensor::measure(const Odometry& moved, double length_m, double seconds, bench::Random& random) const {
   const double spread = errors_.share * length_m;
   return {scale_ * moved.forward_m + spread * normal(random), scale_ * moved.right_m + spread * normal(random),
           moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn};
 }
 
-GridPose OdometrySensor::blown(const GridPose& pose, double seconds) const {
+GridPose OdometrySensor::drifted(const GridPose& pose, double seconds) const {
   return {{pose.position.east_m + seconds * wind_m_s_.east_m, pose.position.north_m + seconds * wind_m_s_.north_m},
           pose.heading};
 }
@@ -38,8 +38,8 @@ Vehicle::Vehicle(const GridPose& start, const Handling& handling, const Odometry
 Odometry Vehicle::move(Angle turn, bench::Random& random) {
   const double length_m = handling_.speed_m_s * handling_.step_s;
   const Odometry step = arc(length_m, turn);
-  pose_ = odometry_.blown(moved(pose_, step), handling_.step_s);
-  return odometry_.tell(step, length_m, handling_.step_s, random);
+  pose_ = odometry_.drifted(moved(pose_, step), handling_.step_s);
+  return odometry_.measure(step, length_m, handling_.step_s, random);
 }
 
 }  // namespace roadfix::fly

@@ -22,9 +22,9 @@ class OdometrySensor {
   OdometrySensor(const OdometryErrors& errors, bench::Random& random);
 
   /// What it says of a motion through the air of that length and duration.
-  Odometry tell(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
+  Odometry measure(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
   /// Where the wind, which it does not feel, carries a vehicle in that time.
-  GridPose blown(const GridPose& pose, double seconds) const;
+  GridPose drifted(const GridPose& pose, double seconds) const;
 
  private:
   OdometryErrors errors_;

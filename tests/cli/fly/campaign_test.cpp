@@ -8,7 +8,7 @@
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 
-#include "cli/fly/screening.hpp"
+#include "cli/fly/flight_pictures.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
@@ -75,18 +75,18 @@ TEST_F(Campaigns, StopWhenTheyAreAskedTo) {
 
 TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
   const testing::TemporaryFolder folder;
-  ScreeningOptions options;
+  FlightPictureOptions options;
   options.folder = (folder / "pictures").string();
   options.film = (folder / "film.gif").string();
   options.steps = {0, 3};
   options.longest_px = 200;
-  Screening screening(map, nullptr, {300.0, 300.0}, options);
+  FlightPictures pictures(map, nullptr, {300.0, 300.0}, options);
   campaign.flights.number = 1;
   campaign.watch = [&](const std::string& filter, const Record& record, const Localizer& localizer) {
-    screening.show(filter, record, localizer);
+    pictures.show(filter, record, localizer);
   };
   run(campaign, map.zone);
-  screening.finish();
+  pictures.finish();
   const cv::Mat first = cv::imread((folder / "pictures/paper-0000.png").string());
   const cv::Mat last = cv::imread((folder / "pictures/default-0005.png").string());
   ASSERT_EQ(first.cols, 200);

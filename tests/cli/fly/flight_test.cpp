@@ -21,7 +21,7 @@ const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
 /// Shows everything, sees one cell.
 class Window : public Sensor {
  public:
-  Sighting see(const GridPose&, double, bench::Random& random) const override {
+  Observation observe(const GridPose&, double, bench::Random& random) const override {
     return {FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0), {}};
   }
   bool shows(GridPoint) const override { return true; }
@@ -30,10 +30,10 @@ class Window : public Sensor {
 /// Remembers where and how it was looked.
 class Witness : public Window {
  public:
-  Sighting see(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
     places.push_back(pose.position);
     scales.push_back(scale);
-    return Window::see(pose, scale, random);
+    return Window::observe(pose, scale, random);
   }
   mutable std::vector<GridPoint> places;
   mutable std::vector<double> scales;
@@ -47,7 +47,7 @@ class Flights : public ::testing::Test {
   }
   static int frames(const Flight& flight) {
     return static_cast<int>(
-        std::ranges::count_if(flight, [](const Moment& m) { return m.input.features.has_value(); }));
+        std::ranges::count_if(flight, [](const FlightStep& m) { return m.input.features.has_value(); }));
   }
 
   FlightPlan plan;
@@ -173,7 +173,7 @@ TEST_F(Flights, OfWaypointsPassCloseToEachAndEndAtTheLast) {
   EXPECT_LT(flight.size(), 120u);
   for (const GridPoint& point : points) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Moment& moment : flight) nearest = std::min(nearest, distance_m(moment.truth.position, point));
+    for (const FlightStep& step : flight) nearest = std::min(nearest, distance_m(step.truth.position, point));
     EXPECT_LT(nearest, 100.0);  // the turning circle at 15 m/s and 10 deg/s has 86 m
   }
 }

@@ -66,8 +66,8 @@ TEST_F(Recordings, AreOneFlightForEachSequenceInTheOrderOfTheirFrames) {
   const RecordedFrame& first = recordings[0].frames[0];
   EXPECT_EQ(first.footprint.width_m, 40.0);
   EXPECT_EQ(first.footprint.height_m, 60.0);
-  EXPECT_EQ(first.sighting.features->cells, CellArray(20, 30, 10));
-  EXPECT_EQ(recordings[0].frames[1].sighting.features->cells.at(0, 0), 30);
+  EXPECT_EQ(first.observation.features->cells, CellArray(20, 30, 10));
+  EXPECT_EQ(recordings[0].frames[1].observation.features->cells.at(0, 0), 30);
   options.max_frames = 2;
   EXPECT_EQ(recorded(kTwoFlights)[0].frames.size(), 2u);
 }

@@ -44,8 +44,8 @@ TEST(Camera, TakesThePictureInWhichTheVehicleItselfWouldDetectRoadsAndTheSameOne
   const Witness witness;
   bench::Random one(7);
   bench::Random other(7);
-  const Sighting detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->see(kPose, 1.0, one);
-  const Sighting sent = make_camera(imagery, kFootprint, {}, 2.0)->see(kPose, 1.0, other);
+  const Observation detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->observe(kPose, 1.0, one);
+  const Observation sent = make_camera(imagery, kFootprint, {}, 2.0)->observe(kPose, 1.0, other);
   EXPECT_TRUE(detected.features);
   EXPECT_FALSE(detected.frame);
   EXPECT_FALSE(sent.features);

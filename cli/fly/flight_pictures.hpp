@@ -9,7 +9,7 @@
 
 namespace roadfix::fly {
 
-struct ScreeningOptions {
+struct FlightPictureOptions {
   std::string folder;      ///< of the pictures; empty = none
   std::vector<int> steps;  ///< empty = 0, 1, 5, 20, 80
   std::string film;        ///< file; empty = none
@@ -17,10 +17,11 @@ struct ScreeningOptions {
   int longest_px = 900;
 };
 
-class Screening {
+class FlightPictures {
  public:
-  /// `imagery` may be null; all must outlive the screening. Throws IoFailure "picture-unwritable" for the folder.
-  Screening(const MapView& map, const Orthoimage* imagery, const Footprint& footprint, ScreeningOptions options);
+  /// `imagery` may be null; all must outlive it. Throws IoFailure "picture-unwritable" for the folder.
+  FlightPictures(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
+                 FlightPictureOptions options);
 
   /// Steps of one filter in their order. Not thread-safe.
   void show(const std::string& filter, const Record& record, const Localizer& localizer);
@@ -41,7 +42,7 @@ class Screening {
 
   const MapView& map_;
   Footprint footprint_;
-  ScreeningOptions options_;
+  FlightPictureOptions options_;
   Backdrop backdrop_;
   std::vector<Reel> reels_;  ///< in the order in which the filters came
 };

@@ -1,4 +1,4 @@
-#include "cli/fly/screening.hpp"
+#include "cli/fly/flight_pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@ std::string caption_of(const std::string& filter, const Record& record) {
 
 }  // namespace
 
-Screening::Screening(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
-                     ScreeningOptions options)
+FlightPictures::FlightPictures(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
+                               FlightPictureOptions options)
     : map_(map), footprint_(footprint), options_(std::move(options)) {
   if (options_.folder.empty() && options_.film.empty()) return;
   if (options_.steps.empty()) options_.steps = {0, 1, 5, 20, 80};
@@ -37,7 +37,7 @@ Screening::Screening(const MapView& map, const Orthoimage* imagery, const Footpr
   }
 }
 
-void Screening::show(const std::string& filter, const Record& record, const Localizer& localizer) {
+void FlightPictures::show(const std::string& filter, const Record& record, const Localizer& localizer) {
   if (backdrop_.pixels.empty()) return;
   Reel& reel = reel_of(filter);
   reel.path.push_back(record.truth.position);
@@ -51,7 +51,7 @@ void Screening::show(const std::string& filter, const Record& record, const Loca
   if (chosen(record.sequence)) write(reel, reel.last, record.sequence);
 }
 
-void Screening::finish() {
+void FlightPictures::finish() {
   if (reels_.empty()) return;
   for (const Reel& reel : reels_) {
     if (!chosen(reel.last_step)) write(reel, reel.last, reel.last_step);
@@ -62,18 +62,18 @@ void Screening::finish() {
   film.write(options_.film, options_.frames_per_second);
 }
 
-Screening::Reel& Screening::reel_of(const std::string& filter) {
+FlightPictures::Reel& FlightPictures::reel_of(const std::string& filter) {
   const auto known = std::ranges::find(reels_, filter, &Reel::filter);
   if (known != reels_.end()) return *known;
   reels_.push_back({filter, {}, {}, {}, 0});
   return reels_.back();
 }
 
-bool Screening::chosen(std::int64_t step) const {
+bool FlightPictures::chosen(std::int64_t step) const {
   return std::ranges::find(options_.steps, static_cast<int>(step)) != options_.steps.end();
 }
 
-void Screening::write(const Reel& reel, const cv::Mat& picture, std::int64_t step) const {
+void FlightPictures::write(const Reel& reel, const cv::Mat& picture, std::int64_t step) const {
   if (options_.folder.empty()) return;
   const std::string file = fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step);
   if (!cv::imwrite(file, picture)) {

@@ -18,7 +18,7 @@
 namespace roadfix::cli {
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string map;
   std::string target;
   std::string format;
@@ -36,7 +36,7 @@ GridBox box_of(const MapInfo& map, const std::vector<double>& bbox) {
 }
 
 /// That of the name of the target, where none was asked for.
-ExportFormat format_of(const Options& options) {
+ExportFormat format_of(const ExportArguments& options) {
   static const std::map<std::string, ExportFormat> kFormats{
       {"cog", ExportFormat::kCog},   {"gtiff", ExportFormat::kGeoTiff},    {"png", ExportFormat::kPng},
       {".tif", ExportFormat::kCog},  {"mbtiles", ExportFormat::kMbTiles},  {".png", ExportFormat::kPng},
@@ -51,7 +51,7 @@ ExportFormat format_of(const Options& options) {
                                  options.target));
 }
 
-void run_export(const Options& options) {
+void run_export(const ExportArguments& options) {
   const std::stop_token stop = stop_on_signals();
   const MapReader map(options.map);
   std::error_code none;  // where there is no target yet
@@ -71,7 +71,7 @@ void add_export_command(CLI::App& app) {
   command->footer(
       "Examples: roadfix export adiyaman.gpkg adiyaman.tif\n"
       "          roadfix export adiyaman.gpkg centre.png --bbox 38.26,37.75,38.29,37.77");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("target", options->target, "File to write")->required();
   command->add_option("--format", options->format, "Default: by the end of the target's name, cog for .tif")

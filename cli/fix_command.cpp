@@ -21,7 +21,7 @@
 namespace roadfix::cli {
 namespace {
 
-struct Options {
+struct FixArguments {
   std::string map;
   FeatureInputOptions input;
   double lat = 0.0;
@@ -37,7 +37,7 @@ struct Options {
   bool as_json = false;
 };
 
-Prior prior_of(const Options& options) {
+Prior prior_of(const FixArguments& options) {
   Prior prior;
   if (options.radius_m > 0.0) prior.circle = GeoCircle{{options.lat, options.lon}, options.radius_m};
   if (!options.bbox.empty()) {
@@ -83,7 +83,7 @@ void print_text(const Fix& fix) {
   }
 }
 
-void run_fix(const Options& options) {
+void run_fix(const FixArguments& options) {
   const MapView view = view_of_file(options.map);
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
@@ -104,7 +104,7 @@ void run_fix(const Options& options) {
 void add_fix_command(CLI::App& app) {
   auto* command = app.add_subcommand("fix", "Says where a feature map or a frame was seen");
   command->footer("Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<FixArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);
   auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");

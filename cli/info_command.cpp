@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct InfoArguments {
   std::string map;
   bool as_json = false;
 };
@@ -106,7 +106,7 @@ void print_text(const std::string& path, const MapInfo& info) {
 void add_info_command(CLI::App& app) {
   auto* command = app.add_subcommand("info", "What a map holds and where it came from");
   command->footer("Example: roadfix info adiyaman.gpkg --json");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");
   command->callback([options] {

@@ -22,7 +22,7 @@
 namespace roadfix::cli {
 namespace {
 
-struct Options {
+struct MatchArguments {
   std::string map;
   FeatureInputOptions input;
   std::vector<std::string> poses;
@@ -81,7 +81,7 @@ void print_text(const std::vector<GeoPose>& poses, const std::vector<MatchScore>
   }
 }
 
-void run_match(const Options& options) {
+void run_match(const MatchArguments& options) {
   std::vector<GeoPose> poses;
   for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--pose"));
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
@@ -105,7 +105,7 @@ void run_match(const Options& options) {
 void add_match_command(CLI::App& app) {
   auto* command = app.add_subcommand("match", "Says how well a feature map or a frame fits the map at given poses");
   command->footer("Example: roadfix match town.gpkg window.png --cell 2 --pose 57.70,11.97,45");
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MatchArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);
   command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");

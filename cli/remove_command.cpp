@@ -11,12 +11,12 @@
 namespace roadfix::cli {
 namespace {
 
-struct Options {
+struct RemoveArguments {
   std::string map;
   std::string source;
 };
 
-void remove_source(const Options& options) {
+void remove_source(const RemoveArguments& options) {
   const std::stop_token stop = stop_on_signals();
   const auto settings = MapWriter::settings_of(options.map);
   if (!settings) throw NotFound("map-not-found", fmt::format("{}: no such file", options.map));
@@ -37,7 +37,7 @@ void add_remove_command(CLI::App& app) {
   command->footer(
       "Example: roadfix remove adiyaman.gpkg before\nThe map is then as if the source had never been ingested; roadfix "
       "info names the sources. Interrupted or killed, the same command goes on where it was.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RemoveArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("source", options->source, "Name of the source")->required();
   command->callback([options] { remove_source(*options); });

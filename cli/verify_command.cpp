@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct VerifyArguments {
   std::string map;
   bool as_json = false;
   bool repair = false;
@@ -70,7 +70,7 @@ void repair(const std::string& path, const std::stop_token& stop) {
   }
 }
 
-void verify(const Options& options) {
+void verify(const VerifyArguments& options) {
   const std::stop_token stop = stop_on_signals();
   if (options.repair) repair(options.map, stop);
   MapVerdict verdict;
@@ -92,7 +92,7 @@ void add_verify_command(CLI::App& app) {
   command->footer(
       "Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line). Interrupted "
       "ingests and what they left to do are named; they are no damage.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");
   command->add_flag(

@@ -16,7 +16,7 @@
 namespace roadfix::cli {
 namespace {
 
-struct Options {
+struct WorldArguments {
   world::WorldSettings settings;
   std::string folder;
   std::vector<double> size_km{2.0, 2.0};
@@ -32,7 +32,7 @@ void write_bench(const std::filesystem::path& folder) {
   write_file(folder / "bench.json", manifest.dump(2) + '\n');
 }
 
-void render(const Options& options) {
+void render(const WorldArguments& options) {
   world::WorldSettings settings = options.settings;
   settings.width_m = options.size_km[0] * 1000.0;
   settings.height_m = options.size_km[1] * 1000.0;
@@ -61,7 +61,7 @@ void add_world_command(CLI::App& app) {
       "          roadfix world country --land country --varied\n"
       "Writes pre.tif, post.tif, roads.geojson, world.json, frames/ with frames.csv, and bench.json for roadfix "
       "bench.");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<WorldArguments>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder", options->folder, "Folder to write, made where it is missing")->required();
   command->add_option("--seed", settings.seed, "The same seed gives the same files")

@@ -12,7 +12,7 @@
 namespace roadfix {
 namespace {
 
-void require(bool condition, const char* field, const char* range) {
+void require_camera(bool condition, const char* field, const char* range) {
   if (!condition) throw InvalidInput("frame-camera", fmt::format("frame: {} must lie in {}", field, range));
 }
 
@@ -84,15 +84,15 @@ cv::Rect2d seen_ground(const FrameCamera& camera, cv::Size size, double max_rang
 }  // namespace
 
 void validate(const FrameCamera& camera) {
-  require(camera.horizontal_fov.has_value() != camera.focal_px.has_value(), "one of field of view and focal length",
-          "use");
-  require(
+  require_camera(camera.horizontal_fov.has_value() != camera.focal_px.has_value(),
+                 "one of field of view and focal length", "use");
+  require_camera(
       !camera.horizontal_fov || (camera.horizontal_fov->degrees() > 0.0 && camera.horizontal_fov->degrees() < 180.0),
       "fov_deg", "(0, 180) degrees");
-  require(!camera.focal_px || (*camera.focal_px > 0.0 && *camera.focal_px < 1e9), "focal_px", "(0, 1e9) pixels");
-  require(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
-  require(std::abs(camera.roll.degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
-  require(std::abs(camera.pitch.degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
+  require_camera(!camera.focal_px || (*camera.focal_px > 0.0 && *camera.focal_px < 1e9), "focal_px", "(0, 1e9) pixels");
+  require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
+  require_camera(std::abs(camera.roll.degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
+  require_camera(std::abs(camera.pitch.degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
 }
 
 std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Size size, cv::Point2d pixel) {
@@ -107,7 +107,7 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
                    double max_range_m, double max_pixels) {
   validate(camera);
   require_looking_down(camera);
-  require(gsd_m > 0.0 && gsd_m < 1e6, "gsd_m", "(0, 1e6) metres");
+  require_camera(gsd_m > 0.0 && gsd_m < 1e6, "gsd_m", "(0, 1e6) metres");
   const cv::Rect2d box = seen_ground(camera, frame.size(), max_range_m);
   const double cols = std::ceil(box.width / gsd_m);
   const double rows = std::ceil(box.height / gsd_m);

@@ -12,7 +12,7 @@
 namespace roadfix {
 namespace {
 
-void require(bool condition, const char* parameter, const char* range) {
+void require_parameter(bool condition, const char* parameter, const char* range) {
   if (!condition)
     throw InvalidInput("tree-parameter", fmt::format("tree detector: {} must lie in {}", parameter, range));
 }
@@ -140,22 +140,23 @@ class Growth {
 }  // namespace
 
 void validate(const TreeParameters& p) {
-  require(p.alpha > 0.0 && p.alpha < 1.0, "alpha", "(0, 1)");
-  require(p.beta > 0.7 && p.beta <= 100.0, "beta", "(0.7, 100]");
-  require(p.gamma > 0.0 && p.gamma <= 1.0, "gamma", "(0, 1]");
-  require(p.epsilon > 0.0 && p.epsilon <= 255.0, "epsilon", "(0, 255]");
-  require(p.edge_px >= 2.0 && p.edge_px <= 1000.0, "edge length", "[2, 1000] pixels");
-  require(p.fan >= 1 && p.fan <= 360, "fan", "[1, 360]");
-  require(p.root_fan >= 1 && p.root_fan <= 360, "root fan", "[1, 360]");
-  require(p.fan_half_width.degrees() >= 0.0 && p.fan_half_width.degrees() <= 180.0, "fan half width",
-          "[0, 180] degrees");
-  require(!p.max_nodes || *p.max_nodes >= 1, "number of nodes", "[1, ...)");
-  require(!p.max_explored_share || (*p.max_explored_share > 0.0 && *p.max_explored_share <= 1.0), "explored share",
-          "(0, 1]");
-  require(!p.max_area_px || *p.max_area_px > 0.0, "area", "(0, ...) pixels");
-  require(!p.min_score || (*p.min_score >= 0.0 && *p.min_score <= 1.0 / p.epsilon), "minimum score",
-          "[0, 1 / epsilon]");
-  require(p.max_nodes || p.max_explored_share || p.max_area_px, "one of nodes, explored share and area", "use");
+  require_parameter(p.alpha > 0.0 && p.alpha < 1.0, "alpha", "(0, 1)");
+  require_parameter(p.beta > 0.7 && p.beta <= 100.0, "beta", "(0.7, 100]");
+  require_parameter(p.gamma > 0.0 && p.gamma <= 1.0, "gamma", "(0, 1]");
+  require_parameter(p.epsilon > 0.0 && p.epsilon <= 255.0, "epsilon", "(0, 255]");
+  require_parameter(p.edge_px >= 2.0 && p.edge_px <= 1000.0, "edge length", "[2, 1000] pixels");
+  require_parameter(p.fan >= 1 && p.fan <= 360, "fan", "[1, 360]");
+  require_parameter(p.root_fan >= 1 && p.root_fan <= 360, "root fan", "[1, 360]");
+  require_parameter(p.fan_half_width.degrees() >= 0.0 && p.fan_half_width.degrees() <= 180.0, "fan half width",
+                    "[0, 180] degrees");
+  require_parameter(!p.max_nodes || *p.max_nodes >= 1, "number of nodes", "[1, ...)");
+  require_parameter(!p.max_explored_share || (*p.max_explored_share > 0.0 && *p.max_explored_share <= 1.0),
+                    "explored share", "(0, 1]");
+  require_parameter(!p.max_area_px || *p.max_area_px > 0.0, "area", "(0, ...) pixels");
+  require_parameter(!p.min_score || (*p.min_score >= 0.0 && *p.min_score <= 1.0 / p.epsilon), "minimum score",
+                    "[0, 1 / epsilon]");
+  require_parameter(p.max_nodes || p.max_explored_share || p.max_area_px, "one of nodes, explored share and area",
+                    "use");
 }
 
 std::optional<double> brightness_variation(const cv::Mat& brightness, const cv::Mat& observed, cv::Point2d from,

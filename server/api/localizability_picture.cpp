@@ -44,7 +44,7 @@ class Squares {
   std::map<Index, std::optional<double>> known_;
 };
 
-Pixel pixel_of(double probability, TileStyle style) {
+Pixel localizability_pixel(double probability, TileStyle style) {
   if (style == TileStyle::kGrey) return grey_pixel(probability);
   // Blue, green, red of no fix, ambiguous, fix on the operator's page.
   constexpr std::array<std::array<double, 3>, 3> kColours{{{130, 139, 242}, {93, 201, 244}, {161, 224, 126}}};
@@ -84,7 +84,7 @@ std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, 
   Squares squares(map, *side_m, probability_at);
   return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
     const auto probability = squares.at(point);
-    return probability ? std::optional(pixel_of(*probability, style)) : std::nullopt;
+    return probability ? std::optional(localizability_pixel(*probability, style)) : std::nullopt;
   });
 }
 

@@ -43,7 +43,7 @@ std::optional<double> sample(const RoadGrid& grid, GridPoint point) {
   return weight > 0.0 ? std::optional(sum / weight) : std::nullopt;
 }
 
-Pixel pixel_of(double p, TileStyle style) {
+Pixel road_pixel(double p, TileStyle style) {
   if (style == TileStyle::kGrey) return grey_pixel(p);
   const auto between = [&](double open, double road) {
     return static_cast<unsigned char>(std::lround(open + p * (road - open)));
@@ -68,7 +68,7 @@ std::optional<std::vector<std::uint8_t>> tile_png(const MapView& map, TileAddres
 
   return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
     const auto p = sample(grid, point);
-    return p ? std::optional(pixel_of(*p, style)) : std::nullopt;
+    return p ? std::optional(road_pixel(*p, style)) : std::nullopt;
   });
 }
 

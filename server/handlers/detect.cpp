@@ -17,10 +17,10 @@ constexpr double kDefaultCellM = 2.0;
 constexpr std::array<api::Media, 2> kFormats{{{"png", "image/png"}, {"json", "application/json"}}};
 constexpr std::array<std::string_view, 2> kNames{"png", "json"};
 
-std::vector<std::string> query_fields() { return joined(api::frame_fields(), {"format"}); }
+std::vector<std::string> detect_fields() { return joined(api::frame_fields(), {"format"}); }
 
 http::Response post_detect(const Service& service, const http::Request& request) {
-  const api::Content content = api::read_content(request, joined(query_fields(), {"image"}), service.limits);
+  const api::Content content = api::read_content(request, joined(detect_fields(), {"image"}), service.limits);
   const std::string format = content.fields.has("format")
                                  ? content.fields.word("format", kNames)
                                  : std::string(api::negotiated(request.header("accept"), kFormats).name);
@@ -46,7 +46,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
 }  // namespace
 
 void add_detect_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/detect", query_fields(), http::Load::kHeavyAnswer,
+  router.add({"POST", "/v1/detect", detect_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_detect(service, request); }});
 }
 

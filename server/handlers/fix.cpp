@@ -14,7 +14,7 @@
 namespace roadfix::server {
 namespace {
 
-std::vector<std::string> query_fields() {
+std::vector<std::string> fix_fields() {
   return joined(joined(api::feature_fields(), api::prior_fields()), joined(api::position_fields(), {"time_us"}));
 }
 
@@ -28,8 +28,7 @@ api::PositionTime time_of(const http::Request& request, std::optional<double> ti
 
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const api::Content content =
-      api::read_content(request, joined(query_fields(), api::flight_members()), service.limits);
+  const api::Content content = api::read_content(request, joined(fix_fields(), api::flight_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMaxExactInteger});
   const Prior prior = api::parse_prior(content.fields);
@@ -51,7 +50,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
 }  // namespace
 
 void add_fix_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/fix", query_fields(), http::Load::kHeavyAnswer,
+  router.add({"POST", "/v1/maps/{map}/fix", fix_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_fix(service, request); }});
 }
 

@@ -11,12 +11,12 @@ namespace roadfix::server {
 namespace {
 
 /// The heading step lets many poses share rotations of the feature map.
-std::vector<std::string> query_fields() { return joined(api::feature_fields(), {"heading_step_deg"}); }
+std::vector<std::string> match_fields() { return joined(api::feature_fields(), {"heading_step_deg"}); }
 
 http::Response post_match(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
-      api::read_content(request, joined(joined(query_fields(), {"poses"}), api::flight_members()), service.limits);
+      api::read_content(request, joined(joined(match_fields(), {"poses"}), api::flight_members()), service.limits);
   const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
@@ -31,7 +31,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_match_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/match", query_fields(), http::Load::kHeavyAnswer,
+  router.add({"POST", "/v1/maps/{map}/match", match_fields(), http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return post_match(service, request); }});
 }
 

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <exception>
 
+#include "tiles/export/probability_pixel.hpp"
+
 namespace roadfix {
 namespace {
-
-constexpr double kNoData = -1.0;
-
-float probability_pixel(Cell cell) {
-  return is_observed(cell) ? static_cast<float>(probability(cell)) : static_cast<float>(kNoData);
-}
 
 /// One band: `pixel` makes its value from a cell.
 template <typename Value, Value (*pixel)(Cell)>
@@ -29,7 +25,7 @@ class MapBand final : public GDALRasterBand {
   double GetNoDataValue(int* success) override {
     const bool has = colour_ == GCI_Undefined;
     if (success != nullptr) *success = has ? TRUE : FALSE;
-    return has ? kNoData : 0.0;
+    return has ? double{kNoData} : 0.0;
   }
   GDALColorInterp GetColorInterpretation() override { return colour_; }
 

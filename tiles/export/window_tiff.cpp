@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "core/units/error.hpp"
+#include "tiles/export/probability_pixel.hpp"
 
 namespace roadfix {
 namespace {
-
-constexpr float kNoData = -1.0F;
 
 /// A file of GDAL's memory file system, gone with this object.
 class MemoryFile {
@@ -47,8 +46,7 @@ void require(bool done) {
 std::vector<float> probabilities(const CellArray& cells) {
   std::vector<float> values;
   values.reserve(cells.cells().size());
-  for (const Cell cell : cells.cells())
-    values.push_back(is_observed(cell) ? static_cast<float>(probability(cell)) : kNoData);
+  for (const Cell cell : cells.cells()) values.push_back(probability_pixel(cell));
   return values;
 }
 

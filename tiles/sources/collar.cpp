@@ -12,18 +12,18 @@
 namespace roadfix {
 namespace {
 
-constexpr int kSamples = 1024;
-constexpr int kTolerance = 8;
+constexpr int kMaxSamples = 1024;
+constexpr int kGreyTolerance = 8;
 constexpr std::uint8_t kReached = 128;
 
 cv::Mat like(const cv::Mat& values, Rgb colour) {
   cv::Mat result;
   if (values.channels() == 1) {
     const int grey = (299 * colour.red + 587 * colour.green + 114 * colour.blue + 500) / 1000;
-    cv::inRange(values, cv::Scalar(grey - kTolerance), cv::Scalar(grey + kTolerance), result);
+    cv::inRange(values, cv::Scalar(grey - kGreyTolerance), cv::Scalar(grey + kGreyTolerance), result);
   } else {
     const cv::Scalar bgr(colour.blue, colour.green, colour.red);
-    cv::inRange(values, bgr - cv::Scalar::all(kTolerance), bgr + cv::Scalar::all(kTolerance), result);
+    cv::inRange(values, bgr - cv::Scalar::all(kGreyTolerance), bgr + cv::Scalar::all(kGreyTolerance), result);
   }
   return result;
 }
@@ -47,7 +47,7 @@ cv::Mat connected_to_border(cv::Mat candidates) {
 }  // namespace
 
 Collar::Collar(RasterFile& file, Rgb colour, const ValueRange& range) : image_(file.size()), colour_(colour) {
-  const cv::Size samples(std::min(kSamples, image_.width), std::min(kSamples, image_.height));
+  const cv::Size samples(std::min(kMaxSamples, image_.width), std::min(kMaxSamples, image_.height));
   cv::Mat candidates(samples, CV_8UC1);
   for (int row = 0; row < samples.height; ++row) {
     const auto y = static_cast<int>(std::int64_t{image_.height} * row / samples.height);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWindows = 16;  // along each side
 constexpr int kWindowPx = 16;
-constexpr double kTolerance = 3.0;  // of a lossy compression
+constexpr double kCompressionTolerance = 3.0;  // of a lossy compression
 constexpr double kWorthNoting = 0.02;
 constexpr std::size_t kMaxImages = 8;
 
@@ -33,8 +33,8 @@ Shares shares_of(RasterFile& file, const ValueRange& range) {
     double min = 0.0;
     double max = 0.0;
     cv::minMaxIdx(pixels.values.reshape(1), &min, &max);
-    if (max <= kTolerance) shares.black += 1.0;
-    if (min >= 255.0 - kTolerance) shares.white += 1.0;
+    if (max <= kCompressionTolerance) shares.black += 1.0;
+    if (min >= 255.0 - kCompressionTolerance) shares.white += 1.0;
   }
   constexpr double kAll = kWindows * kWindows;
   return {shares.black / kAll, shares.white / kAll};

@@ -9,7 +9,7 @@
 namespace roadfix {
 namespace {
 
-constexpr int kSamples = 8;  // a side
+constexpr int kSubcells = 8;  // a side
 using Position = GridGeometry::CellPosition;
 
 /// Part of a horizontal line; grows to hold what is added.
@@ -62,26 +62,26 @@ void LineCoverage::add(GridPoint from, GridPoint to, double half_width_m) {
   const double top = std::max(0.0, std::min(a.row, b.row) - radius);
   const double bottom = std::min(static_cast<double>(block_.rows), std::max(a.row, b.row) + radius);
   if (!(top <= bottom)) return;
-  const int first = std::max(0, static_cast<int>(std::floor(top * kSamples)));
-  const int last = std::min(block_.rows * kSamples - 1, static_cast<int>(std::ceil(bottom * kSamples)));
+  const int first = std::max(0, static_cast<int>(std::floor(top * kSubcells)));
+  const int last = std::min(block_.rows * kSubcells - 1, static_cast<int>(std::ceil(bottom * kSubcells)));
   for (int sample_row = first; sample_row <= last; ++sample_row) {
-    const Interval interval = across(a, b, radius, (sample_row + 0.5) / kSamples);
+    const Interval interval = across(a, b, radius, (sample_row + 0.5) / kSubcells);
     add_row(sample_row, interval.first, interval.last);
   }
 }
 
 void LineCoverage::add_row(int sample_row, double first, double last) {
-  const double from = std::max(0.0, std::ceil(first * kSamples - 0.5));
-  const double to = std::min(block_.cols * kSamples - 1.0, std::floor(last * kSamples - 0.5));
+  const double from = std::max(0.0, std::ceil(first * kSubcells - 0.5));
+  const double to = std::min(block_.cols * kSubcells - 1.0, std::floor(last * kSubcells - 0.5));
   if (!(from <= to)) return;
   const auto begin = static_cast<int>(from);
   const auto end = static_cast<int>(to);
-  const auto base = static_cast<std::size_t>(sample_row / kSamples) * static_cast<std::size_t>(block_.cols);
-  const int shift = sample_row % kSamples * kSamples;
-  for (int col = begin / kSamples; col <= end / kSamples; ++col) {
-    const int low = std::max(begin - col * kSamples, 0);
-    const int high = std::min(end - col * kSamples, kSamples - 1);
-    const std::uint64_t bits = (0xFFULL >> (kSamples - 1 - high)) & (0xFFULL << low);
+  const auto base = static_cast<std::size_t>(sample_row / kSubcells) * static_cast<std::size_t>(block_.cols);
+  const int shift = sample_row % kSubcells * kSubcells;
+  for (int col = begin / kSubcells; col <= end / kSubcells; ++col) {
+    const int low = std::max(begin - col * kSubcells, 0);
+    const int high = std::min(end - col * kSubcells, kSubcells - 1);
+    const std::uint64_t bits = (0xFFULL >> (kSubcells - 1 - high)) & (0xFFULL << low);
     samples_[base + static_cast<std::size_t>(col)] |= (bits & 0xFFULL) << shift;
   }
 }
@@ -89,7 +89,7 @@ void LineCoverage::add_row(int sample_row, double first, double last) {
 double LineCoverage::share(int col, int row) const {
   const auto index =
       static_cast<std::size_t>(row) * static_cast<std::size_t>(block_.cols) + static_cast<std::size_t>(col);
-  return std::popcount(samples_[index]) / static_cast<double>(kSamples * kSamples);
+  return std::popcount(samples_[index]) / static_cast<double>(kSubcells * kSubcells);
 }
 
 }  // namespace roadfix

@@ -82,18 +82,13 @@ bool yes(const std::string& value) {
   return !word.empty() && word != "no" && word != "n" && word != "0" && word != "false" && word != "f";
 }
 
-template <typename List>
-bool listed(const List& list, std::string_view value) {
-  return std::ranges::find(list, value) != list.end();
-}
-
 /// What nobody sees from above, or what does not exist.
 bool hidden(const TagLookup& tags, std::string_view road_class) {
   if (yes(tags("tunnel")) || yes(tags("covered")) || yes(tags("indoor"))) return true;
   const std::string location = plain(tags("location"));
   if (location == "underground" || location == "indoor") return true;
   const std::string level = tags("level");
-  if (listed(kFootClasses, road_class) && !level.empty() && level != "0") return true;
+  if (std::ranges::find(kFootClasses, road_class) != kFootClasses.end() && !level.empty() && level != "0") return true;
   return std::ranges::any_of(kInvisibleStates, [&](std::string_view state) { return plain(tags(state)) == "yes"; });
 }
 

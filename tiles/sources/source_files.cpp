@@ -25,9 +25,9 @@ constexpr std::array<std::string_view, 9> kVectorEndings{".shp", ".geojson", ".j
 
 std::string ending_of(const fs::path& path) { return lower_case(path.extension().string()); }
 
-template <typename List>
-bool listed(const List& list, std::string_view value) {
-  return std::ranges::find(list, value) != list.end();
+template <typename Endings>
+bool one_of(const Endings& endings, std::string_view ending) {
+  return std::ranges::find(endings, ending) != endings.end();
 }
 
 /// What the rasters of a file are unless the user says it: those of a map made by roadfix are roads, all others
@@ -42,13 +42,13 @@ SourceKind kind_of(GDALDataset& raster) {
 /// A file that neither opens as raster nor as vectors is reported by name.
 SourceKind kind_of(const std::string& path) {
   constexpr SourceKind kVectors = SourceKind::kRoadVectors;
-  if (listed(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
+  if (one_of(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
   {
     const GdalMessages messages;
     const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
     if (raster) return kind_of(*raster);
   }
-  if (listed(kImageEndings, ending_of(path))) {
+  if (one_of(kImageEndings, ending_of(path))) {
     open_dataset(path, GDAL_OF_RASTER);  // says why not
   }
   return kVectors;
@@ -99,8 +99,8 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   for (const std::string& file : files) {
     if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
     const std::string ending = ending_of(file);
-    if (listed(kImageEndings, ending)) images.push_back(file);
-    if (listed(kVectorEndings, ending)) vectors.push_back(file);
+    if (one_of(kImageEndings, ending)) images.push_back(file);
+    if (one_of(kVectorEndings, ending)) vectors.push_back(file);
   }
   if (images.empty() && vectors.empty()) {
     throw InvalidInput("source-empty", fmt::format("{}: holds neither images nor vector files", location));

@@ -10,7 +10,7 @@
 namespace roadfix::world {
 namespace {
 
-constexpr double kStepM = 6.0;
+constexpr double kProbeStepM = 6.0;
 constexpr int kTries = 12;
 
 /// Of a line across the whole picture that leaves its straight way by up to the sum of the amplitudes.
@@ -27,7 +27,7 @@ Polyline across(const Plan& plan, const Course& course, Random& random) {
   const double reach = std::hypot(plan.width_m, plan.height_m);
   const double phase = random.uniform(0.0, 6.3);
   Polyline line;
-  for (double t = -reach; t <= reach; t += kStepM) {
+  for (double t = -reach; t <= reach; t += kProbeStepM) {
     const double off = course.short_m * std::sin(t / 23.0 + phase) * std::sin(t / 61.0) +
                        course.long_m * std::sin(t / 110.0 + 2.0 * phase);
     line.push_back(through + along * t + side * off);

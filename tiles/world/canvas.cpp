@@ -4,11 +4,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tiles/world/fixed_point.hpp"
+
 namespace roadfix::world {
 namespace {
-
-constexpr int kFraction = 4;  // bits of sub-pixel position
-constexpr double kUnit = 1 << kFraction;
 
 cv::Scalar scalar(const Colour& c) {
   return {std::clamp(c[0], 0.0, 255.0), std::clamp(c[1], 0.0, 255.0), std::clamp(c[2], 0.0, 255.0)};
@@ -31,8 +30,7 @@ bool Canvas::sees(PlanPoint centre, double radius_m) const {
 
 /// OpenCV's sub-pixel coordinates: a pixel's centre is at whole numbers.
 cv::Point Canvas::on_tile(PlanPoint p) const {
-  return {static_cast<int>(std::lround((p.x / gsd_m_ - pixels_.x - 0.5) * kUnit)),
-          static_cast<int>(std::lround((p.y / gsd_m_ - pixels_.y - 0.5) * kUnit))};
+  return fixed_point({p.x / gsd_m_ - pixels_.x - 0.5, p.y / gsd_m_ - pixels_.y - 0.5});
 }
 
 void Canvas::fill_shape(const Polyline& polygon, const Colour& colour, Material material, const double* height_m) {
@@ -53,7 +51,7 @@ void Canvas::fill(const Polyline& polygon, const Colour& colour, Material materi
 
 void Canvas::disc(PlanPoint centre, double radius_m, const Colour& colour, Material material, double height_m) {
   const cv::Point at = on_tile(centre);
-  const int radius = std::max(1, static_cast<int>(std::lround(radius_m / gsd_m_ * kUnit)));
+  const int radius = std::max(1, static_cast<int>(std::lround(radius_m / gsd_m_ * (1 << kFraction))));
   cv::circle(colour_, at, radius, scalar(colour), cv::FILLED, cv::LINE_AA, kFraction);
   cv::circle(material_, at, radius, static_cast<double>(material), cv::FILLED, cv::LINE_8, kFraction);
   if (height_m > 0.0) cv::circle(height_, at, radius, height_m, cv::FILLED, cv::LINE_8, kFraction);

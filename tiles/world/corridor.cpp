@@ -4,18 +4,16 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tiles/world/fixed_point.hpp"
+
 namespace roadfix::world {
 namespace {
 
-constexpr int kFraction = 4;  // bits of sub-cell position
-
 std::vector<cv::Point> cells_of(const Polyline& line) {
-  constexpr double kUnit = 1 << kFraction;
   std::vector<cv::Point> result;
   for (const PlanPoint& p : line) {
     // OpenCV's whole numbers are at the centres of cells.
-    result.emplace_back(static_cast<int>(std::lround((p.x + Corridor::kMarginM - 0.5) * kUnit)),
-                        static_cast<int>(std::lround((p.y + Corridor::kMarginM - 0.5) * kUnit)));
+    result.push_back(fixed_point({p.x + Corridor::kMarginM - 0.5, p.y + Corridor::kMarginM - 0.5}));
   }
   return result;
 }

@@ -14,7 +14,7 @@ namespace roadfix::world {
 namespace {
 
 constexpr std::array<double, 6> kWavesM{900.0, 520.0, 310.0, 190.0, 120.0, 75.0};
-constexpr double kStepM = 6.0;
+constexpr double kBendStepM = 6.0;
 constexpr double kMarginM = 120.0;
 constexpr double kEstateM2 = 250'000.0;  // boundaries of more than this are likely to carry a road
 
@@ -104,13 +104,13 @@ class Surveyor {
     const PlanPoint middle = (chord[0] + chord[1]) / 2.0;
     const double draw = random_.unit();
     if (area > kEstateM2 && draw < (area > 2.0 * kEstateM2 ? 0.6 : 0.25)) {
-      pave(bend_.bent(chord[0], chord[1], kStepM));
+      pave(bend_.bent(chord[0], chord[1], kBendStepM));
     } else if (random_.chance(area > kEstateM2 ? 0.6 : tracks_)) {
       add_track(chord);
     } else if (wooded_(bend_(middle))) {
-      add_ride(bend_.bent(chord[0], chord[1], kStepM));
+      add_ride(bend_.bent(chord[0], chord[1], kBendStepM));
     } else {
-      add_edge(bend_.bent(chord[0], chord[1], kStepM));
+      add_edge(bend_.bent(chord[0], chord[1], kBendStepM));
     }
   }
 
@@ -130,7 +130,7 @@ class Surveyor {
       chord[blind] = chord[1 - blind] + (chord[blind] - chord[1 - blind]) * random_.uniform(0.4, 0.85);
     }
     Street track = unpaved(random_);
-    track.line = bend_.bent(chord[0], chord[1], kStepM);
+    track.line = bend_.bent(chord[0], chord[1], kBendStepM);
     plan_.streets.push_back(std::move(track));
   }
 
@@ -174,7 +174,7 @@ class Surveyor {
   void add_parcel(const Polyline& polygon) {
     Parcel parcel;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Polyline side = bend_.bent(polygon[i], polygon[(i + 1) % polygon.size()], kStepM);
+      const Polyline side = bend_.bent(polygon[i], polygon[(i + 1) % polygon.size()], kBendStepM);
       parcel.outline.insert(parcel.outline.end(), side.begin(), side.end() - 1);
     }
     const PlanPoint middle = middle_of(parcel.outline);

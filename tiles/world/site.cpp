@@ -3,15 +3,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tiles/world/fixed_point.hpp"
+
 namespace roadfix::world {
 namespace {
-
-constexpr int kFraction = 4;  // bits of sub-cell position
-
-cv::Point fixed_point(PlanPoint p) {
-  constexpr double kUnit = 1 << kFraction;
-  return {static_cast<int>(std::lround(p.x * kUnit)), static_cast<int>(std::lround(p.y * kUnit))};
-}
 
 std::vector<cv::Point> fixed_points(const Polyline& line, PlanPoint origin = {}) {
   std::vector<cv::Point> result;

@@ -20,7 +20,7 @@ Orthoimage noise() {
 }
 
 /// Remembers the picture and the seed that it was given.
-class Witness : public RoadDetector {
+class DetectorWitness : public RoadDetector {
  public:
   CellArray detect(const GroundImage& image, double, std::uint64_t seed, const std::stop_token&) const override {
     seen = image;
@@ -41,7 +41,7 @@ double difference(const cv::Mat& a, const cv::Mat& b) {
 
 TEST(Camera, TakesThePictureInWhichTheVehicleItselfWouldDetectRoadsAndTheSameOneWheneverItIsAsked) {
   const Orthoimage imagery = noise();
-  const Witness witness;
+  const DetectorWitness witness;
   bench::Random one(7);
   bench::Random other(7);
   const Observation detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->observe(kPose, 1.0, one);

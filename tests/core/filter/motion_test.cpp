@@ -19,7 +19,7 @@ ParticleState moved(const auto& motion, ParticleState state = {}, std::uint64_t 
   return state;
 }
 
-struct Moments {
+struct Scatter {
   std::array<double, 3> mean{};
   Matrix3 covariance{};
 };
@@ -27,9 +27,9 @@ struct Moments {
 constexpr int kSamples = 40'000;
 
 /// Of east, north and heading over many particles.
-Moments moments(const auto& motion) {
+Scatter scatter(const auto& motion) {
   std::vector<std::array<double, 3>> ends;
-  Moments m;
+  Scatter m;
   for (int i = 0; i < kSamples; ++i) {
     const ParticleState s = moved(motion, {}, static_cast<std::uint64_t>(i));
     ends.push_back({s.east_m, s.north_m, s.heading_rad});
@@ -69,7 +69,7 @@ TEST(PlanarMotion, TurnsOnTheSpot) {
 }
 
 TEST(PlanarMotion, SpreadsSpeedAndTurnRateNormally) {
-  const Moments m = moments(PlanarMotion{{10.0, 2.0}, {0.0, 0.01}, 3.0});
+  const Scatter m = scatter(PlanarMotion{{10.0, 2.0}, {0.0, 0.01}, 3.0});
   // Sampling error of a mean is sigma / sqrt(n), of a variance sigma^2 sqrt(2 / n): five times that.
   const double n = kSamples;
   EXPECT_NEAR(m.mean[1], 30.0, 5.0 * 6.0 / std::sqrt(n) + 0.01);
@@ -93,7 +93,7 @@ TEST(OdometryMotion, MovesInTheBodyFrame) {
 
 TEST(OdometryMotion, SpreadsAsItsCovarianceSays) {
   const OdometryCovariance covariance{{{4.0, 1.0, 0.02}, {1.0, 1.0, -0.03}, {0.02, -0.03, 0.01}}};
-  const Moments m = moments(OdometryMotion({50.0, 0.0, Angle()}, covariance));
+  const Scatter m = scatter(OdometryMotion({50.0, 0.0, Angle()}, covariance));
   // Heading 0: east is right, north is forward.
   const double tolerance = 5.0 * std::sqrt(2.0 / kSamples);
   EXPECT_NEAR(m.covariance[1][1], 4.0, 4.0 * tolerance);

@@ -8,6 +8,7 @@
 
 #include "core/geodesy/utm.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/mosaic.hpp"
 
@@ -15,11 +16,11 @@ namespace roadfix {
 namespace {
 
 using testing::around;
+using testing::kCentre;
+using testing::kZone;
 using testing::RasterSpec;
 using testing::write_raster;
 
-constexpr GridPoint kCentre{400000.0, 4200000.0};
-const UtmZone kZone = *UtmZone::from_epsg(32637);
 constexpr double kRampM = 200.0;
 
 double east_ramp(GridPoint p) { return 127.5 + (p.east_m - kCentre.east_m) / kRampM * 255.0; }

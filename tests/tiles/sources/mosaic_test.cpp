@@ -10,6 +10,7 @@
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/collar.hpp"
 
@@ -17,11 +18,10 @@ namespace roadfix {
 namespace {
 
 using testing::around;
+using testing::kCentre;
+using testing::kZone;
 using testing::RasterSpec;
 using testing::write_raster;
-
-constexpr GridPoint kCentre{400000.0, 4200000.0};
-const UtmZone kZone = *UtmZone::from_epsg(32637);
 
 class MosaicTest : public ::testing::Test {
  protected:

@@ -9,6 +9,7 @@
 #include "core/geodesy/utm.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/road_rules.hpp"
@@ -17,10 +18,9 @@
 namespace roadfix {
 namespace {
 
+using testing::kZone;
 using testing::RasterSpec;
 using testing::write_raster;
-
-const UtmZone kZone = *UtmZone::from_epsg(32637);
 
 /// Brightness blurred over 9 x 9 cells: looks as far beyond a cell as it says, and no further.
 class BlurDetector final : public RoadDetector {

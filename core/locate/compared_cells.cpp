@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <span>
 
 #include "core/grid/resample.hpp"
-#include "core/match/footprint.hpp"
-#include "core/match/kernel.hpp"
 #include "core/match/soft_cells.hpp"
 
 namespace roadfix {
@@ -72,21 +69,6 @@ GridReader compared_cells(const MapView& map, double finest_cell_m) {
 FeatureMap compared_cells(FeatureMap features) {
   half_the_log_odds().apply(features.cells);
   return features;
-}
-
-double rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose, double scale) {
-  const double col = pose.position.east_m / features.cell_m;
-  const double row = -pose.position.north_m / features.cell_m;
-  const LatticeIndex cell{static_cast<int>(std::floor(col)), static_cast<int>(std::floor(row))};
-  const PackedFootprint footprint = footprint_at(resampled(features, features.cell_m, scale), pose.heading,
-                                                 {col - cell.col - 0.5, row - cell.row - 0.5});
-  const int reach = footprint.reach();
-  const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
-  const MapPlane plane(map.read(window).cells, 0);
-  const PlaneCell centre{reach, reach};
-  MatchSums sums;
-  match_sums(plane, footprint, std::span(&centre, 1), std::span(&sums, 1));
-  return rho(sums).value_or(0.0);
 }
 
 }  // namespace roadfix

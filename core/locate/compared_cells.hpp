@@ -17,7 +17,4 @@ namespace roadfix {
 GridReader compared_cells(const MapView& map, double finest_cell_m);
 FeatureMap compared_cells(FeatureMap features);
 
-/// Equation (5) at a pose, of the cells of map and features as they are; 0 where it is not defined.
-double rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose, double scale);
-
 }  // namespace roadfix

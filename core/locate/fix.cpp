@@ -6,9 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "core/grid/resample.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/ellipse.hpp"
+#include "core/locate/match_poses.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/match/score.hpp"
 #include "core/units/error.hpp"
@@ -76,7 +78,7 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
   result.pose = on_earth(mode.pose, map.zone);
   result.scale = mode.scale;
   result.weight = weight;
-  result.rho = rho_at(map, cells, mode.pose, mode.scale);
+  result.rho = rho_at(map, resampled(cells, cells.cell_m, mode.scale), mode.pose).value_or(0.0);
   result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
                     calibration.position_sigma_scale * ellipse.sigma_m[1]};
   result.ellipse_heading = ellipse.heading;

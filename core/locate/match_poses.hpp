@@ -1,6 +1,7 @@
 // Equations (5) to (7) at poses that the caller has: particles of a filter, candidates of another method.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -24,5 +25,9 @@ struct MatchOptions {
 /// Throws InvalidInput for positions that are no place on Earth and for a feature map that cannot be used.
 std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                               const MatchOptions& options = {});
+
+/// Equation (5) at one pose, exactly; nullopt where it is not defined. `features` are in cells of the map or of an
+/// overview (see in_cells_of()).
+std::optional<double> rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose);
 
 }  // namespace roadfix

@@ -73,12 +73,12 @@ TEST_F(ComparedCells, LeaveEquationFiveToTheCellsAsTheyAre) {
   const FeatureMap window = cut_out(map_, pose_, 120, 90, 2.0);
   const std::vector<GeoPose> poses{on_earth(pose_, view_.zone)};
   const double matched = match(view_, window, poses).at(0).rho.value();
-  EXPECT_NEAR(rho_at(view_, window, pose_, 1.0), matched, 1e-6);
+  EXPECT_NEAR(rho_at(view_, window, pose_).value(), matched, 1e-6);
 
   FeatureMap larger = window;
   larger.cell_m = 2.2;
-  EXPECT_LT(rho_at(view_, resampled(larger, 2.0), pose_, 1.0), 0.8 * matched);
-  EXPECT_GT(rho_at(view_, resampled(larger, 2.0), pose_, 1.0 / 1.1), 0.8 * matched);
+  EXPECT_LT(rho_at(view_, resampled(larger, 2.0), pose_), 0.8 * matched);
+  EXPECT_GT(rho_at(view_, resampled(larger, 2.0, 1.0 / 1.1), pose_), 0.8 * matched);
 
   const Fix fix = locate(view_, window, {}, {});
   ASSERT_FALSE(fix.modes.empty());
@@ -90,7 +90,7 @@ TEST_F(ComparedCells, LeaveEquationFiveToTheCellsAsTheyAre) {
 TEST_F(ComparedCells, HaveNoEquationFiveOffTheMap) {
   GridPose off = pose_;
   off.position.east_m += 5000.0;
-  EXPECT_EQ(rho_at(view_, cut_out(map_, pose_, 50, 50, 2.0), off, 1.0), 0.0);
+  EXPECT_EQ(rho_at(view_, cut_out(map_, pose_, 50, 50, 2.0), off), std::nullopt);
 }
 
 }  // namespace

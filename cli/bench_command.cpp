@@ -162,31 +162,30 @@ void run_bench(BenchArguments& arguments) {
 void add_bench_command(CLI::App& app) {
   auto a = std::make_shared<BenchArguments>();
   CLI::App* command =
-      app.add_subcommand("bench", "Measures accuracy over a manifest of maps and queries, beside SIFT and ORB");
+      app.add_subcommand("bench", "Measures accuracy over a manifest of maps and queries, compared with SIFT and ORB");
   command->footer("Example: roadfix bench city.bench.json --seed 1 --json out.json");
   command->add_option("manifest", a->manifest, "JSON file, see docs/bench.md")->required();
   command->add_option("--json", a->json_file, "Write figures and every query with truth, answer and error");
-  command->add_option("--seed", a->options.seed, "Of the query poses and the detector")
+  command->add_option("--seed", a->options.seed, "Seed of the query poses and the detector")
       ->capture_default_str()
       ->check(seed());
-  command->add_option("--limit", a->options.limit, "At most so many queries of each set; 0 = all")
-      ->check(not_negative());
+  command->add_option("--limit", a->options.limit, "Queries of each set, at most; 0 = all")->check(not_negative());
   command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
   command->add_option("--curves", a->curves,
-                      "Draw reliability and answered share, over footprint and quality, as SVG into this folder");
+                      "Draw reliability and the share of answers, over footprint and quality, as SVG into this folder");
   command->add_option(
       "--pictures", a->options.pictures,
       "Draw every query into this folder: keypoint matches, roads before and after and their agreement");
   command->add_option("--calibrate", a->calibrate_file,
-                      "Learn from the answers how sure they may be, and write it to this file");
+                      "Learn from the answers how reliable they are, and write a calibration to this file");
   add_calibration_option(*command, a->calibration_file);
   command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
-  command->add_option("--confidence", a->options.fix.confidence, "Probability that a fix must reach")
+  command->add_option("--confidence", a->options.fix.confidence, "Minimum probability of a fix")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   add_threads_option(*command, "--jobs", a->options.jobs,
-                     "Blocks or queries in work at a time; 1 for honest times of a query");
-  command->add_option("--map-cache", a->cache, "Folder that keeps the maps; default: the user's cache folder");
+                     "Blocks or queries in progress at a time; 1 to measure times");
+  command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");
   add_detector_options(*command, a->detector);
   command->callback([a] { run_bench(*a); });
 }

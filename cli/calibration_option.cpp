@@ -8,8 +8,9 @@
 namespace roadfix::cli {
 
 void add_calibration_option(CLI::App& command, std::string& file) {
-  command.add_option("--calibration", file,
-                     "How sure answers may be, as bench --calibrate wrote it; default: learned on simulated frames");
+  command.add_option(
+      "--calibration", file,
+      "Calibration of probabilities, written by bench --calibrate; default: learned from simulated frames");
 }
 
 std::shared_ptr<const Calibration> read_calibration(const std::string& file) {

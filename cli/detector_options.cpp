@@ -50,7 +50,7 @@ void add_detector_options(CLI::App& command, DetectorChoice& choice) {
       ->type_name("FILE");
   command
       .add_option("--orientations", choice.orientations,
-                  "1, 4 or 8: mean over the picture turned and mirrored; slower, better, for maps")
+                  "1, 4 or 8: mean over turned and mirrored copies of the picture; slower, better, for maps")
       ->capture_default_str()
       ->check(CLI::IsMember({1, 4, 8}));
   add_tree_options(command, choice.tree);

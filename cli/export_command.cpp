@@ -74,7 +74,7 @@ void add_export_command(CLI::App& app) {
   const auto options = std::make_shared<ExportArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("target", options->target, "File to write")->required();
-  command->add_option("--format", options->format, "Default: by the end of the target's name, cog for .tif")
+  command->add_option("--format", options->format, "Default: from the file extension, cog for .tif")
       ->check(CLI::IsMember({"cog", "gtiff", "png", "mbtiles"}));
   command->add_option("--bbox", options->bbox, "Region: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
   command->add_option("--cell", options->cell_m, "Cell size in metres: that of the map times a power of two");

@@ -61,7 +61,7 @@ FeatureMap all_features(const FeatureInputOptions& options, const RoadDetector* 
   if (options.also.empty()) return features;
   if (options.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
-                        fmt::format("{} frames are more than {}", options.also.size() + 1, kMaxFrames));
+                        fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
   }
   std::vector<PlacedFeatures> parts{{std::move(features), {}}};
   for (const std::string& text : options.also) {
@@ -79,14 +79,16 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   command
       .add_option("--also", o.also,
                   "Another frame or feature map, taken FORWARD m ahead and RIGHT m to the right of the input's place, "
-                  "TURN degrees to its right; may be given again")
+                  "TURN degrees to its right; repeatable")
       ->type_name("FILE,FORWARD,RIGHT,TURN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* cell = command.add_option("--cell,--cell-m", o.cell_m, "The input is a feature map: its cell size in metres")
                    ->check(positive());
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell);
-  command.add_option("--seed", o.seed, "Of detectors that draw random numbers")->capture_default_str()->check(seed());
+  command.add_option("--seed", o.seed, "Seed of detectors that use random numbers")
+      ->capture_default_str()
+      ->check(seed());
   add_detector_options(command, o.detector);
 }
 

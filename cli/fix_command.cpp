@@ -72,13 +72,13 @@ void print_text(const Fix& fix) {
   fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
              fix.search_time.count());
   if (!fix.complete)
-    fmt::print("its time limit ended the search: {:.1f} % of the poses were looked at\n", 100.0 * fix.searched_share);
+    fmt::print("the time limit ended the search: {:.1f} % of the poses were examined\n", 100.0 * fix.searched_share);
   if (!fix.proof) return;
   if (fix.proof->complete) {
-    fmt::print("no other pose of the region fits better, in cells of {} m and {} headings\n", fix.proof->cell_m,
-               fix.proof->headings);
+    fmt::print("proof complete: no other pose of the region fits better (cells of {} m, {} headings)\n",
+               fix.proof->cell_m, fix.proof->headings);
   } else {
-    fmt::print("time was over before a better pose was excluded: {:.1f} % of the poses are, none scores above {:.3f}\n",
+    fmt::print("proof incomplete: {:.1f} % of the poses cannot fit better; the rest score at most {:.3f}\n",
                100.0 * fix.proof->excluded_share, fix.proof->bound);
   }
 }
@@ -102,7 +102,7 @@ void run_fix(const FixArguments& options) {
 }  // namespace
 
 void add_fix_command(CLI::App& app) {
-  auto* command = app.add_subcommand("fix", "Says where a feature map or a frame was seen");
+  auto* command = app.add_subcommand("fix", "Finds where a feature map or a frame was taken");
   command->footer("Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
   const auto o = std::make_shared<FixArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
@@ -115,25 +115,28 @@ void add_fix_command(CLI::App& app) {
   lon->needs(lat);
   command->add_option("--bbox", o->bbox, "Prior: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
   auto* heading = command->add_option("--heading", o->heading_deg, "Prior: true heading in degrees");
-  command->add_option("--heading-range", o->heading_range_deg, "Prior: heading within so many degrees of it")
+  command
+      ->add_option("--heading-range", o->heading_range_deg,
+                   "Prior: the heading lies within this many degrees of --heading")
       ->check(CLI::Range(0.0, 180.0))
       ->needs(heading);
   heading->needs("--heading-range");
-  command->add_option("--confidence", o->fix.confidence, "Probability from which the answer is a fix")
+  command->add_option("--confidence", o->fix.confidence, "Minimum probability of a fix")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 0.999999));
   add_calibration_option(*command, o->calibration);
-  command->add_option("--modes", o->fix.max_modes, "Places to report at most")
+  command->add_option("--modes", o->fix.max_modes, "Maximum number of places to report")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command
-      ->add_option("--scale-range", o->fix.scale_range, "The ground may be smaller by this share, or larger by as much")
+      ->add_option("--scale-range", o->fix.scale_range,
+                   "The ground may be smaller or larger by this share (roughly known altitude)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, kMaxScaleRange));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
-  command->add_option("--proof", o->proof_s, "Look so many seconds for a better place than the best candidate")
+  command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")
       ->check(positive());
-  command->add_option("--time-limit", o->time_limit_s, "End the search after so many seconds and say what it has")
+  command->add_option("--time-limit", o->time_limit_s, "End the search after this many seconds and report what it has")
       ->check(positive());
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
   command->callback([o] { run_fix(*o); });

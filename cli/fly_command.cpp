@@ -123,7 +123,7 @@ void run_fly(const FlyOptions& options) {
 }  // namespace
 
 void add_fly_command(CLI::App& app) {
-  auto* command = app.add_subcommand("fly", "Flies simulated UAVs over imagery or a map and follows them on the map");
+  auto* command = app.add_subcommand("fly", "Flies simulated UAVs over imagery or a map and tracks them on the map");
   command->footer(
       "Examples: roadfix fly town.gpkg --over post.tif --filter paper,default --pictures figures\n"
       "          roadfix fly city.gpkg --over flight/frames.csv --filter paper,default --film flight.gif\n"

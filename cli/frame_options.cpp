@@ -49,7 +49,7 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
   command
       .add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
       ->needs(fov);
-  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's rim were not seen")->needs(gsd);
+  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen")->needs(gsd);
   return {gsd, fov};
 }
 

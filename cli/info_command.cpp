@@ -104,7 +104,7 @@ void print_text(const std::string& path, const MapInfo& info) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-  auto* command = app.add_subcommand("info", "What a map holds and where it came from");
+  auto* command = app.add_subcommand("info", "Shows what a map holds and where it came from");
   command->footer("Example: roadfix info adiyaman.gpkg --json");
   const auto options = std::make_shared<InfoArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();

@@ -118,7 +118,7 @@ void add_ingest_command(CLI::App& app) {
       "ingest",
       "Builds or extends a road map from imagery (anything GDAL reads) and road data (anything OGR reads).\n"
       "Example: roadfix ingest city.tif roads.geojson --map city.gpkg\n"
-      "Interrupted or killed, the same command goes on where it was.");
+      "To resume after an interruption, run the same command again.");
   CLI::Option* cell = add_ingest_options(*command, *a);
   command->callback([a, cell] {
     if (!a->name.empty() && a->sources.size() > 1) throw CLI::ValidationError("--name", "names a single SOURCE");

@@ -48,14 +48,15 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--as", a.meaning,
                      "What the sources are: auto (vectors and other maps are roads, rasters imagery), imagery, roads");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
-  command.add_option("--crs", a.crs, "Reference system of the sources where the files do not say it, or say it wrong");
+  command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");
   command.add_option("--nodata-color", a.collar, "Colour of the collar around the imagery: white, black or R,G,B");
   command.add_option("--layer", a.vectors.layer, "Only this layer of vector files");
   command.add_option("--extent", a.vectors.extent,
                      "Ground that road lines cover: W,S,E,N in degrees or a polygon file");
   command.add_option("--classes", a.classes, "Draw exactly these road classes, comma-separated");
   command.add_option("--rules", a.rules_file, "Table of road classes: lines 'class width_m yes|no'");
-  command.add_option("--class-attribute", a.class_attribute, "Attribute that holds the road class; default: highway");
+  command.add_option("--class-attribute", a.class_attribute,
+                     "Attribute with the road class; default: highway, fclass, type, class or road_class");
   command.add_option("--width-attribute", a.width_attribute, "Attribute that holds the width in metres");
   command.add_option("--width", a.width_m, "Width of all roads in metres")->check(CLI::Range(0.5, 100.0));
 }
@@ -66,11 +67,12 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
                   "Date of the content, ISO 8601: 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z")
       ->check(iso_date());
   command.add_option("--licence", a.record.licence, "Licence of the content");
-  command.add_option("--attribution", a.record.attribution, "Whom to name");
+  command.add_option("--attribution", a.record.attribution, "Attribution that the licence asks for");
   command
-      .add_option("--registration-sigma", a.registration_sigma_m,
-                  "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 rasters, 4 vectors; more "
-                  "by control points and RPC")
+      .add_option(
+          "--registration-sigma", a.registration_sigma_m,
+          "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 for rasters of roads, 4 for "
+          "vectors, more with control points or RPC")
       ->check(positive());
 }
 
@@ -100,12 +102,12 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
   command.add_option("SOURCE", a.sources, "Files, or folders of images or vector files (one source each)")->required();
   command.add_option("--map", a.map, "The map file to create or extend")->required();
   CLI::Option* cell =
-      command.add_option("--cell", a.cell_m, "Cell size of a new map in metres, a power of two; default: 2");
+      command.add_option("--cell", a.cell_m, "Cell size of a new map: 0.25, 0.5, 1, 2, 4, 8 or 16 m; default: 2");
   command.add_option("--zone", a.zone, "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
   add_content_options(command, a);
   add_detector_options(command, a.detector);
   add_provenance_options(command, a);
-  add_threads_option(command, "--jobs", a.options.jobs, "Blocks in work at a time");
+  add_threads_option(command, "--jobs", a.options.jobs, "Blocks in progress at a time");
   command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());
   command.add_flag("--replace", a.options.replace, "Replace a source of the same name");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");

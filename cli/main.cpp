@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   // What OpenCV has to say comes as an exception, and is said once.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   CLI::App app(
-      "Localizes UAVs by roads: builds road maps from imagery and road data, serves them, answers where a frame was "
+      "Localizes UAVs by roads: builds road maps from imagery and road data, serves them, and finds where a frame was "
       "taken.",
       "roadfix");
   app.set_version_flag("--version", "roadfix " ROADFIX_VERSION);
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     // Of a mistyped subcommand CLI11 says that one is missing.
     const std::vector<std::string> words = app.remaining();
     if (app.get_subcommands().empty() && !words.empty() && !words.front().starts_with('-')) {
-      fmt::print(stderr, "There is no subcommand '{}'\nRun with --help for those that there are.\n", words.front());
+      fmt::print(stderr, "There is no subcommand '{}'\nRun with --help for a list.\n", words.front());
     } else {
       app.exit(wrong);
     }

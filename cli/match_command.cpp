@@ -44,7 +44,7 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
     if (error != std::errc() || (last ? stop != end : (stop == end || *stop != ','))) {
       throw InvalidInput(
           "pose-unreadable",
-          fmt::format("{}: \"{}\" is no pose, write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
+          fmt::format("{}: \"{}\" is not a pose: write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
     }
     at = last ? stop : stop + 1;
   }
@@ -103,16 +103,16 @@ void run_match(const MatchArguments& options) {
 }  // namespace
 
 void add_match_command(CLI::App& app) {
-  auto* command = app.add_subcommand("match", "Says how well a feature map or a frame fits the map at given poses");
+  auto* command = app.add_subcommand("match", "Scores how well a feature map or a frame fits the map at given poses");
   command->footer("Example: roadfix match town.gpkg window.png --cell 2 --pose 57.70,11.97,45");
   const auto o = std::make_shared<MatchArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);
   command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");
-  command->add_option("--poses", o->poses_file, "CSV file with one such pose a line");
+  command->add_option("--poses", o->poses_file, "CSV file with one such pose per line");
   command
       ->add_option("--heading-step", o->heading_step_deg,
-                   "Round headings to so many degrees and positions to cells: faster for many poses")
+                   "Round headings to this many degrees and positions to cells: faster for many poses")
       ->check(CLI::Range(0.0, 90.0));
   add_threads_option(*command, "--threads", o->threads, "Threads");
   command->add_flag("--json", o->as_json, "Answer as JSON");

@@ -35,8 +35,8 @@ void remove_source(const RemoveArguments& options) {
 void add_remove_command(CLI::App& app) {
   auto* command = app.add_subcommand("remove", "Takes a source out of a map");
   command->footer(
-      "Example: roadfix remove adiyaman.gpkg before\nThe map is then as if the source had never been ingested; roadfix "
-      "info names the sources. Interrupted or killed, the same command goes on where it was.");
+      "Example: roadfix remove adiyaman.gpkg before\nThe map is then as if the source had never been ingested. roadfix "
+      "info lists the sources. To resume after an interruption, run the same command again.");
   const auto options = std::make_shared<RemoveArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("source", options->source, "Name of the source")->required();

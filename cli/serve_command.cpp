@@ -81,10 +81,9 @@ void also_from_file(CLI::App& command, const std::string& path) {
   for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_file(path)) {
     CLI::Option* option = item.parents.empty() ? command.get_option_no_throw("--" + item.name) : nullptr;
     if (option == nullptr) {
-      throw CLI::ConfigError(
-          fmt::format("{}: '{}' is no option of serve: they are named as on the command line, like "
-                      "max-body, without a section",
-                      path, item.fullname()));
+      throw CLI::ConfigError(fmt::format(
+          "{}: '{}' is not an option of serve: use the names of the command line, like max-body, without a section",
+          path, item.fullname()));
     }
     if (option->count() > 0) continue;
     option->add_result(item.inputs);
@@ -103,10 +102,11 @@ void add_limits(CLI::App& command, ServeOptions& o) {
   add("--max-poses", limits.poses, "Poses of a match");
   add("--max-search", limits.search_km2, "Area of a search in km2");
   add("--max-particles", limits.particles, "Particles of a track");
-  add("--request-time", o.request_time_s, "Seconds that an answer may take; of a search from its turn on", kMaxSeconds);
+  add("--request-time", o.request_time_s, "Seconds that an answer may take; searches count from their turn",
+      kMaxSeconds);
   command
       .add_option("--turn-time", o.turn_time_s,
-                  "Seconds that a search or detection may wait for its turn; as many as --request-time unless given")
+                  "Seconds that a search or detection may wait for its turn; default: --request-time")
       ->check(positive(kMaxSeconds))
       ->group("Limits of one request");
 }
@@ -118,19 +118,19 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   };
   add("--threads", http.threads, "Connections served at the same time", kMaxThreads);
   add("--searches", http.heavy_running, "Searches and detections at the same time");
-  add("--searches-waiting", http.heavy_waiting, "Further ones that wait; others are told to come back");
+  add("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
   add("--search-threads", o.service.search_threads, "Threads of one search", kMaxThreads);
-  add("--idle-time", o.idle_time_s, "Seconds that an idle connection is kept", kMaxSeconds);
-  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory for each map, MiB", kMaxMiB);
-  add("--search-cache", o.search_cache_mib, "What searches build, kept for the next ones, for each map, MiB", kMaxMiB);
+  add("--idle-time", o.idle_time_s, "Seconds after which an idle connection is closed", kMaxSeconds);
+  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory per map, MiB", kMaxMiB);
+  add("--search-cache", o.search_cache_mib, "Search data kept for later searches, per map, MiB", kMaxMiB);
   add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB", kMaxMiB);
   add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
-  add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks of one client's address");
-  add("--max-streams", o.service.track_limits.streams, "Streams of events at the same time, at most half of --threads");
-  add("--tracks-size", o.tracks_mib, "File of the tracks at most, MiB", kMaxMiB);
-  add("--step-wait", o.step_wait_s, "Seconds that a step waits for those it overtook", kMaxSeconds);
+  add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks per client address");
+  add("--max-streams", o.service.track_limits.streams, "Event streams at the same time, at most half of --threads");
+  add("--tracks-size", o.tracks_mib, "Maximum size of the track file, MiB", kMaxMiB);
+  add("--step-wait", o.step_wait_s, "Seconds that a step waits for steps it overtook", kMaxSeconds);
   add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends", kMaxSeconds);
-  add("--watch", o.watch_s, "Seconds between two looks at the folder of maps", kMaxSeconds);
+  add("--watch", o.watch_s, "Seconds between scans of the map folder", kMaxSeconds);
 }
 
 void run_serve(const ServeOptions& options) {
@@ -149,39 +149,38 @@ void run_serve(const ServeOptions& options) {
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
   stopped.wait(lock, stop, [] { return false; });
-  spdlog::info("stopping: requests that have begun are answered");
+  spdlog::info("stopping: answering the requests in progress");
   application.stop();
 }
 
 }  // namespace
 
 void add_serve_command(CLI::App& app) {
-  auto* command = app.add_subcommand("serve", "The HTTP service: maps, windows, tiles, matches and fixes");
+  auto* command = app.add_subcommand("serve", "Runs the HTTP service: maps, windows, tiles, matches, fixes and tracks");
   command->footer(
-      "Every option is also read from the environment (--request-time from ROADFIX_REQUEST_TIME) and from a file given "
-      "with --config (request-time = 30).\nExample: roadfix serve --maps maps --port 8080");
+      "Every option can also come from the environment (--request-time: ROADFIX_REQUEST_TIME) or from the file of "
+      "--config (request-time = 30).\nExample: roadfix serve --maps maps --port 8080");
   const auto options = std::make_shared<ServeOptions>();
   ServeOptions& o = *options;
   o.service.http.heavy_running = processors();
   command->add_option("--maps", o.service.maps,
-                      "Folder of the maps (*.gpkg); files that appear, change or leave are noticed");
+                      "Folder of the maps (*.gpkg); added, changed and removed files are detected");
   command->add_option("--tracks", o.service.tracks,
-                      "File that keeps the state of tracks; tracks.sqlite in the folder of the maps if not given");
-  command->add_option("--host", o.service.http.host, "Address to listen at; 0.0.0.0 for every one")
-      ->capture_default_str();
-  command->add_option("--port", o.service.http.port, "Port, 0 for any free one")
+                      "File that stores the tracks; default: tracks.sqlite in the folder of the maps");
+  command->add_option("--host", o.service.http.host, "Address to listen on; 0.0.0.0 for all")->capture_default_str();
+  command->add_option("--port", o.service.http.port, "Port; 0 for any free one")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
-  command->add_option("--cors-origin", o.service.http.cors_origin, "Web pages that may ask: an origin, or * for all");
+  command->add_option("--cors-origin", o.service.http.cors_origin,
+                      "Origin whose web pages may call the API, or * for all");
   command
       ->add_option(
           "--proxy", o.proxies,
-          "Address or network of a proxy (127.0.0.1, 10.0.0.0/8), whose X-Forwarded-For says which client asks; may "
-          "be given again")
+          "Address or network of a proxy (127.0.0.1, 10.0.0.0/8) whose X-Forwarded-For names the client; repeatable")
       ->delimiter(',');
   command->add_option("--access-log", o.service.http.access_log,
-                      "A JSON line for each request: a file, or - for standard error");
-  command->add_option("--log-level", o.log_level, "Of the other messages on standard error")
+                      "Write a JSON line per request to this file, or to - for standard error");
+  command->add_option("--log-level", o.log_level, "Level of the other messages, on standard error")
       ->capture_default_str()
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
   add_calibration_option(*command, o.calibration);

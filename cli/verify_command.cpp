@@ -88,16 +88,16 @@ void verify(const VerifyArguments& options) {
 }  // namespace
 
 void add_verify_command(CLI::App& app) {
-  auto* command = app.add_subcommand("verify", "Checks that every tile of a map is whole and follows from its sources");
+  auto* command = app.add_subcommand("verify", "Checks that every tile of a map is intact and agrees with its sources");
   command->footer(
       "Example: roadfix verify adiyaman.gpkg\nExit code 0: whole, 1: damaged (each problem on a line). Interrupted "
-      "ingests and what they left to do are named; they are no damage.");
+      "ingests are reported with what is left to do; they are not damage.");
   const auto options = std::make_shared<VerifyArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_flag("--json", options->as_json, "Answer in JSON");
   command->add_flag(
       "--repair", options->repair,
-      "First make all tiles anew from the evidence of the sources; damaged evidence is dropped and named");
+      "First rebuild all tiles from the evidence of the sources; damaged evidence is dropped and reported");
   command->callback([options] { verify(*options); });
 }
 

@@ -63,15 +63,14 @@ void add_world_command(CLI::App& app) {
       "bench.");
   const auto options = std::make_shared<WorldArguments>();
   world::WorldSettings& settings = options->settings;
-  command->add_option("folder", options->folder, "Folder to write, made where it is missing")->required();
+  command->add_option("folder", options->folder, "Folder to write to, created if missing")->required();
   command->add_option("--seed", settings.seed, "The same seed gives the same files")
       ->capture_default_str()
       ->check(seed());
   command
-      ->add_option(
-          "--land", settings.land,
-          "A town's streets and houses; or open country: woods, fields, unpaved tracks, few paved roads, and what "
-          "looks like a road and is none (rails, streams, field margins, fire breaks)")
+      ->add_option("--land", settings.land,
+                   "A town with streets and houses; or open country: woods, fields, unpaved tracks, few paved roads, "
+                   "and things that look like roads (rails, streams, field margins, fire breaks)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, world::Land>{{"town", world::Land::kTown},
                                                                              {"country", world::Land::kCountry}})
                       .description(""))
@@ -87,12 +86,11 @@ void add_world_command(CLI::App& app) {
       ->expected(2)
       ->type_name("LAT,LON");
   command
-      ->add_option("--roads", settings.roads,
-                   "Render these roads (a file that OGR reads) as a town's instead of invented ones")
+      ->add_option("--roads", settings.roads, "Render the roads of this file (any OGR format) instead of invented ones")
       ->type_name("FILE");
   command->add_option("--collapsed", settings.collapsed_share, "Share of the buildings that fall")
       ->capture_default_str();
-  command->add_flag("--varied", settings.varied, "Draw sun, air, season and camera at random, to learn from");
+  command->add_flag("--varied", settings.varied, "Choose sun, air, season and camera at random, for training data");
   command->add_option("--frames", settings.frames, "Frames to cut out of post.tif")->capture_default_str();
   command->add_option("--footprint-m", settings.footprint_m, "Side of the ground that a frame shows")
       ->capture_default_str();

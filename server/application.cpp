@@ -70,7 +70,7 @@ Application::~Application() { stop(); }
 int Application::start() {
   const int port = parts_->server.start();
   parts_->maps.watch(parts_->configuration.watch_interval);
-  if (const auto problem = parts_->tracks.problem()) spdlog::warn("no tracks can be kept: {}", *problem);
+  if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detector->describe());
   return port;
 }

@@ -83,7 +83,7 @@ TrackSettings filter_named(const std::string& name, int particles) {
   if (name == "default") return settings;
   settings.measurement_model.kind = LikelihoodKind::kDetectionRates;
   if (name == "rates") return settings;
-  throw InvalidInput("filter-unknown", fmt::format("no filter is called '{}'; there are {}", name, kFilterNames));
+  throw InvalidInput("filter-unknown", fmt::format("'{}' is not a filter: choose from {}", name, kFilterNames));
 }
 
 std::vector<Record> localize(const Flight& flight, Localizer& localizer, const UtmZone& zone, const Watcher& watch) {

@@ -156,7 +156,7 @@ class ServiceLocalizer : public Localizer {
     const json track =
         connection_.ask([&](http::Client& client) { return client.post("/v1/tracks", request, "application/json"); });
     if (!track.is_object() || !track.contains("id")) {
-      throw InvalidInput("service-answer-unreadable", plan.base + " begins no tracks: is it a Roadfix?");
+      throw InvalidInput("service-answer-unreadable", plan.base + " begins no tracks: is it a Roadfix service?");
     }
     path_ = "/v1/tracks/" + track.at("id").get<std::string>();
   }

@@ -49,7 +49,7 @@ void require_looking_down(const FrameCamera& camera) {
       "frame-sees-no-ground",
       fmt::format(
           "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the camera looks at the horizon or the sky; "
-          "both count from straight down, so that what a gimbal calls -90 is a pitch of 0",
+          "both are measured from straight down: the -90 of a gimbal is a pitch of 0",
           camera.roll.degrees(), camera.pitch.degrees()));
 }
 
@@ -147,15 +147,14 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
 void require_roads_visible(double gsd_m) {
   if (gsd_m < kFinestGsdM) {
     throw InvalidInput("frame-too-fine",
-                       fmt::format("frame: pixels of {:.6g} m show no ground to speak of, {} m is the "
-                                   "least: check the metres per pixel, or the field of view and the "
-                                   "altitude",
+                       fmt::format("frame: pixels of {:.6g} m are too fine, at least {} m is needed: check the metres "
+                                   "per pixel, or the field of view and the altitude",
                                    gsd_m, kFinestGsdM));
   }
   if (gsd_m <= kCoarsestGsdM) return;
   throw InvalidInput("frame-too-coarse",
-                     fmt::format("frame: pixels of {:.6g} m do not show roads, {} m is the most: check the metres per "
-                                 "pixel, or the field of view and the altitude",
+                     fmt::format("frame: pixels of {:.6g} m are too coarse to show roads, at most {} m is allowed: "
+                                 "check the metres per pixel, or the field of view and the altitude",
                                  gsd_m, kCoarsestGsdM));
 }
 

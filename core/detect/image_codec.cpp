@@ -66,11 +66,10 @@ void refuse_coloured(const GroundImage& picture) {
       cv::max(cv::max(channels[0], channels[1]), channels[2]) - cv::min(cv::min(channels[0], channels[1]), channels[2]);
   const int coloured = cv::countNonZero((spread > kStillGrey) & picture.observed);
   if (coloured <= kStray * cv::countNonZero(picture.observed)) return;
-  throw InvalidInput(
-      "feature-map-coloured",
-      fmt::format("a feature map is grey, and {} pixels of this picture are coloured: is it a frame? Then "
-                  "say so, with its metres per pixel or its camera",
-                  coloured));
+  throw InvalidInput("feature-map-coloured",
+                     fmt::format("a feature map is grey, but {} pixels of this picture are coloured: if it is a frame, "
+                                 "say so and give its metres per pixel or its camera",
+                                 coloured));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace roadfix {
 
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
   if (std::ranges::find(kDetectorNames, choice.name) == kDetectorNames.end()) {
-    throw InvalidInput("unknown-detector", fmt::format("\"{}\" is no detector: choose one of {}.", choice.name,
+    throw InvalidInput("unknown-detector", fmt::format("\"{}\" is not a detector: choose one of {}.", choice.name,
                                                        fmt::join(kDetectorNames, ", ")));
   }
   if (choice.name == "tree") {

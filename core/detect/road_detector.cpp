@@ -10,7 +10,7 @@ namespace roadfix {
 void require_time(const std::stop_token& stop) {
   if (!stop.stop_requested()) return;
   throw Interrupted("detection-interrupted",
-                    "time was over before the roads of the whole picture were found: send one that shows less ground, "
+                    "the time limit ended before all roads of the picture were found: send one that shows less ground, "
                     "or check its metres per pixel");
 }
 

@@ -14,11 +14,9 @@ using GeographicLib::UTMUPS;
 
 void require_on_earth(LatLon p) {
   if (!(std::abs(p.lat_deg) <= 90.0) || !(std::abs(p.lon_deg) <= 540.0)) {
-    throw InvalidInput(
-        "position-out-of-range",
-        fmt::format("latitude {} longitude {} is no place on Earth: latitude must lie within -90..90 and "
-                    "longitude within -180..180 degrees",
-                    p.lat_deg, p.lon_deg));
+    throw InvalidInput("position-out-of-range", fmt::format("latitude {} longitude {} is not a position: latitude must "
+                                                            "lie within -90..90 and longitude within -180..180 degrees",
+                                                            p.lat_deg, p.lon_deg));
   }
 }
 
@@ -81,9 +79,11 @@ std::optional<GridPoint> UtmZone::project_if_defined(LatLon point) const {
 
 GridPoint UtmZone::project(LatLon point) const {
   if (const auto projected = project_if_defined(point)) return *projected;
-  throw InvalidInput("position-outside-zone",
-                     fmt::format("latitude {} longitude {} is too far from UTM zone {}{} of the map", point.lat_deg,
-                                 point.lon_deg, number_, northern_ ? 'N' : 'S'));
+  throw InvalidInput(
+      "position-outside-zone",
+      fmt::format(
+          "latitude {} longitude {} is too far from the map's UTM zone {}{}: check the position, or use another map",
+          point.lat_deg, point.lon_deg, number_, northern_ ? 'N' : 'S'));
 }
 
 LatLon UtmZone::unproject(GridPoint point) const { return reverse(*this, point).position; }

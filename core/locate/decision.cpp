@@ -47,11 +47,11 @@ std::string time_was_over(const SearchResult& found) {
   const char* advice = "give more time, a smaller region or a narrower heading range";
   if (found.scanned_share < 1.0) {
     return fmt::format(
-        "time was over when {:.0f} % of the poses had been looked at, and a better one may be among the "
-        "others: {}",
+        "the time limit ended the search after {:.0f} % of the poses, and a better one may be among the others: {}",
         std::floor(100.0 * found.scanned_share), advice);
   }
-  return fmt::format("time was over before the places that fit were told apart in the cells of the map: {}", advice);
+  return fmt::format("the time limit ended the search before the candidates were compared at full resolution: {}",
+                     advice);
 }
 
 void explain(Decision& decision, const char* reason, std::string explanation) {
@@ -65,14 +65,15 @@ void call_ambiguous(Decision& decision, const std::vector<double>& posterior, do
   decision.status = FixStatus::kAmbiguous;
   decision.weights.resize(static_cast<std::size_t>(alike));
   if (alike > 1) {
-    explain(decision, "several-places-fit",
-            fmt::format("the roads fit at {} places about as well: narrow the prior, give a heading, or fly on "
-                        "and ask again",
-                        alike));
+    explain(
+        decision, "several-places-fit",
+        fmt::format(
+            "the roads fit about equally well at {} places: narrow the prior, give a heading, or fly on and ask again",
+            alike));
   } else {
     explain(decision, "below-confidence",
-            fmt::format("the roads fit best at one place, but less surely ({:.3f}) than asked ({}): use a "
-                        "larger footprint or a narrower prior, or fly on and ask again",
+            fmt::format("the roads fit best at one place, but its probability ({:.3f}) is below the confidence asked "
+                        "for ({}): use a larger footprint or a narrower prior, or fly on and ask again",
                         decision.probability, confidence));
   }
 }
@@ -83,8 +84,8 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   Decision decision;
   if (found.modes.empty() && found.complete()) {
     explain(decision, "map-too-empty",
-            "nowhere in the searched region does the map hold enough observed ground with roads under the footprint: "
-            "widen the region or ingest more sources");
+            "nowhere in the searched region has the map enough observed ground with roads for this footprint: widen "
+            "the region or ingest more sources");
     return decision;
   }
   if (found.modes.empty()) {
@@ -104,8 +105,8 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
     call_ambiguous(decision, posterior, confidence);
   } else {
     explain(decision, kNotAboveChanceReason,
-            "the best place fits no better than chance would have it among so many: use a larger footprint or a "
-            "narrower prior, or the UAV is not over this map");
+            "the best place fits no better than chance allows among so many places: use a larger footprint or a "
+            "narrower prior; the UAV may not be over this map");
   }
   return decision;
 }

@@ -50,8 +50,8 @@ std::optional<Refusal> refusal_of(const FeatureMap& features) {
   if (ground_m2 < kMinGroundM2) {
     return Refusal{
         "footprint-too-small",
-        fmt::format("the frame shows {:.0f} m2 of ground, less than the {:.0f} m2 from which roads tell places apart: "
-                    "check its scale (metres per pixel or cell), fly higher, or lay several frames together",
+        fmt::format("the frame shows {:.0f} m2 of ground, and at least {:.0f} m2 are needed to tell places apart: "
+                    "check its scale (metres per pixel or cell), fly higher, or combine several frames",
                     ground_m2, kMinGroundM2)};
   }
   if (variance_of(features.cells) < kMinVariance) {
@@ -144,7 +144,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   if (fix.reason == kNotAboveChanceReason && shows_less_than_a_road_across(cells)) {
     fix.reason = "too-few-roads";
     fix.explanation =
-        "less road was seen than one across the footprint has: use a larger footprint, or fly on to where roads are";
+        "the frame shows less road than a single one across the footprint: use a larger footprint, or fly on to where "
+        "roads are";
   }
   fix.probability = decision.probability;
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {

@@ -48,7 +48,7 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
   if (region.box.empty() || (region.circle && !contains(*region.circle, nearest(region.box, region.circle->centre)))) {
     throw InvalidInput(
         "prior-outside-map",
-        fmt::format("the prior does not meet the map {}: check its position, or search without it", map.name));
+        fmt::format("the prior lies outside the map {}: check its position, or search without it", map.name));
   }
   if (prior.heading) {
     const double half_deg = prior.heading->half_width.degrees();

@@ -63,14 +63,15 @@ StepResult Tracker::Step::run() {
 void Tracker::Step::require_in_order() const {
   if (!state_.started) return;
   if (input_.sequence <= state_.sequence) {
-    throw InvalidInput("step-late", fmt::format("step {} comes after step {}: steps count up; leave late ones out",
+    throw InvalidInput("step-late", fmt::format("step {} arrived after step {}: numbers must increase; drop late steps",
                                                 input_.sequence, state_.sequence));
   }
   if (input_.time_us <= state_.time_us) {
-    throw InvalidInput("time-backwards",
-                       fmt::format("the capture time {} us is not after {} us of the step before: set the clock, or "
-                                   "begin a new track",
-                                   input_.time_us, state_.time_us));
+    throw InvalidInput(
+        "time-backwards",
+        fmt::format(
+            "the capture time {} us is not after that of the last step, {} us: set the clock, or begin a new track",
+            input_.time_us, state_.time_us));
   }
 }
 

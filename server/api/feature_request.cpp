@@ -36,7 +36,9 @@ CellArray cells_of_json(const Fields& fields, const Limits& limits) {
   const int cols = fields.integer("cols", 1, kMaxSide);
   const int rows = fields.integer("rows", 1, kMaxSide);
   if (std::int64_t{cols} * rows > limits.cells) {
-    throw LimitExceeded("too-many-cells", fmt::format("{} x {} cells are more than {}", cols, rows, limits.cells));
+    throw LimitExceeded(
+        "too-many-cells",
+        fmt::format("{} x {} cells; at most {} are allowed: send a smaller feature map", cols, rows, limits.cells));
   }
   const std::vector<std::uint8_t> bytes = bytes_of_base64("cells", fields.text("cells"));
   CellArray cells(cols, rows);
@@ -84,8 +86,7 @@ void require_straight_down(const Fields& fields) {
     if (fields.has(name)) {
       throw InvalidField(
           "bad-parameter", name,
-          fmt::format("'{}' does not go with gsd_m, which says that the frame is a metric picture from straight above",
-                      name));
+          fmt::format("'{}' cannot be combined with gsd_m, which means a frame seen from straight above", name));
     }
   }
 }

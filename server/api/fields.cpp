@@ -61,7 +61,7 @@ void Fields::add(const json& object, std::span<const std::string> known) {
     if (std::ranges::find(known, name) == known.end()) {
       throw InvalidField(
           "unknown-field", name,
-          fmt::format("'{}' is no field of this request; it takes: {}", shown(name), fmt::join(known, ", ")));
+          fmt::format("'{}' is not a field of this request; allowed: {}", shown(name), fmt::join(known, ", ")));
     }
     if (value.is_null()) continue;
     if (!values_.try_emplace(name, Value{value, false}).second) {

@@ -20,7 +20,7 @@ void require_together(const Fields& fields, std::initializer_list<const char*> n
   for (const char* name : names) {
     if (any && !fields.has(name)) {
       throw InvalidField("missing-parameter", name,
-                         fmt::format("'{}' is missing; {} go together", name, fmt::join(names, ", ")));
+                         fmt::format("'{}' is missing: give {} together", name, fmt::join(names, ", ")));
     }
   }
 }
@@ -110,7 +110,7 @@ void shorten(FixOptions& options, http::Clock::time_point deadline) {
 std::chrono::milliseconds time_left(http::Clock::time_point deadline) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - http::Clock::now());
   if (left.count() <= 0)
-    throw Interrupted("request-deadline", "the request's time ended before its answer was ready; try again");
+    throw Interrupted("request-deadline", "the time limit ended before the answer was ready; try again");
   return left;
 }
 
@@ -122,7 +122,8 @@ std::vector<GeoPose> parse_poses(const Fields& fields, const Limits& limits) {
     throw InvalidField("bad-parameter", "poses", "'poses' must be a list of at least one pose in a JSON body");
   }
   if (poses->size() > static_cast<std::size_t>(limits.poses)) {
-    throw LimitExceeded("too-many-poses", fmt::format("{} poses are more than {}", poses->size(), limits.poses));
+    throw LimitExceeded("too-many-poses",
+                        fmt::format("{} poses in one request; at most {} are allowed", poses->size(), limits.poses));
   }
   std::vector<GeoPose> parsed;
   parsed.reserve(poses->size());

@@ -47,8 +47,8 @@ const json& others_of(const Content& content, const Limits& limits) {
     throw InvalidField("bad-parameter", "also", "'also' must be a list of frames in a JSON body or the part 'request'");
   }
   if (others->size() >= static_cast<std::size_t>(limits.frames)) {
-    throw LimitExceeded("too-many-frames",
-                        fmt::format("{} frames together are more than {}", others->size() + 1, limits.frames));
+    throw LimitExceeded("too-many-frames", fmt::format("{} frames in one request; at most {} are allowed",
+                                                       others->size() + 1, limits.frames));
   }
   return *others;
 }

@@ -35,7 +35,7 @@ void check_shape(std::string_view text, const JsonLimits& limits) {
     }
     if ((opens || c == ',') && ++values > limits.values) {
       throw LimitExceeded("too-many-poses",
-                          fmt::format("the JSON holds more than {} values; send fewer poses", limits.values));
+                          fmt::format("the JSON has more than {} values; send fewer poses", limits.values));
     }
   }
 }

@@ -93,7 +93,7 @@ std::vector<Part> parse_multipart(std::string_view content_type, std::string_vie
     if (end == std::string_view::npos) refuse("the last boundary is missing; was the body cut off?", body.size());
     part.content = body.substr(at, end - at);
     if (parts.size() == max_parts)
-      throw LimitExceeded("too-many-parts", fmt::format("the form has more than {} parts", max_parts));
+      throw LimitExceeded("too-many-parts", fmt::format("the form has more than {} parts; send fewer", max_parts));
     parts.push_back(std::move(part));
     at = end + delimiter.size();
   }

@@ -112,7 +112,7 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
   if (!box_around(pose, cols * cell_m, rows * cell_m, 0.0).overlaps(map.extent)) {
     throw InvalidInput(
         "window-outside-map",
-        fmt::format("the window does not meet the map {}: GET /v1/maps/{} has its extent", map.name, map.name));
+        fmt::format("the window lies outside the map {}: GET /v1/maps/{} gives its extent", map.name, map.name));
   }
   const GridBox around = box_around(pose, cols * cell_m, rows * cell_m, 2.0 * source_m);
   return {cut_out(ground_within(map, around, source_m, limits), pose, n_cols, n_rows, cell_m),

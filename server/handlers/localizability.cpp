@@ -83,7 +83,7 @@ std::optional<double> fix_probability(const Service& service, const http::Reques
     query.fix = fix_options(service, request);
     const Localizability found = localizability(layer.map->view, query);
     if (found.reason == kTimeLimitReason) {
-      throw Interrupted("request-deadline", "the request's time ended before the tile was complete; ask again");
+      throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
     }
     kept = found.observed_share < kMinObservedShare ? "" : fmt::format("{:.4f}", found.probability);
     service.pictures.insert(key, *kept);

@@ -44,7 +44,7 @@ std::optional<Address> parsed(std::string_view base) {
 Address address_of(const std::string& base) {
   const auto address = parsed(base);
   if (address) return *address;
-  throw InvalidInput("bad-url", fmt::format("'{}' is no address of a service: give http://HOST:PORT", base));
+  throw InvalidInput("bad-url", fmt::format("'{}' is not the address of a service: give http://HOST:PORT", base));
 }
 
 std::optional<Answer> answer_of(const httplib::Result& result) {

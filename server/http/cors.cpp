@@ -21,10 +21,9 @@ bool is_origin(const std::string& text) {
 
 Cors::Cors(std::string origin) : origin_(std::move(origin)) {
   if (origin_.empty() || is_origin(origin_)) return;
-  throw InvalidInput("bad-cors-origin",
-                     fmt::format("'{}' is no origin that browsers send: give * or one like https://ops.example.org or "
-                                 "http://10.0.0.5:3000, without a path",
-                                 origin_));
+  throw InvalidInput("bad-cors-origin", fmt::format("'{}' is not an origin as browsers send it: give * or one like "
+                                                    "https://ops.example.org or http://10.0.0.5:3000, without a path",
+                                                    origin_));
 }
 
 void Cors::open(Response& response) const {

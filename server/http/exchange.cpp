@@ -86,13 +86,15 @@ Request translated(const httplib::Request& head, const Exchange& exchange, const
 void check_headers(const httplib::Request& head) {
   for (const auto& [name, value] : head.headers) {
     if (is_token(name)) continue;
-    throw InvalidInput("bad-header", fmt::format("'{}' is no name of a header: letters, digits and hyphens, directly "
-                                                 "followed by the colon",
-                                                 name.substr(0, 40)));
+    throw InvalidInput(
+        "bad-header",
+        fmt::format("'{}' is not a header name: use letters, digits and hyphens, directly followed by the colon",
+                    name.substr(0, 40)));
   }
   const std::size_t hosts = head.get_header_value_count("Host");
   if (hosts > 1 || (hosts == 0 && head.version == "HTTP/1.1")) {
-    throw InvalidInput("bad-header", fmt::format("a request of HTTP/1.1 names one Host; this one names {}", hosts));
+    throw InvalidInput("bad-header",
+                       fmt::format("an HTTP/1.1 request must have one Host header; this one has {}", hosts));
   }
 }
 
@@ -104,14 +106,15 @@ bool announces_body(const Request& request) {
 void check_body_headers(const Request& request, std::size_t max_bytes) {
   const std::string encoding = lower_case(request.header("content-encoding"));
   if (!encoding.empty() && encoding != "identity" && encoding != "gzip") {
-    throw InvalidInput("unsupported-content-encoding",
-                       fmt::format("a body packed with '{}' cannot be read; send it with gzip or as it is", encoding));
+    throw InvalidInput(
+        "unsupported-content-encoding",
+        fmt::format("Content-Encoding '{}' is not supported; send the body with gzip or unencoded", encoding));
   }
   const std::string transfer = lower_case(request.header("transfer-encoding"));
   const std::string& length = request.header("content-length");
   if (!transfer.empty() && (transfer != "chunked" || !length.empty())) {
     throw InvalidInput("bad-content-length",
-                       "a body comes either with Content-Length or with Transfer-Encoding: chunked");
+                       "send the body with either Content-Length or Transfer-Encoding: chunked, not both");
   }
   if (!transfer.empty()) return;
   if (length.empty()) throw InvalidInput("length-required", "the body needs a Content-Length or chunked encoding");
@@ -158,10 +161,10 @@ std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_byt
     case Connection::Failure::kTimeout:
       return std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
     default:
-      return std::make_exception_ptr(InvalidInput(
-          "bad-request",
-          "this is no request of HTTP/1.1 with a method that is known: does the client speak TLS or HTTP/2 "
-          "to this port? Plain HTTP is spoken here; a proxy in front adds what else is needed"));
+      return std::make_exception_ptr(
+          InvalidInput("bad-request",
+                       "this is not an HTTP/1.1 request with a known method: does the client use TLS or HTTP/2 on this "
+                       "port? The service speaks plain HTTP; for anything else put a proxy in front"));
   }
 }
 

@@ -59,7 +59,7 @@ Proxies::Proxies(const std::vector<std::string>& networks) {
     if (!address || error != std::errc{} || last != end || bits < 0 || bits > address->bits) {
       throw InvalidInput(
           "bad-proxy",
-          fmt::format("'{}' is no address or network of a proxy: give one like 127.0.0.1 or 10.0.0.0/8", text));
+          fmt::format("'{}' is not an address or network: give the proxy's, like 127.0.0.1 or 10.0.0.0/8", text));
     }
     networks_.push_back({address->address, bits + kV6Bits - address->bits});
   }

@@ -73,7 +73,7 @@ void check_parameter_names(const Route& route, const Parameters& query) {
     if (std::ranges::find(route.parameters, name) == route.parameters.end()) {
       throw InvalidField(
           "unknown-parameter", name,
-          fmt::format("'{}' is no parameter of {} {}; it takes: {}", name, route.method, route.path,
+          fmt::format("'{}' is not a parameter of {} {}; allowed: {}", name, route.method, route.path,
                       route.parameters.empty() ? "none" : fmt::format("{}", fmt::join(route.parameters, ", "))));
     }
     if (!seen.insert(name).second)

@@ -114,7 +114,7 @@ int Server::Impl::start() {
                                        : (bind_to_port(settings_.host, settings_.port) ? settings_.port : -1);
   if (port < 0) {
     throw IoFailure("address-not-available",
-                    fmt::format("{} port {} cannot be listened on: in use, not allowed, or no address of this machine",
+                    fmt::format("cannot listen on {} port {}: in use, not permitted, or not an address of this machine",
                                 settings_.host, settings_.port));
   }
   ::listen(svr_sock_, kListenBacklog);

@@ -44,7 +44,7 @@ MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t s
     : folder_(std::move(folder)), cache_bytes_(cache_bytes), search_cache_bytes_(search_cache_bytes) {
   if (!fs::is_directory(folder_)) {
     throw NotFound("maps-folder-not-found",
-                   fmt::format("--maps {} is no folder; name the one that holds the maps", folder_.string()));
+                   fmt::format("--maps {} is not a folder; name the folder with the maps", folder_.string()));
   }
   refresh();
 }
@@ -118,7 +118,7 @@ void MapRegistry::forget_missing(const std::map<std::string, fs::path>& present)
   const std::lock_guard lock(mutex_);
   std::erase_if(entries_, [&](const auto& item) {
     if (present.contains(item.first)) return false;
-    spdlog::info("map {} has left the folder", item.first);
+    spdlog::info("map {} was removed from the folder", item.first);
     return true;
   });
 }

@@ -97,10 +97,10 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   const std::vector<StoredTrack> flying = store().flying();
   const auto own = std::ranges::count(flying, client, &StoredTrack::client);
   if (static_cast<int>(flying.size()) >= limits_.tracks || own >= limits_.tracks_per_client) {
-    throw LimitExceeded("too-many-tracks",
-                        fmt::format("{} tracks fly, {} of them from this client; at most {} and {} may: end one with "
-                                    "DELETE",
-                                    flying.size(), own, limits_.tracks, limits_.tracks_per_client));
+    throw LimitExceeded(
+        "too-many-tracks",
+        fmt::format("{} tracks are active, {} of them from this client; the limits are {} and {}: end one with DELETE",
+                    flying.size(), own, limits_.tracks, limits_.tracks_per_client));
   }
   const std::int64_t now = now_us();
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, ""};
@@ -200,7 +200,7 @@ std::optional<std::string> TrackRegistry::answered(const std::string& id, std::i
   if (taken->digest != digest) {
     throw InvalidInput(
         "step-differs",
-        fmt::format("step {} was taken already with another content: count on from the last step", sequence));
+        fmt::format("step {} was already processed with different content: continue with the next number", sequence));
   }
   return taken->answer;
 }
@@ -244,7 +244,8 @@ std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string
   find(id);
   const std::lock_guard lock(mutex_);
   if (streams_ >= limits_.streams) {
-    throw http::Busy(fmt::format("{} streams of events are open, as many as may", streams_), std::chrono::seconds(5));
+    throw http::Busy(fmt::format("{} event streams are open, the most allowed (serve --max-streams)", streams_),
+                     std::chrono::seconds(5));
   }
   return std::make_shared<Listener>(*this, id, after);
 }

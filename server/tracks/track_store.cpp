@@ -40,10 +40,10 @@ constexpr const char* kTrackColumns = "id, client, request, map, map_version, cr
   if (error.code() == "map-busy") {
     throw Interrupted(
         "track-store-busy",
-        fmt::format("{}: another service keeps these tracks: stop it, or start this one with --tracks FILE", file));
+        fmt::format("{}: another service uses this file: stop it, or start this one with --tracks FILE", file));
   }
   throw IoFailure("track-store-unavailable",
-                  fmt::format("{}: the tracks cannot be kept here: start the service with --tracks FILE", file));
+                  fmt::format("{}: tracks cannot be stored here: start the service with --tracks FILE", file));
 }
 
 StoredTrack track_of(const sqlite::Statement& row) {

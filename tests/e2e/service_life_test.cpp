@@ -253,7 +253,7 @@ TEST(ServiceLife, SaysWhichSettingCannotBeUsed) {
               AllOf(StartsWith("2"), HasSubstr("--request-time: must be a number above 0")));
   EXPECT_THAT(refused({"--threads", "-1"}), AllOf(StartsWith("2"), HasSubstr("at most 10000, not -1")));
   EXPECT_THAT(refused({"--config", (folder / "roadfix.conf").string()}),
-              AllOf(StartsWith("2"), HasSubstr("'cors_origin' is no option of serve")));
+              AllOf(StartsWith("2"), HasSubstr("'cors_origin' is not an option of serve")));
   EXPECT_THAT(refused({"--cors-origin", "https://ops.example.org/"}),
               AllOf(StartsWith("1"), HasSubstr("bad-cors-origin")));
   EXPECT_THAT(refused({"--proxy", "nginx"}), AllOf(StartsWith("1"), HasSubstr("bad-proxy")));

@@ -88,8 +88,9 @@ Rgb parse_colour(const std::string& text) {
     at = next + (good && !last ? 1 : 0);
   }
   if (!good) {
-    throw InvalidInput("colour-unknown",
-                       fmt::format("'{}' is no colour: write white, black or red,green,blue with 0 to 255 each", text));
+    throw InvalidInput(
+        "colour-unknown",
+        fmt::format("'{}' is not a colour: write white, black or red,green,blue with 0 to 255 each", text));
   }
   return {parts[0], parts[1], parts[2]};
 }

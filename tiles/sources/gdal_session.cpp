@@ -87,9 +87,9 @@ OGRSpatialReference parse_crs(const std::string& text) {
   OGRSpatialReference reference;
   if (reference.SetFromUserInput(text.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) !=
       OGRERR_NONE) {
-    throw InvalidInput("crs-unknown", fmt::format("'{}' is no coordinate reference system ({}): write for example "
-                                                  "EPSG:32637",
-                                                  text, messages.text()));
+    throw InvalidInput("crs-unknown",
+                       fmt::format("'{}' is not a coordinate reference system ({}): write for example EPSG:32637", text,
+                                   messages.text()));
   }
   reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return reference;
@@ -115,11 +115,11 @@ void require_known_datum(const OGRSpatialReference& from, const OGRSpatialRefere
   options.SetBallparkAllowed(false);
   if (TransformationPtr(OGRCreateCoordinateTransformation(&from, &to, options))) return;
   const char* ellipsoid = from.GetAttrValue("SPHEROID");
-  throw InvalidInput("datum-unknown",
-                     fmt::format("{}: its reference system {} does not say how its ellipsoid ({}) lies to that of WGS "
-                                 "84, and the roads could come to lie hundreds of metres off. Name the right one with "
-                                 "--crs, for example --crs EPSG:23037 (ED50, zone 37)",
-                                 path, crs_name(from), ellipsoid != nullptr ? ellipsoid : "unnamed"));
+  throw InvalidInput(
+      "datum-unknown",
+      fmt::format("{}: its reference system {} does not relate its ellipsoid ({}) to WGS 84, so the roads could be "
+                  "hundreds of metres off. Name the right one with --crs, for example --crs EPSG:23037 (ED50, zone 37)",
+                  path, crs_name(from), ellipsoid != nullptr ? ellipsoid : "unnamed"));
 }
 
 TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,

@@ -56,11 +56,10 @@ std::string_view kind_of_values(const RasterFile& file) {
 /// One range of values serves them all.
 void require_same_kind(const RasterFile& first, const RasterFile& other) {
   if (kind_of_values(first) == kind_of_values(other)) return;
-  throw InvalidInput(
-      "road-values-mixed",
-      fmt::format("{} holds {}, but {} holds {}: what stands for a certain road differs. Ingest them one "
-                  "by one, as sources of their own",
-                  first.path(), kind_of_values(first), other.path(), kind_of_values(other)));
+  throw InvalidInput("road-values-mixed",
+                     fmt::format("{} holds {}, but {} holds {}: the value of a certain road differs. Ingest them one "
+                                 "by one, as separate sources",
+                                 first.path(), kind_of_values(first), other.path(), kind_of_values(other)));
 }
 
 }  // namespace

@@ -89,11 +89,10 @@ class Imagery final : public CellSource {
  private:
   void require_fine_enough(const std::vector<std::string>& paths) const {
     if (mosaic_.gsd_m() <= kCoarsestGsdM) return;
-    throw InvalidInput(
-        "imagery-too-coarse",
-        fmt::format("{}: pixels of {:.3g} m do not show roads, and a map of them would deny every road; {} m is the "
-                    "most. A raster of roads is ingested with --as roads",
-                    paths.front(), mosaic_.gsd_m(), kCoarsestGsdM));
+    throw InvalidInput("imagery-too-coarse",
+                       fmt::format("{}: pixels of {:.3g} m are too coarse to show roads, at most {} m is allowed: the "
+                                   "map would have no roads. If it is a raster of roads, ingest it with --as roads",
+                                   paths.front(), mosaic_.gsd_m(), kCoarsestGsdM));
   }
 
   void detect(const GridGeometry& part, int pixels, std::uint64_t seed, CellArray& result, cv::Point at) const {

@@ -128,7 +128,7 @@ void RoadRules::select(std::string_view classes) {
     const auto rule = std::ranges::find(rules_, plain(name), &RoadRule::road_class);
     if (rule == rules_.end()) {
       throw InvalidInput("road-class-unknown",
-                         fmt::format("'{}' is no class of the road rules; add it with --rules FILE", name));
+                         fmt::format("'{}' is not a class of the road rules; add it with --rules FILE", name));
     }
     rule->drawn = true;
     if (rule->width_m <= 0.0) rule->width_m = kDefaultWidthM;

@@ -155,7 +155,7 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
     result.name = name_of_file(path);
   }
   if (meaning == SourceMeaning::kImagery && result.kind == SourceKind::kRoadVectors) {
-    throw InvalidInput("source-not-imagery", fmt::format("{}: holds vectors, no pixels; give it as roads", argument));
+    throw InvalidInput("source-not-imagery", fmt::format("{}: holds vectors, not pixels; give it as roads", argument));
   }
   result.location = argument;
   return result;

@@ -116,7 +116,7 @@ RoadGrid MapReader::read(const GridGeometry& geometry) const {
   int exponent = 0;
   if (!(ratio >= 1.0) || std::frexp(ratio, &exponent) != 0.5 || geometry.cell_m > cell_of_zoom(0)) {
     throw InvalidInput("cell-size-not-in-map",
-                       fmt::format("{}: it has cells of {} m times a power of two, up to 4096 m; {} m is none of them",
+                       fmt::format("{}: cells of {} m times a power of two, up to 4096 m, are possible; {} m is not",
                                    state_->path.string(), info().settings.cell_m, geometry.cell_m));
   }
   const int level = exponent - 1;

@@ -33,7 +33,7 @@ constexpr int kBusyTimeoutMs = 120'000;
       throw CorruptData("map-corrupt", fmt::format("{}: its tables are not those of a map ({})", file, detail));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw Interrupted("map-busy", fmt::format("{}: another process keeps the file locked. Try again", file));
+      throw Interrupted("map-busy", fmt::format("{}: another process has locked the file. Try again", file));
     case SQLITE_READONLY:
       throw IoFailure("map-not-writable", fmt::format("{}: cannot be written to ({})", file, detail));
     case SQLITE_FULL:

@@ -143,7 +143,7 @@ TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
     FrameCamera camera = level();
     camera.pitch = Angle::degrees(pitch);
     EXPECT_THAT(testing::message_of([&] { rectify(frame, {}, camera, 0.5, 500, 1e7); }),
-                ::testing::HasSubstr("count from straight down"))
+                ::testing::HasSubstr("measured from straight down"))
         << pitch;
   }
 }

@@ -106,13 +106,13 @@ GridGeometry around(Poses poses, double cell_m, int reach) {
 class Window {
  public:
   Window(const RoadGrid& map, bool turned) : geometry_(map.geometry) {
-    planes_.emplace_back(map.cells, 0);
+    planes_.emplace_back(map.cells);
     if (!turned) return;
     // To the left by three quarters, two and one: to the right by one more each time.
     CellArray cells = map.cells;
     for (int k = 0; k < 3; ++k) {
       cells = quarter_turned(cells);
-      planes_.emplace(planes_.begin() + 1, cells, 0);
+      planes_.emplace(planes_.begin() + 1, cells);
     }
   }
 

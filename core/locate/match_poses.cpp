@@ -39,7 +39,7 @@ MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose
                                                   -pose.position.north_m / features.cell_m - cell.row - 0.5});
   const int reach = footprint.reach();
   const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
-  const MapPlane plane(map.read(window).cells, 0);
+  const MapPlane plane(map.read(window).cells);
   const PlaneCell middle{reach, reach};
   MatchSums sums;
   match_sums(plane, footprint, std::span(&middle, 1), std::span(&sums, 1));

@@ -60,16 +60,16 @@ BoundMap::BoundMap(const RoadGrid& grid)
       all_observed_(std::ranges::all_of(grid.cells.cells(), is_observed)),
       base_(min_observed(grid.cells)),
       span_(std::max(1, max_observed(grid.cells) - base_)),
-      exact_(grid.cells, 0),
-      pooled2_(CellArray(), 0),
-      pooled4_(CellArray(), 0) {
+      exact_(grid.cells),
+      pooled2_(CellArray()),
+      pooled4_(CellArray()) {
   const auto size = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(block_rows_ + 2 * kMargin + 1) + kRun;
   planes_.assign(kPlanes, std::vector<std::uint8_t>(size, 0));
   for (auto* sums : {&cells_, &value_, &square_}) sums->assign(size, 0);
   const CellArray above = above_base(grid.cells, base_);
   const CellArray two = pooled_once(above, 1);
-  pooled2_ = MapPlane(two, 0);
-  pooled4_ = MapPlane(pooled_once(two, 2), 0);
+  pooled2_ = MapPlane(two);
+  pooled4_ = MapPlane(pooled_once(two, 2));
   for (int i = 0; i < kLineDirections; ++i) fill_pieces(above, i, line_stencil(i));
   fill_pieces(above, kCellPlane, {{0, 0}});
   fill_observed(grid.cells);

@@ -12,8 +12,8 @@
 
 namespace roadfix {
 
-/// Observed cells only matter: spans of a row begin and end with one, and a row has several where whole blocks of
-/// kAlignment cells are spared by it.
+/// Only observed cells matter: a span of a row begins and ends with one, and a row has several spans where that saves
+/// whole blocks of kAlignment cells.
 class PackedFootprint {
  public:
   static constexpr int kAlignment = 32;
@@ -35,7 +35,8 @@ class PackedFootprint {
   const std::uint8_t* values() const { return values_.data()->cells; }
   /// 255 where observed, else 0.
   const std::uint8_t* mask() const { return mask_.data()->cells; }
-  /// Largest distance of an observed cell from the nadir cell along an axis: the margin that a MapPlane needs.
+  /// Largest distance of an observed cell from the nadir cell along an axis: the margin that a MapPlane needs around
+  /// it.
   int reach() const { return reach_; }
 
   // Sums over all observed cells, in units of 1/254.

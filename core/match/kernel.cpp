@@ -251,14 +251,12 @@ MatchSums scaled(const IntegerSums& s) {
           static_cast<double>(s.ml) * kSquare};
 }
 
-/// How far beyond the plane's cells a footprint's nadir may lie.
-int room_of(const MapPlane& map, const PackedFootprint& footprint) { return map.margin() - footprint.reach(); }
-
-bool within(const MapPlane& map, int room, PlaneCell place) {
-  return place.col >= -room && place.row >= -room && place.col < map.cols() + room && place.row < map.rows() + room;
+/// Whether a footprint of that reach stays within the plane.
+bool within(const MapPlane& map, int reach, PlaneCell place) {
+  return place.col >= reach && place.row >= reach && place.col < map.cols() - reach && place.row < map.rows() - reach;
 }
 
-/// All places within the plane and its margin.
+/// At all places the footprint stays within the plane.
 void sums_within(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                  std::span<MatchSums> out) {
   std::vector<IntegerSums> sums(places.size());
@@ -275,11 +273,10 @@ void sums_within(const MapPlane& map, const PackedFootprint& footprint, std::spa
 void match_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums) {
   assert(places.size() == sums.size());
-  const int room = room_of(map, footprint);
   std::size_t begin = 0;
   while (begin < places.size()) {
     std::size_t end = begin;
-    while (end < places.size() && within(map, room, places[end])) ++end;
+    while (end < places.size() && within(map, footprint.reach(), places[end])) ++end;
     sums_within(map, footprint, places.subspan(begin, end - begin), sums.subspan(begin, end - begin));
     if (end < places.size()) sums[end++] = MatchSums{};
     begin = end;
@@ -289,8 +286,7 @@ void match_sums(const MapPlane& map, const PackedFootprint& footprint, std::span
 void product_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                   std::span<std::int64_t> sums) {
   assert(places.size() == sums.size());
-  assert(std::ranges::all_of(
-      places, [&, room = room_of(map, footprint)](PlaneCell place) { return within(map, room, place); }));
+  assert(std::ranges::all_of(places, [&](PlaneCell place) { return within(map, footprint.reach(), place); }));
   if (has_byte_products()) {
     products_by_byte_products(map, footprint, places, sums);
   } else {

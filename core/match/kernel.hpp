@@ -17,14 +17,13 @@ struct PlaneCell {
 };
 
 /// Puts the nadir cell of the footprint on each of the places; sums run over the cells observed in both and are exact
-/// (integers inside). A place may lie anywhere, but one so far off that the footprint would leave the plane's margin
-/// counts as not observed at all: with a margin of twice the reach these are the places that touch no cell.
-/// `sums` is as long as `places`.
+/// (integers inside). A place may lie anywhere, but where the footprint would leave the plane (by its reach()) nothing
+/// counts as observed. `sums` is as long as `places`.
 void match_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums);
 
 /// The sums of m l alone, in units of 1 / 254^2, where all of the plane is observed: there is no cell 255 below the
-/// footprint, which stays within the plane and its margin at each of the places. `sums` is as long as `places`.
+/// footprint, which stays within the plane at each of the places. `sums` is as long as `places`.
 void product_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                   std::span<std::int64_t> sums);
 

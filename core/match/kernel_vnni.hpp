@@ -14,7 +14,7 @@ bool has_byte_products();
 /// Tests of the other versions do without.
 void allow_byte_products_for_test(bool allow);
 
-/// As match_sums(), in whole numbers; all places within the plane and its margin. Needs has_byte_products().
+/// As match_sums(), in whole numbers; at all places the footprint stays within the plane. Needs has_byte_products().
 void sums_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums);
 

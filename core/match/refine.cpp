@@ -50,7 +50,7 @@ class GroundAround {
     }
     for (const GridGeometry& window : windows) {
       if (deadline.over()) return;
-      planes_.push_back({window.origin, MapPlane(level.read(window).cells, 0)});
+      planes_.push_back({window.origin, MapPlane(level.read(window).cells)});
     }
     complete_ = true;
   }
@@ -193,7 +193,7 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
 
 Peak peak_around(const Level& level, const LatticePose& pose) {
   const LevelFeatures features = level.at_scale(pose.scale);
-  const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells, 0);
+  const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells);
   std::vector<PlaneCell> places;
   add_places_around({plane.cols() / 2, plane.rows() / 2}, kPeakRadius, places);
   std::vector<MatchSums> sums(places.size());

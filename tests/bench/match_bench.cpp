@@ -47,7 +47,7 @@ void equation5_kernel(benchmark::State& state) {
   const double heading_deg = static_cast<double>(state.range(1));
   const FeatureMap window = window_of(small_map(), side);
   const PackedFootprint footprint = footprint_at(window, Angle::degrees(heading_deg));
-  const MapPlane plane(small_map().cells, 0);
+  const MapPlane plane(small_map().cells);
   std::mt19937_64 random(3);
   std::vector<PlaneCell> places;
   const int margin = footprint.reach();

@@ -222,7 +222,7 @@ void one_heading_by_brute_force(benchmark::State& state) {
   if (city() == nullptr) return state.SkipWithError("ROADFIX_BENCH_MAP names no map");
   const Around given = around();
   const PackedFootprint footprint(given.turned);
-  const MapPlane plane(given.map.cells, 0);
+  const MapPlane plane(given.map.cells);
   std::vector<PlaneCell> places;
   for (int row = footprint.reach(); row < plane.rows() - footprint.reach(); ++row) {
     for (int col = footprint.reach(); col < plane.cols() - footprint.reach(); ++col) places.push_back({col, row});

@@ -11,6 +11,7 @@
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
 #include "core/units/draws.hpp"
+#include "tests/support/padded_cells.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -36,12 +37,9 @@ class BoundedCase {
     make_features(seed);
     positions_ = geometry;
     const int reach = footprint_reach(features_) + BoundMap::kBorder;
-    RoadGrid padded = RoadGrid::unobserved({4.0,
-                                            {geometry.origin.col - reach, geometry.origin.row - reach},
-                                            geometry.cols + 2 * reach,
-                                            geometry.rows + 2 * reach});
-    paste(map_.cells, padded.cells, reach, reach);
-    bound_map_ = std::make_unique<BoundMap>(padded);
+    const CellArray wide = padded(map_.cells, reach);
+    const LatticeIndex origin{geometry.origin.col - reach, geometry.origin.row - reach};
+    bound_map_ = std::make_unique<BoundMap>(RoadGrid{{4.0, origin, wide.cols(), wide.rows()}, wide});
     search.map = bound_map_.get();
     search.features = &features_;
     search.bins = HeadingBins::for_footprint(2.0 * std::max(features_.cells.cols(), features_.cells.rows()), 4.0);
@@ -56,17 +54,19 @@ class BoundedCase {
 
   double brute_force() const {
     const auto full = static_cast<std::int64_t>(features_.cells.observed_count());
+    const int margin = 2 * footprint_reach(features_);
+    const MapPlane plane(padded(map_.cells, margin));
     std::vector<PlaneCell> places;
     for (int row = 0; row < positions_.rows; ++row) {
       for (int col = 0; col < positions_.cols; ++col) {
-        if (search.eligible(col, row)) places.push_back({col, row});
+        if (search.eligible(col, row)) places.push_back({col + margin, row + margin});
       }
     }
     std::vector<MatchSums> sums(places.size());
     double best = 0.0;
     for (const int bin : search.headings) {
       const PackedFootprint footprint = footprint_at(features_, search.bins.heading(bin));
-      match_sums(MapPlane(map_.cells, 2 * footprint.reach()), footprint, places, sums);
+      match_sums(plane, footprint, places, sums);
       for (const MatchSums& s : sums) best = std::max(best, score_of(s, full, search.min_cells));
     }
     return best;

@@ -9,11 +9,13 @@
 #include "core/match/kernel_vnni.hpp"
 #include "tests/support/ascii_map.hpp"
 #include "tests/support/match_sums.hpp"
+#include "tests/support/padded_cells.hpp"
 #include "tests/support/random_cells.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::padded;
 using testing::random_cells;
 
 /// Cell by cell, the definition.
@@ -61,13 +63,15 @@ TEST_P(KernelOnEachTarget, AgreesWithTheDefinitionForRandomSizesPlacesAndHoles) 
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
   for (int round = 0; round < 150; ++round) {
     const double holes = round % 3 == 0 ? 0.0 : 0.1 * (round % 5);
-    const CellArray map = random_cells(random, 1 + below(150), 1 + below(90), holes);
+    const CellArray cells = random_cells(random, 1 + below(150), 1 + below(90), holes);
     const FeatureMap features =
         FeatureMap::centred(random_cells(random, 1 + below(140), 1 + below(70), 0.1 * (round % 4)), 1.0);
     const PackedFootprint footprint(features);
-    const MapPlane plane(map, 2 * footprint.reach() + round % 2);
+    const int margin = 2 * footprint.reach() + round % 2;  // where the footprint leaves the map, it touches no cell
+    const CellArray map = padded(cells, margin);
+    const MapPlane plane(map);
     std::vector<PlaneCell> places;
-    for (int i = 0; i < 13; ++i) places.push_back({below(400) - 150, below(300) - 100});
+    for (int i = 0; i < 13; ++i) places.push_back({below(400) - 150 + margin, below(300) - 100 + margin});
     std::vector<MatchSums> sums(places.size());
     match_sums(plane, footprint, places, sums);
     for (std::size_t i = 0; i < places.size(); ++i) expect_equal(sums[i], scalar_sums(map, features, places[i]));
@@ -84,7 +88,7 @@ TEST_P(KernelOnEachTarget, SumsProductsAloneWhereAllOfTheMapIsObserved) {
     const PackedFootprint footprint(features);
     const int reach = footprint.reach();
     const CellArray map = random_cells(random, 2 * reach + 1 + below(50), 2 * reach + 1 + below(50), 0.0);
-    const MapPlane plane(map, 0);
+    const MapPlane plane(map);
     std::vector<PlaneCell> places;
     for (int i = 0; i < 11; ++i) {
       places.push_back({reach + below(map.cols() - 2 * reach), reach + below(map.rows() - 2 * reach)});
@@ -103,11 +107,12 @@ TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
   const int rows = 700;
   const FeatureMap features = FeatureMap::centred(CellArray(cols, rows, kRoad), 1.0);
   const PackedFootprint footprint(features);
+  const int margin = footprint.reach();
+  const PlaneCell place{cols / 2 + margin, rows / 2 + margin};
   CellArray map(cols, rows, kRoad);
   for (const bool hole : {false, true}) {
     if (hole) map.at(5, 5) = kUnobserved;
-    const MapPlane plane(map, footprint.reach());
-    const PlaneCell place{cols / 2, rows / 2};
+    const MapPlane plane(padded(map, margin));
     MatchSums sums;
     match_sums(plane, footprint, std::span(&place, 1), std::span(&sums, 1));
     const double expected = static_cast<double>(cols) * rows - (hole ? 1 : 0);
@@ -116,9 +121,8 @@ TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
     EXPECT_NEAR(sums.mm, expected, 1e-3);
     EXPECT_NEAR(sums.ml, expected, 1e-3);
   }
-  const PlaneCell place{cols / 2, rows / 2};
   std::int64_t products = 0;
-  product_sums(MapPlane(CellArray(cols, rows, kRoad), footprint.reach()), footprint, std::span(&place, 1),
+  product_sums(MapPlane(padded(CellArray(cols, rows, kRoad), margin)), footprint, std::span(&place, 1),
                std::span(&products, 1));
   EXPECT_EQ(products, std::int64_t{cols} * rows * kRoad * kRoad);
 }
@@ -136,8 +140,9 @@ TEST(FootprintAt, TurnsAndShiftsTheFeatureMapLikeCuttingItOutOfTheGround) {
   const FeatureMap window = cut_out(grid, {grid.geometry.point_at(at), heading}, 31, 25, 1.0);
   const auto fit = [&](GridGeometry::CellPosition offset) {
     const PackedFootprint footprint = footprint_at(window, heading, offset);
-    const MapPlane plane(grid.cells, footprint.reach());
-    const PlaneCell place{40, 39};
+    const int margin = footprint.reach();
+    const MapPlane plane(padded(grid.cells, margin));
+    const PlaneCell place{40 + margin, 39 + margin};
     MatchSums sums;
     match_sums(plane, footprint, std::span(&place, 1), std::span(&sums, 1));
     return rho(sums).value();

@@ -11,6 +11,7 @@
 #include "core/match/score.hpp"
 #include "core/units/draws.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/padded_cells.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
@@ -19,6 +20,7 @@ namespace roadfix {
 namespace {
 
 using testing::observed_at;
+using testing::padded;
 using testing::pose_within;
 using testing::reader_of;
 using testing::street_map;
@@ -257,14 +259,16 @@ TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {
 double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double min_share) {
   const auto full = static_cast<std::int64_t>(features.cells.observed_count());
   double best = 0.0;
+  const int margin = 2 * footprint_reach(features);
+  const MapPlane plane(padded(map.cells, margin));
   std::vector<PlaneCell> places;
   for (int row = 0; row < map.cells.rows(); ++row) {
-    for (int col = 0; col < map.cells.cols(); ++col) places.push_back({col, row});
+    for (int col = 0; col < map.cells.cols(); ++col) places.push_back({col + margin, row + margin});
   }
   std::vector<MatchSums> sums(places.size());
   for (int bin = 0; bin < bins.count(); ++bin) {
     const PackedFootprint footprint = footprint_at(features, bins.heading(bin));
-    match_sums(MapPlane(map.cells, 2 * footprint.reach()), footprint, places, sums);
+    match_sums(plane, footprint, places, sums);
     for (const MatchSums& s : sums) {
       best = std::max(best, score_of(s, full, min_share * static_cast<double>(full)));
     }

@@ -65,6 +65,9 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
   EXPECT_EQ(refused({{"sequence", 4}}), "400 missing-parameter time_us");
   EXPECT_EQ(refused({{"sequence", 4.5}, {"time_us", 1}}), "400 bad-parameter sequence");
   EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 9'000'000}, {"forward_m", 3}}), "400 missing-parameter right_m");
+  EXPECT_EQ(testing::refusal(send(client, id, {"?sequence=4&time_us=9000000&cell_m=2", ""})),
+            "400 missing-parameter image")
+      << "a picture that was lost on its way";
   json bad{{"sequence", 4}, {"time_us", 9'000'000}, {"forward_m", 3}, {"right_m", 0}, {"turn_deg", 0}};
   bad["covariance"] = {1, 2, 0, 2, 1, 0, 0, 0, 1};
   EXPECT_EQ(refused(bad), "422 covariance-not-positive");

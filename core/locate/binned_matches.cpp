@@ -100,9 +100,9 @@ GridGeometry around(Poses poses, double cell_m, int reach) {
           high.row - low.row + 1 + 2 * reach};
 }
 
-/// A window of the map. Where so many poses share it that this costs less than it spares, it is also turned to the
-/// left by one, two and three quarters: a feature map turned to the right as often covers of the window what it covers
-/// unturned of these.
+/// A window of the map; where enough poses share it, also rotated by one, two and three quarter turns to the left.
+/// Matching a footprint on such a window gives what the footprint rotated to the right would give on the window as it
+/// is: headings a quarter turn apart need one footprint.
 class Window {
  public:
   Window(const RoadGrid& map, bool turned) : geometry_(map.geometry) {
@@ -150,7 +150,7 @@ class Window {
   std::vector<MapPlane> planes_;
 };
 
-/// Turning a window's cells costs about a quarter of turning and packing as many of the feature map.
+/// To rotate the cells of a window costs about a quarter of what it costs to rotate and pack as many of a feature map.
 bool worth_turning(const GridGeometry& window, int reach, std::size_t footprints_spared) {
   const double footprint_cells = std::pow(2.0 * reach + 1.0, 2.0);
   return 4.0 * footprint_cells * static_cast<double>(footprints_spared) > 3.0 * window.cols * window.rows;

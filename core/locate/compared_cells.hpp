@@ -1,9 +1,10 @@
 // What `locate` lets the search compare: not probabilities but half their log odds (core/match/soft_cells.hpp). A
 // detector is less sure of roads in a picture of another day, and those that it doubts tell places apart too:
-// docs/experiments.md has the measurement. Coarser cells hold the mean of what is compared, not what is compared of the
-// mean: the latter would widen every road. Equation (5) stays of the cells as they are, and so does what weighs the
-// particles of a track: equation (7) is the paper's, and the correlation that measurement_model.hpp expects is that of
-// plain cells.
+// docs/experiments.md has the measurement. Coarser cells are averaged after the log odds are halved, not before:
+// otherwise every road would become wider.
+//
+// Equation (5) of a fix and the weights of a track's particles use the cells as they are: equation (7) is the paper's,
+// and measurement_model.hpp expects the correlation of plain cells.
 #pragma once
 
 #include "core/grid/feature_map.hpp"

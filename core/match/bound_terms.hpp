@@ -73,7 +73,7 @@ struct TurnedFeatures {
   void cover(const CellArray& array, int nadir_col, int nadir_row);
 };
 
-/// What all headings of a sector cover, or any.
+/// The marked ones of side x side blocks, the nadir's in the middle.
 std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side);
 
 }  // namespace roadfix

@@ -19,9 +19,9 @@
 namespace roadfix {
 namespace {
 
-/// What the means and spreads under a footprint are hardly changes from one heading to the next: these share them, and
-/// a transform.
-constexpr int kSharing = 2;
+/// Neighbouring headings that share the means and spreads under the footprint, which hardly change from one to the
+/// next, and the two parts of a complex transform.
+constexpr int kHeadingsTogether = 2;
 
 int widened_for_vectors(int cols) { return cols + kRowOverrun; }
 
@@ -79,10 +79,10 @@ class Scan {
     std::ranges::sort(bases);
     bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
     const int count = static_cast<int>(bases.size());
-    parallel_for((count + kSharing - 1) / kSharing, request_.threads, [&](int i) {
-      const int first = i * kSharing;
+    parallel_for((count + kHeadingsTogether - 1) / kHeadingsTogether, request_.threads, [&](int i) {
+      const int first = i * kHeadingsTogether;
       scan_pairs(std::span(bases).subspan(static_cast<std::size_t>(first),
-                                          static_cast<std::size_t>(std::min(kSharing, count - first))));
+                                          static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))));
     });
     result_.share =
         static_cast<double>(scanned_) / static_cast<double>(std::max<std::size_t>(1, request_.headings.size()));
@@ -95,7 +95,7 @@ class Scan {
   /// One of the directions of a pair of headings; -1 where a heading is not asked for.
   struct Direction {
     bool half_turn = false;
-    std::array<int, kSharing> bins{-1, -1};
+    std::array<int, kHeadingsTogether> bins{-1, -1};
   };
 
   void scan_pairs(std::span<const int> bases) {

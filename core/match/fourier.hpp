@@ -13,7 +13,7 @@ struct Columns {
   int last = 0;
 };
 
-/// The first columns and rows of a plane, beyond which it is 0 whatever it holds; the columns round up to kStripCols.
+/// The first columns and rows of a plane, the columns rounded up to kStripCols. What it holds beyond them counts as 0.
 struct Filled {
   int cols = 0;
   int rows = 0;

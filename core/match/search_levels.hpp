@@ -33,7 +33,7 @@ class SearchLevels {
   int proof_level() const;
 
   bool within_region(const Level& level, const LatticePose& pose) const;
-  /// The best `keep` of those within the region, and of the others, that are apart; best first.
+  /// Those that are apart from every better one, best first: up to `keep` from within the region, and as many others.
   std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
                                     int coarse_bins_apart, std::size_t keep) const;
 

@@ -47,7 +47,7 @@ void Tracker::Step::look_around() {
   if (!around) return;
   const FeatureMap seen = resampled(*features_, features_->cell_m, std::exp(belief.log_scale));
   const std::optional<Fix> fix = search_for(seen, *around, 0.0);
-  if (!fix || !is_beside(*fix, belief, map.zone)) return;
+  if (!fix || !fix->complete || !is_beside(*fix, belief, map.zone)) return;
   state_.claim.reject();
   if (!state_.drifts) {
     state_.drifts = true;

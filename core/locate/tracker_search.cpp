@@ -16,6 +16,8 @@ constexpr double kProbabilityForClaim = 0.95;         // of a search at the plac
 constexpr double kInjectedShare = 0.3;
 constexpr double kMaxFixShare = 0.9;  // of the particles; the others begin anew
 constexpr double kRecoveryRadiusM = 3000.0;
+constexpr double kMaxRivalShare = 0.3;      // of the weight of the place
+constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for exact, before a fix is believed
 
 }  // namespace
 
@@ -34,7 +36,7 @@ bool Tracker::Step::start_by_search() {
   filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMaxFixShare, 0.9),
                        first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
-  if (fix->status == FixStatus::kFix) confirm(*fix);
+  if (fix->status == FixStatus::kFix && holds_at_other_scales(*fix, *prior)) confirm(*fix);
   return true;
 }
 
@@ -54,17 +56,17 @@ bool Tracker::Step::wants_search() const {
 
 void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
-  std::optional<Fix> fix = search_within({});
+  Prior prior;
+  std::optional<Fix> fix = search_within(prior);
   if (!fix) {
-    Prior near;
-    near.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = search_within(near);
+    prior.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
+    fix = search_within(prior);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
   if (agrees && fix->probability >= kProbabilityForClaim) {
-    state_.claim.confirmed = true;
-  } else if (fix->status != FixStatus::kFix) {
+    state_.claim.confirmed = holds_at_other_scales(*fix, prior);
+  } else if (fix->status != FixStatus::kFix || !holds_at_other_scales(*fix, prior)) {
     filter_.inject(proposals_of(tracker_.map_, *fix, *features_), kInjectedShare);
   } else {
     filter_.start_from(proposals_of(tracker_.map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
@@ -75,19 +77,40 @@ void Tracker::Step::recover() {
   }
 }
 
+/// Whether the place has no rival where the ground may be of another size than the frames say. From a wrong altitude
+/// the streets of one quarter look like those of another whose blocks are as much smaller, and no frame contradicts it.
+bool Tracker::Step::holds_at_other_scales(const Fix& fix, const Prior& prior) {
+  if (settings_.vehicle.scale_range >= kUntoldScaleRange) return true;
+  const std::optional<Fix> other = search_for(state_.recent.laid_around(*features_), prior, kUntoldScaleRange);
+  if (!other || !other->complete) return false;
+  const GridPose place = on_grid(fix.modes.front().pose, tracker_.map_.zone);
+  double here = 0.0;
+  double elsewhere = 0.0;
+  for (const FixMode& mode : other->modes) {
+    double& weight = is_same_place(on_grid(mode.pose, tracker_.map_.zone), place) ? here : elsewhere;
+    weight = std::max(weight, mode.weight);
+  }
+  return elsewhere < kMaxRivalShare * here;
+}
+
 void Tracker::Step::confirm(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
   state_.looked_time_us = input_.time_us;
 }
 
+/// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
+/// takes longer. At its beginning that is an error, as a smaller prior helps.
 std::optional<Fix> Tracker::Step::search_within(const Prior& prior) {
   state_.last_search = state_.measured;
-  return search_for(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
+  std::optional<Fix> fix = search_for(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
+  if (!fix || fix->complete) return fix;
+  // What it has depends on the machine, and a track must come out the same.
+  if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);
+  return std::nullopt;
 }
 
-/// nullopt where the area is beyond the limit, or the time was over first: a flight goes on without a search, as it
-/// would be stuck with a map that takes longer. At its beginning that is an error, as a smaller prior helps.
+/// nullopt where the area is beyond the limit.
 std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const Prior& prior, double scale_range) {
   FixOptions options;
   options.scale_range = scale_range;
@@ -97,11 +120,7 @@ std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const P
   options.stop = limits_.stop;
   options.calibration = settings_.calibration;
   try {
-    Fix fix = locate(tracker_.map_, features, prior, options);
-    if (fix.complete) return fix;
-    // What it has depends on the machine, and a track must come out the same.
-    if (state_.sequence < 0) throw Interrupted("search-time-limit", fix.explanation);
-    return std::nullopt;
+    return locate(tracker_.map_, features, prior, options);
   } catch (const LimitExceeded&) {
     return std::nullopt;
   }

@@ -44,6 +44,7 @@ class Tracker::Step {
   void search_if_due();
   bool wants_search() const;
   void recover();
+  bool holds_at_other_scales(const Fix& fix, const Prior& prior);
   void confirm(const Fix& fix);
   std::optional<Fix> search_within(const Prior& prior);
   std::optional<Fix> search_for(const FeatureMap& features, const Prior& prior, double scale_range);

@@ -14,6 +14,7 @@ namespace {
 
 using testing::Flight;
 using testing::Track;
+using testing::view_of;
 
 TEST_F(Track, ClaimsNoPlaceBeforeASearchHasToldItFromAllOthers) {
   TrackSettings uniform = settings();
@@ -33,6 +34,40 @@ TEST_F(Track, ClaimsNoPlaceBeforeASearchHasToldItFromAllOthers) {
     EXPECT_TRUE(state_.claim.outweighs_chance());
     EXPECT_EQ(last.converged, searches);
   }
+}
+
+/// The town, and to the east of it the same streets once more, `share` as large.
+RoadGrid with_a_smaller_twin(const RoadGrid& town, double share) {
+  GridGeometry geometry = town.geometry;
+  const int first = geometry.cols + 40;
+  geometry.cols = first + static_cast<int>(share * geometry.cols);
+  RoadGrid both{geometry, CellArray(geometry.cols, geometry.rows, kNoRoad)};
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int col = 0; col < town.geometry.cols; ++col) both.cells.at(col, row) = town.cells.get(col, row);
+    for (int col = first; col < geometry.cols; ++col) {
+      const Cell twin = town.cells.get(static_cast<int>((col - first) / share), static_cast<int>(row / share));
+      if (is_observed(twin)) both.cells.at(col, row) = twin;
+    }
+  }
+  return both;
+}
+
+TEST_F(Track, ClaimsNoPlaceWhoseStreetsLookThatWayFromAWrongAltitudeOnly) {
+  constexpr double kShare = 0.9;
+  const RoadGrid both = with_a_smaller_twin(map_, kShare);
+  const MapView view = view_of(both);
+  const Tracker tracker(view, settings());
+  Flight flight(map_, start_, 6);
+  flight.side_cells = 160;
+  int searched = 0;
+  for (int i = 0; i < 25; ++i) {
+    StepInput step = flight.step();
+    step.features->cell_m *= kShare;
+    const TrackEstimate estimate = advance(tracker, step);
+    searched += estimate.measurement == Measurement::kSearched ? 1 : 0;
+    EXPECT_FALSE(estimate.converged) << "step " << i << ", off by " << error_m(estimate, flight.pose());
+  }
+  EXPECT_GT(searched, 0);
 }
 
 TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {

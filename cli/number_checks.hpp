@@ -9,10 +9,10 @@ namespace roadfix::cli {
 /// Of metres, seconds, pixels or bytes: more than anybody means, and still countable in milliseconds.
 inline constexpr double kMaxNumber = 2e9;
 
-/// Above 0 and at most `most`.
+/// Above 0 and at most `max`.
 CLI::Validator positive(double max = kMaxNumber);
 
-/// 0 or positive(most).
+/// 0 or positive(max).
 CLI::Validator not_negative(double max = kMaxNumber);
 
 /// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.

@@ -6,6 +6,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/match/soft_cells.hpp"
+#include "core/units/floor_div.hpp"
 
 namespace roadfix {
 namespace {
@@ -51,9 +52,7 @@ GridReader compared_cells(const MapView& map, double finest_cell_m) {
         std::min(kFinerLevels, static_cast<int>(std::lround(std::log2(geometry.cell_m / finest_cell_m))));
     if (levels <= 0) return RoadGrid{geometry, compared(map, geometry)};
     RoadGrid grid{geometry, CellArray(geometry.cols, geometry.rows)};
-    const auto block_of = [](int cell) {
-      return static_cast<int>(std::floor(static_cast<double>(cell) / kBlockCells));
-    };
+    const auto block_of = [](int cell) { return floor_div(cell, kBlockCells); };
     const LatticeIndex first = geometry.origin;
     for (int row = block_of(first.row); row * kBlockCells < first.row + geometry.rows; ++row) {
       for (int col = block_of(first.col); col * kBlockCells < first.col + geometry.cols; ++col) {

@@ -5,8 +5,6 @@
 namespace roadfix {
 namespace {
 
-constexpr int kWindow = 2 * kBlockCells - 1;
-
 int blocks(int cells) { return (cells + kBlockCells - 1) / kBlockCells; }
 
 /// Observed cells less `base`, others 0.
@@ -85,7 +83,7 @@ std::size_t BoundMap::bytes() const {
 void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece) {
   const int cols = above.cols();
   const int rows = above.rows();
-  std::vector<std::uint16_t> sums(static_cast<std::size_t>(block_cols_ * kBlockCells + kWindow));
+  std::vector<std::uint16_t> sums(static_cast<std::size_t>(block_cols_ * kBlockCells + kBlockWindow));
   std::vector<std::uint16_t> best(static_cast<std::size_t>(block_cols_) * static_cast<std::size_t>(block_rows_), 0);
   std::vector<std::uint16_t> widest(static_cast<std::size_t>(block_cols_));
   for (int row = 0; row < rows; ++row) {
@@ -101,11 +99,11 @@ void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<
     for (int block = 0; block < block_cols_; ++block) {
       const auto* first = sums.data() + std::ptrdiff_t{block} * kBlockCells;
       std::uint16_t max = 0;
-      for (int i = 0; i < kWindow; ++i) max = std::max(max, first[i]);
+      for (int i = 0; i < kBlockWindow; ++i) max = std::max(max, first[i]);
       widest[static_cast<std::size_t>(block)] = max;
     }
     // Windows overlap: a row counts for its own block row and, but for the last one, for the block row above.
-    for (int block_row = std::max(0, (row - kWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;
+    for (int block_row = std::max(0, (row - kBlockWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;
          ++block_row) {
       auto* out = best.data() + static_cast<std::ptrdiff_t>(block_row) * block_cols_;
       for (int block = 0; block < block_cols_; ++block)
@@ -125,18 +123,19 @@ void BoundMap::fill_observed(const CellArray& cells) {
   CellArray seen(cells.cols(), cells.rows(), 0);
   for (std::size_t i = 0; i < cells.cells().size(); ++i) seen.cells()[i] = is_observed(cells.cells()[i]) ? 1 : 0;
   // Window sums by running over the rows of window rows: small enough to be counted plainly.
-  std::vector<int> count(static_cast<std::size_t>(cells.cols() + kWindow));
+  std::vector<int> count(static_cast<std::size_t>(cells.cols() + kBlockWindow));
   for (int block_row = 0; block_row < block_rows_; ++block_row) {
     std::ranges::fill(count, 0);
-    for (int row = block_row * kBlockCells; row < std::min(cells.rows(), block_row * kBlockCells + kWindow); ++row) {
+    for (int row = block_row * kBlockCells; row < std::min(cells.rows(), block_row * kBlockCells + kBlockWindow);
+         ++row) {
       const auto in = seen.row(row);
       for (std::size_t col = 0; col < in.size(); ++col) count[col] += in[col];
     }
     for (int block = 0; block < block_cols_; ++block) {
       int sum = 0;
-      for (int i = 0; i < kWindow; ++i)
+      for (int i = 0; i < kBlockWindow; ++i)
         sum += count[static_cast<std::size_t>(std::min(block * kBlockCells + i, cells.cols()))];
-      *plane(kAllObserved, block, block_row) = sum == kWindow * kWindow ? kFull : 0;
+      *plane(kAllObserved, block, block_row) = sum == kBlockWindow * kBlockWindow ? kFull : 0;
       *plane(kAnyObserved, block, block_row) = sum > 0 ? kFull : 0;
     }
   }

@@ -16,6 +16,9 @@
 namespace roadfix {
 
 inline constexpr int kBlockCells = 4;
+/// Cells along each axis that the cells of a block of a footprint come to lie on while its nadir is anywhere in a
+/// block.
+inline constexpr int kBlockWindow = 2 * kBlockCells - 1;
 
 class BoundMap {
  public:

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/match/line_stencil.hpp"
+#include "core/units/floor_div.hpp"
 
 namespace roadfix {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 constexpr std::size_t kGroups = 64;
 constexpr std::size_t kMaxTermsOfGroup = 1000;  // their sum has to fit into 16 bits
 constexpr double kHighestSum = 2147483648.0;
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 /// What is left of a feature map while pieces are taken from it.
 class Remainder {
@@ -259,14 +258,13 @@ void TurnedFeatures::cover(const CellArray& array, int nadir_col, int nadir_row)
   inner.assign(static_cast<std::size_t>(side * side), false);
   outer = inner;
   WindowCount count(array);
-  constexpr int kWindow = 2 * kBlockCells - 1;
   for (int row = -half; row <= half; ++row) {
     for (int col = -half; col <= half; ++col) {
       // The cells of the block as seen from the positions of the nadir's block.
       const int seen = count.within(nadir_col + kBlockCells * col - kBlockCells + 1,
-                                    nadir_row + kBlockCells * row - kBlockCells + 1, kWindow);
+                                    nadir_row + kBlockCells * row - kBlockCells + 1, kBlockWindow);
       const auto at = static_cast<std::size_t>((row + half) * side + col + half);
-      inner[at] = seen == kWindow * kWindow;
+      inner[at] = seen == kBlockWindow * kBlockWindow;
       outer[at] = seen > 0;
     }
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/match/scan_kernel.hpp"
+#include "core/units/floor_div.hpp"
 
 namespace roadfix {
 namespace {
@@ -17,8 +18,6 @@ std::array<float, 256> value_table(double mean) {
   }
   return table;
 }
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 }  // namespace
 

@@ -2,12 +2,9 @@
 
 #include <cassert>
 
+#include "core/units/floor_div.hpp"
+
 namespace roadfix {
-namespace {
-
-constexpr int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
-
-}  // namespace
 
 GridGeometry tile_geometry(TileIndex tile, double cell_m) {
   return {cell_m, {tile.col * kTileCells, tile.row * kTileCells}, kTileCells, kTileCells};

@@ -1,7 +1,8 @@
 // From what a search says about its best place to the probability that it is the true one, learned from queries with
 // known truth (docs/calibration.md). Monotone in every figure, and never surer than the examples it was learned from:
 // beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`. Above 0.5
-// it is no surer than the search itself that no other place fits as well by chance, whatever the examples say.
+// it is no surer than the search itself that no other place fits as well by chance, whatever the examples say; at most
+// 0.5 where the place rests on less than kMinRoadsAcross.
 #pragma once
 
 #include <array>

@@ -78,6 +78,23 @@ void call_ambiguous(Decision& decision, const std::vector<double>& posterior, do
   }
 }
 
+bool is_beyond_chance(const SearchFigures& figures) {
+  return figures.roads_across >= kMinRoadsAcross &&
+         (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations);
+}
+
+std::string chance_explains(const SearchFigures& figures) {
+  if (figures.roads_across >= kMinRoadsAcross) {
+    return "the best place fits no better than chance allows among so many places: use a larger footprint or a "
+           "narrower prior; the UAV may not be over this map";
+  }
+  const double across_m = std::exp(0.5 * figures.ground);
+  return fmt::format(
+      "at the best place frame and map share {:.0f} m of road, and a single straight road across the frame has up to "
+      "{:.0f} m: use a larger footprint, or fly on to where roads are; the UAV may not be over this map",
+      figures.roads_across * across_m, kMinRoadsAcross * across_m);
+}
+
 }  // namespace
 
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
@@ -99,14 +116,12 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
     explain(decision, kTimeLimitReason, time_was_over(found));
-  } else if (decision.probability >= confidence) {
+  } else if (decision.probability >= confidence && figures.roads_across >= kMinRoadsAcross) {
     decision.status = FixStatus::kFix;
-  } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
+  } else if (is_beyond_chance(figures)) {
     call_ambiguous(decision, posterior, confidence);
   } else {
-    explain(decision, kNotAboveChanceReason,
-            "the best place fits no better than chance allows among so many places: use a larger footprint or a "
-            "narrower prior; the UAV may not be over this map");
+    explain(decision, kNotAboveChanceReason, chance_explains(figures));
   }
   return decision;
 }

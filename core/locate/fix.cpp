@@ -12,6 +12,7 @@
 #include "core/locate/ellipse.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/prepare.hpp"
+#include "core/locate/search_figures.hpp"
 #include "core/match/score.hpp"
 #include "core/units/error.hpp"
 
@@ -61,9 +62,7 @@ std::optional<Refusal> refusal_of(const FeatureMap& features) {
   return std::nullopt;
 }
 
-/// One road across the footprint places a frame nowhere: it looks like every other road.
 bool shows_less_than_a_road_across(const FeatureMap& features) {
-  constexpr double kRoadWidthM = 6.0;
   const double cell_m2 = features.cell_m * features.cell_m;
   const auto roads = std::ranges::count_if(features.cells.cells(),
                                            [](Cell cell) { return is_observed(cell) && probability(cell) > 0.5; });

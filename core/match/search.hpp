@@ -63,6 +63,8 @@ struct SearchMode {
   double pearson = 0.0;  ///< the same about the separate means
   std::int64_t observed_cells = 0;
   PoseCovariance covariance{};  ///< from the shape of the peak, and the cell size
+  /// Road in both that the score rests on (shared_road.hpp); of the best mode alone, of others 0.
+  double shared_road_m2 = 0.0;
 };
 
 /// What scores look like by chance over the searched region.

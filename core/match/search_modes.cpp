@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "core/grid/resample.hpp"
 #include "core/match/peak.hpp"
+#include "core/match/shared_road.hpp"
 
 namespace roadfix {
 namespace {
@@ -42,6 +45,16 @@ SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& backgro
 bool on_one_peak(const Level& finest, const SearchMode& a, const SearchMode& b) {
   return distance_m(a.pose.position, b.pose.position) <= kPeakRadius * finest.cell_m() &&
          angular_distance(a.pose.heading, b.pose.heading) <= double{kPeakRadius} * finest.bins.halved().step();
+}
+
+double shared_road_m2(const Level& finest, const SearchMode& mode) {
+  const double cell_m = finest.cell_m();
+  const FeatureMap north_up = rotated(resampled(finest.source, cell_m, mode.scale), mode.pose.heading);
+  const GridPoint at = mode.pose.position;
+  const LatticeIndex north_west{static_cast<int>(std::floor(at.east_m / cell_m) - std::floor(north_up.nadir.col)),
+                                static_cast<int>(std::floor(-at.north_m / cell_m) - std::floor(north_up.nadir.row))};
+  const RoadGrid ground = finest.read({cell_m, north_west, north_up.cells.cols(), north_up.cells.rows()});
+  return shared_road_cells(ground.cells, north_up.cells) * cell_m * cell_m;
 }
 
 double poses_of(const PoseRegion& region) {
@@ -83,6 +96,7 @@ void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOpt
     }
   }
   std::ranges::stable_sort(result.modes, std::ranges::greater{}, &SearchMode::score);
+  if (!result.modes.empty()) result.modes.front().shared_road_m2 = shared_road_m2(finest, result.modes.front());
 }
 
 }  // namespace roadfix

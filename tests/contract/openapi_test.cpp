@@ -161,7 +161,9 @@ void expect_ranges(const json& schema, const json& base, const std::function<voi
       return false;
     }
   };
-  for (const auto& [name, member] : schema.at("properties").items()) {
+  for (const auto& property : schema.at("properties").items()) {
+    const std::string& name = property.key();
+    const json& member = property.value();
     const std::string type = member.value("type", "");
     if (!base.contains(name) || (type != "number" && type != "integer")) continue;
     const auto beyond = [&](const char* bound, int sign) -> json {

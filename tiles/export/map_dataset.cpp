@@ -25,7 +25,7 @@ class MapBand final : public GDALRasterBand {
   double GetNoDataValue(int* success) override {
     const bool has = colour_ == GCI_Undefined;
     if (success != nullptr) *success = has ? TRUE : FALSE;
-    return has ? double{kNoData} : 0.0;
+    return has ? static_cast<double>(kNoData) : 0.0;
   }
   GDALColorInterp GetColorInterpretation() override { return colour_; }
 

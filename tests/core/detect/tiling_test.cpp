@@ -58,11 +58,12 @@ TEST(Tiling, OnlyThePartOfATileAroundWantedPixelsIsRun) {
     EXPECT_EQ(part.x % 16 + part.y % 16 + part.width % 16 + part.height % 16, 0);
     EXPECT_EQ(part & cv::Rect(32, 16, 112, 80), part);
     cv::Mat columns(part.height / 2, part.width / 2, CV_32FC1);
-    for (int col = 0; col < columns.cols; ++col) columns.col(col) = static_cast<float>(part.x / 2 + col);
+    for (int col = 0; col < columns.cols; ++col) columns.col(col) = 0.5 * part.x + col;
     return columns;
   });
   for (int row = 10; row < 45; ++row) {
-    for (int col = 20; col < 65; ++col) ASSERT_NEAR(blended.at<float>(row, col), col, 1e-3) << row << ' ' << col;
+    for (int col = 20; col < 65; ++col)
+      ASSERT_NEAR(static_cast<double>(blended.at<float>(row, col)), col, 1e-3) << row << ' ' << col;
   }
   EXPECT_EQ(blended.at<float>(5, 30), 0.0F);
 }

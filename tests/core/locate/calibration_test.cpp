@@ -18,7 +18,7 @@ constexpr const char* kText = R"({"format": "roadfix-calibration-2", "bias": -3.
   "highest": 0.995, "sigma_scale": {"position": 1.1, "heading": 0.6}, "origin": {"maps": ["town"]}})";
 
 SearchFigures figures(double surprise, double lead, double gap, double ground = 100.0) {
-  return {.surprise = surprise, .lead = lead, .gap = gap, .ground = ground};
+  return {.surprise = surprise, .lead = lead, .gap = gap, .ground = ground, .roads_across = 2.0};
 }
 
 TEST(Calibration, IsALogisticFunctionOfTheFigures) {
@@ -40,6 +40,14 @@ TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
   EXPECT_EQ(calibration.probability(figures(2.6, 100.0, 100.0)), std::exp(-std::exp(-2.6)));
   EXPECT_EQ(calibration.probability(figures(0.0, 100.0, 100.0)), 0.5);
   EXPECT_GE(calibration.probability(figures(5.0, 100.0, 100.0)), 0.99);
+}
+
+TEST(Calibration, IsNotSureOfAPlaceThatRestsOnNoMoreThanOneStraightRoad) {
+  SearchFigures far_ahead = figures(100.0, 100.0, 100.0);
+  far_ahead.roads_across = 1.41;
+  EXPECT_EQ(default_calibration().probability(far_ahead), 0.5);
+  far_ahead.roads_across = 1.42;
+  EXPECT_GE(default_calibration().probability(far_ahead), 0.99);
 }
 
 TEST(Calibration, RisesWithEveryFigure) {

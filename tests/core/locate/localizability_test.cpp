@@ -25,7 +25,7 @@ LocalizabilityQuery centre_of(const MapView& view, double footprint_m) {
 }
 
 TEST(Localizability, IsHighWhereStreetsWind) {
-  const MapView view = view_of(testing::street_map(21, square(800)));
+  const MapView view = view_of(testing::street_map(22, square(800)));
   const Localizability place = localizability(view, centre_of(view, 400.0));
   EXPECT_EQ(place.status, FixStatus::kFix) << place.reason;
   EXPECT_GT(place.probability, 0.99);

@@ -53,6 +53,34 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
 }
 
+TEST_F(Locate, ALonePieceOfRoadIsNoFixThoughItFitsOnePlaceFarBetterThanAllOthers) {
+  constexpr int kSide = 100;
+  constexpr int kCol = 500;
+  constexpr int kRow = 400;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) map_.cells.at(kCol + col, kRow + row) = kNoRoad;
+  }
+  for (int i = 0; i < 15; ++i) {
+    for (int width = 0; width < 3; ++width) {
+      map_.cells.at(kCol + 40 + i, kRow + 30 + width) = kRoad;
+      map_.cells.at(kCol + 40 + width, kRow + 30 + i) = kRoad;
+    }
+  }
+  const MapView view = view_of(map_);
+  const GridPose place{map_.geometry.point_at({kCol + kSide / 2.0, kRow + kSide / 2.0}), {}};
+  Prior prior;
+  prior.circle = GeoCircle{on_earth(place, view.zone).position, 500.0};
+  const Fix fix = locate(view, cut_out(map_, place, kSide, kSide, 2.0), prior, {});
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "too-few-roads");
+  EXPECT_LE(fix.probability, 0.5);
+  ASSERT_GE(fix.modes.size(), 2U);
+  EXPECT_LT(error_m(fix.modes[0].pose, place), 2.0);
+  EXPECT_GT(fix.modes[0].rho, 0.95);
+  EXPECT_LT(fix.modes[1].rho, 0.85);
+  EXPECT_GT(fix.figures->surprise, 4.6);
+}
+
 TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   Prior prior;

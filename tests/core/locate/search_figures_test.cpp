@@ -50,6 +50,14 @@ TEST(SearchFigures, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
   EXPECT_NEAR(figures_of(result).ground, std::log(20.0 * 20.0 * 15.0 * 15.0), 1e-9);
 }
 
+TEST(SearchFigures, CountsSharedRoadInRoadsAcrossTheGroundThatTookPart) {
+  SearchResult result = found(0.6, 0.2, 0.02);
+  result.cell_m = 2.0;
+  result.modes[0].observed_cells = 22'500;  // 300 x 300 m
+  result.modes[0].shared_road_m2 = 2 * 300 * kRoadWidthM;
+  EXPECT_NEAR(figures_of(result).roads_across, 2.0, 1e-9);
+}
+
 TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {
   SearchResult result = found(0.4, 0.2, 0.02);
   const double whole = figures_of(result).surprise;

@@ -13,11 +13,10 @@ bool is_map_cell_size(double cell_m) {
 
 GridGeometry GridGeometry::covering(const GridBox& box, double cell_m) {
   assert(cell_m > 0.0);
-  const auto west = static_cast<int>(std::floor(box.min.east_m / cell_m));
+  const LatticeIndex first = lattice_index({box.min.east_m, box.max.north_m}, cell_m);
   const auto east = static_cast<int>(std::ceil(box.max.east_m / cell_m));
-  const auto north = static_cast<int>(std::floor(-box.max.north_m / cell_m));
   const auto south = static_cast<int>(std::ceil(-box.min.north_m / cell_m));
-  return {cell_m, {west, north}, std::max(0, east - west), std::max(0, south - north)};
+  return {cell_m, first, std::max(0, east - first.col), std::max(0, south - first.row)};
 }
 
 GridBox GridGeometry::box() const {

@@ -4,6 +4,7 @@
 // corners lie on the lattice of multiples of the cell size: grids of the same zone always line up.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "core/units/planar.hpp"
@@ -17,6 +18,11 @@ struct LatticeIndex {
   int row = 0;
   friend bool operator==(const LatticeIndex&, const LatticeIndex&) = default;
 };
+
+/// The cell that a point lies in; one on an edge belongs to the cell east or south of it.
+inline LatticeIndex lattice_index(GridPoint point, double cell_m) {
+  return {static_cast<int>(std::floor(point.east_m / cell_m)), static_cast<int>(std::floor(-point.north_m / cell_m))};
+}
 
 inline constexpr double kMinCellM = 0.25;
 inline constexpr double kMaxCellM = 16.0;

@@ -78,16 +78,7 @@ void call_ambiguous(Decision& decision, const std::vector<double>& posterior, do
   }
 }
 
-bool is_beyond_chance(const SearchFigures& figures) {
-  return figures.roads_across >= kMinRoadsAcross &&
-         (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations);
-}
-
-std::string chance_explains(const SearchFigures& figures) {
-  if (figures.roads_across >= kMinRoadsAcross) {
-    return "the best place fits no better than chance allows among so many places: use a larger footprint or a "
-           "narrower prior; the UAV may not be over this map";
-  }
+std::string shares_one_road(const SearchFigures& figures) {
   const double across_m = std::exp(0.5 * figures.ground);
   return fmt::format(
       "at the best place frame and map share {:.0f} m of road, and a single straight road across the frame has up to "
@@ -116,12 +107,16 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
     explain(decision, kTimeLimitReason, time_was_over(found));
-  } else if (decision.probability >= confidence && figures.roads_across >= kMinRoadsAcross) {
+  } else if (figures.roads_across < kMinRoadsAcross) {
+    explain(decision, kNotAboveChanceReason, shares_one_road(figures));
+  } else if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
-  } else if (is_beyond_chance(figures)) {
+  } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, posterior, confidence);
   } else {
-    explain(decision, kNotAboveChanceReason, chance_explains(figures));
+    explain(decision, kNotAboveChanceReason,
+            "the best place fits no better than chance allows among so many places: use a larger footprint or a "
+            "narrower prior; the UAV may not be over this map");
   }
   return decision;
 }

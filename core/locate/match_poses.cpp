@@ -28,12 +28,8 @@ void for_each_on_map(const MapView& map, const FeatureMap& features, std::span<c
   }
 }
 
-LatticeIndex cell_at(GridPoint point, double cell_m) {
-  return {static_cast<int>(std::floor(point.east_m / cell_m)), static_cast<int>(std::floor(-point.north_m / cell_m))};
-}
-
 MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose) {
-  const LatticeIndex cell = cell_at(pose.position, features.cell_m);
+  const LatticeIndex cell = lattice_index(pose.position, features.cell_m);
   const PackedFootprint footprint = footprint_at(features, pose.heading,
                                                  {pose.position.east_m / features.cell_m - cell.col - 0.5,
                                                   -pose.position.north_m / features.cell_m - cell.row - 0.5});
@@ -67,7 +63,7 @@ void match_in_bins(const MapView& map, const FeatureMap& features, std::span<con
   for_each_on_map(map, features, poses, [&](std::size_t i, const GridPose& pose) {
     const double turned = pose.heading.compass_degrees() / 360.0 * bins.count();
     const int bin = bins.wrapped(static_cast<int>(std::round(turned)));
-    binned.push_back({cell_at(pose.position, features.cell_m), bin, i});
+    binned.push_back({lattice_index(pose.position, features.cell_m), bin, i});
   });
   match_binned(map, features, bins, std::move(binned), options.threads, options.stop, sums);
 }

@@ -27,8 +27,7 @@ ParticleMatches match_particles(const MapView& map, const FeatureMap& features, 
   for (auto& poses : of_scale) poses.reserve(p.size() / of_scale.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.weight[i] <= 0.0) continue;
-    const LatticeIndex cell{static_cast<int>(std::floor(p.east_m[i] / cell_m)),
-                            static_cast<int>(std::floor(-p.north_m[i] / cell_m))};
+    const LatticeIndex cell = lattice_index({p.east_m[i], p.north_m[i]}, cell_m);
     const double turned = p.heading_rad[i] / bins.step().radians();
     const int scale = scales.nearest(p.log_scale[i]);
     matches.scales[i] = scales.factor(scale);

@@ -50,10 +50,10 @@ bool on_one_peak(const Level& finest, const SearchMode& a, const SearchMode& b) 
 double shared_road_m2(const Level& finest, const SearchMode& mode) {
   const double cell_m = finest.cell_m();
   const FeatureMap north_up = rotated(resampled(finest.source, cell_m, mode.scale), mode.pose.heading);
-  const GridPoint at = mode.pose.position;
-  const LatticeIndex north_west{static_cast<int>(std::floor(at.east_m / cell_m) - std::floor(north_up.nadir.col)),
-                                static_cast<int>(std::floor(-at.north_m / cell_m) - std::floor(north_up.nadir.row))};
-  const RoadGrid ground = finest.read({cell_m, north_west, north_up.cells.cols(), north_up.cells.rows()});
+  const LatticeIndex nadir = lattice_index(mode.pose.position, cell_m);
+  const LatticeIndex first{nadir.col - static_cast<int>(std::floor(north_up.nadir.col)),
+                           nadir.row - static_cast<int>(std::floor(north_up.nadir.row))};
+  const RoadGrid ground = finest.read({cell_m, first, north_up.cells.cols(), north_up.cells.rows()});
   return shared_road_cells(ground.cells, north_up.cells) * cell_m * cell_m;
 }
 

@@ -16,17 +16,18 @@ double shared_road_cells(const CellArray& map, const CellArray& features) {
     }
   };
   double n = 0.0;
-  double mean_m = 0.0;
-  double mean_l = 0.0;
+  double sum_m = 0.0;
+  double sum_l = 0.0;
   for_each_in_both([&](double m, double l) {
     n += 1.0;
-    mean_m += (m - mean_m) / n;
-    mean_l += (l - mean_l) / n;
+    sum_m += m;
+    sum_l += l;
   });
+  if (n == 0.0) return 0.0;
   double sum = 0.0;
   double squares = 0.0;
   for_each_in_both([&](double m, double l) {
-    const double w = std::max(0.0, m - mean_m) * std::max(0.0, l - mean_l);
+    const double w = std::max(0.0, m - sum_m / n) * std::max(0.0, l - sum_l / n);
     sum += w;
     squares += w * w;
   });

@@ -10,7 +10,8 @@ namespace {
 
 TEST(FloorDiv, RoundsDownOnBothSidesOfZero) {
   for (const int b : {1, 3, 4, 256}) {
-    for (int a = -600; a <= 600; ++a) EXPECT_EQ(floor_div(a, b), std::floor(double{1} * a / b)) << a << " / " << b;
+    for (int a = -600; a <= 600; ++a)
+      EXPECT_EQ(floor_div(a, b), std::floor(static_cast<double>(a) / b)) << a << " / " << b;
   }
 }
 

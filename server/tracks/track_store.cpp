@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <mutex>
 
 #include "core/units/error.hpp"
@@ -17,33 +18,40 @@ constexpr int kEndedKept = 100;
 constexpr int kVersion = 3;  // of what the blobs hold, too: particles have had a scale since 3
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
-/// The map store's names of what SQLite may refuse, in the terms of this store.
-[[noreturn]] void rename_failure(const std::filesystem::path& path, const Error& error) {
+/// What a refusal of SQLite means for this store.
+std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail) {
+  using sqlite::Failure;
+  using std::make_exception_ptr;
   const std::string file = path.string();
-  if (error.code() == "disk-full") {
-    throw IoFailure("track-store-full",
-                    fmt::format("{}: no space left for the tracks: the step was not taken; send it again later", file));
+  switch (failure) {
+    case Failure::kFull:
+      return make_exception_ptr(IoFailure(
+          "track-store-full",
+          fmt::format("{}: no space left for the tracks: the step was not taken; send it again later", file)));
+    case Failure::kNotWritable:
+      return make_exception_ptr(IoFailure(
+          "track-store-read-only",
+          fmt::format("{}: the tracks cannot be written to: start the service with --tracks FILE where it may write",
+                      file)));
+    case Failure::kDamaged:
+    case Failure::kNotADatabase:
+    case Failure::kOtherTables:
+      return make_exception_ptr(CorruptData(
+          "track-store-corrupt",
+          fmt::format(
+              "{}: the file of the tracks is damaged or no such file ({}): move it away and restart the service", file,
+              detail)));
+    case Failure::kBusy:
+      return make_exception_ptr(Interrupted(
+          "track-store-busy",
+          fmt::format("{}: another service uses this file: stop it, or start this one with --tracks FILE", file)));
+    case Failure::kNeedsRecovery:
+    case Failure::kOther:
+      break;
   }
-  if (error.code() == "map-not-writable") {
-    throw IoFailure(
-        "track-store-read-only",
-        fmt::format("{}: the tracks cannot be written to: start the service with --tracks FILE where it may "
-                    "write",
-                    file));
-  }
-  if (error.code() == "map-corrupt" || error.code() == "map-not-ours") {
-    throw CorruptData("track-store-corrupt",
-                      fmt::format("{}: the file of the tracks is damaged or no such file: move it away and restart the "
-                                  "service",
-                                  file));
-  }
-  if (error.code() == "map-busy") {
-    throw Interrupted(
-        "track-store-busy",
-        fmt::format("{}: another service uses this file: stop it, or start this one with --tracks FILE", file));
-  }
-  throw IoFailure("track-store-unavailable",
-                  fmt::format("{}: tracks cannot be stored here: start the service with --tracks FILE", file));
+  return make_exception_ptr(IoFailure(
+      "track-store-unavailable",
+      fmt::format("{}: tracks cannot be stored here ({}): start the service with --tracks FILE", file, detail)));
 }
 
 StoredTrack track_of(const sqlite::Statement& row) {
@@ -58,7 +66,7 @@ class TrackStore::Impl {
  public:
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
     with([&] {
-      connection_.emplace(path_, sqlite::Access::kCreate);
+      connection_.emplace(path_, sqlite::Access::kCreate, store_error);
       // Who holds the file holds it as long as it runs, and others ask in the meantime.
       connection_->execute(fmt::format("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE; PRAGMA page_size = "
                                        "{}; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA "
@@ -92,7 +100,8 @@ class TrackStore::Impl {
     try {
       return work();
     } catch (const Error& error) {
-      fail(error);
+      problem_ = error.what();
+      throw;
     }
   }
   sqlite::Connection& connection() { return *connection_; }
@@ -104,15 +113,6 @@ class TrackStore::Impl {
   }
 
  private:
-  [[noreturn]] void fail(const Error& error) {
-    try {
-      rename_failure(path_, error);
-    } catch (const Error& renamed) {
-      problem_ = renamed.what();
-      throw;
-    }
-  }
-
   std::filesystem::path path_;
   mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;

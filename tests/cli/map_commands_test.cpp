@@ -65,8 +65,7 @@ TEST_F(MapCommands, AnswersInJsonOfFilesWhoseNamesAreNoUtf8) {
 
 TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
-  sqlite::Connection(path, sqlite::Access::kReadWrite)
-      .execute("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 4");
+  testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 4");
   const ProgramResult damaged = roadfix("verify --json " + path.string());
   EXPECT_EQ(damaged.code, 1);
   EXPECT_EQ(nlohmann::json::parse(damaged.out)["problems"][0]["code"], "tile-corrupt");

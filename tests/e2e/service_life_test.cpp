@@ -11,7 +11,7 @@
 #include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
-#include "tiles/store/sqlite.hpp"
+#include "tests/support/sqlite_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -63,8 +63,7 @@ TEST(ServiceLife, AMapWithoutLatitudeAndLongitudeHidesNoOther) {
   const testing::Town town;
   testing::write_map_file(folder / "far.gpkg", town.roads, 2.0);
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
-  sqlite::Connection(folder / "far.gpkg", sqlite::Access::kReadWrite)
-      .execute("UPDATE gpkg_contents SET max_x = 1.04e6");
+  testing::open_sqlite(folder / "far.gpkg").execute("UPDATE gpkg_contents SET max_x = 1.04e6");
   const testing::ServiceProcess service(folder.path());
   httplib::Client client = testing::client_of(service);
   const json maps = testing::json_of(client.Get("/v1/maps"))["maps"];

@@ -11,6 +11,7 @@
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
+#include "tiles/store/map_error.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -157,7 +158,7 @@ void look_into(Connection& map) {
   try {
     pragma(map, kLook);
   } catch (const IoFailure& error) {
-    if (error.code() != sqlite::kNeedsRecovery) throw;
+    if (error.code() != kMapNeedsRecovery) throw;
     recover_map(map.path());
     pragma(map, kLook);
   }
@@ -184,7 +185,7 @@ void create_map(const fs::path& path, const MapSettings& settings) {
   fs::remove(unfinished);
   fs::remove(unfinished.string() + "-journal");
   {
-    Connection map(unfinished, Access::kCreate);
+    Connection map(unfinished, Access::kCreate, map_error);
     Transaction transaction(map, Transaction::Kind::kWrite);
     map.execute(std::string(schema::map_sql()).c_str());
     insert_settings(map, settings);
@@ -197,13 +198,13 @@ void create_map(const fs::path& path, const MapSettings& settings) {
 }
 
 void recover_map(const fs::path& path) {
-  Connection map(path, Access::kReadWrite);
+  Connection map(path, Access::kReadWrite, map_error);
   pragma(map, "SELECT count(*) FROM sqlite_master");
 }
 
 Connection open_map(const fs::path& path, Access access) {
   require_content(path);
-  Connection map(path, access);
+  Connection map(path, access, map_error);
   try {
     look_into(map);
     require_ours(map);

@@ -9,6 +9,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_cache.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -82,7 +83,7 @@ struct MapReader::State {
     try {
       return use(channel);
     } catch (const IoFailure& error) {
-      if (error.code() != sqlite::kNeedsRecovery) throw;
+      if (error.code() != kMapNeedsRecovery) throw;
       recover_map(path);
       return use(channel);
     }

@@ -1,48 +1,34 @@
 #include "tiles/store/sqlite.hpp"
 
-#include <fmt/format.h>
 #include <sqlite3.h>
 
 #include <algorithm>
 #include <array>
 #include <new>
 
-#include "core/units/error.hpp"
-
 namespace roadfix::sqlite {
 namespace {
 
 constexpr int kBusyTimeoutMs = 120'000;
 
-[[noreturn]] void fail(const std::filesystem::path& path, int code, const char* detail) {
-  const std::string file = path.string();
-  if (code == SQLITE_READONLY_ROLLBACK) {
-    throw IoFailure(kNeedsRecovery,
-                    fmt::format("{}: a write to it was cut short and cannot be undone here. Open it once "
-                                "where it may be written to, for example with roadfix verify",
-                                file));
-  }
+Failure failure_of(int code) {
+  if (code == SQLITE_READONLY_ROLLBACK) return Failure::kNeedsRecovery;
   switch (code & 0xff) {
     case SQLITE_NOTADB:
-      throw InvalidInput("map-not-ours", fmt::format("{}: not a GeoPackage. Name a map made by roadfix", file));
+      return Failure::kNotADatabase;
     case SQLITE_CORRUPT:
-      throw CorruptData("map-corrupt", fmt::format("{}: the file is damaged ({}). Restore it from a copy or ingest its "
-                                                   "sources into a new map",
-                                                   file, detail));
-    case SQLITE_ERROR:  // a statement that does not fit the tables
-      throw CorruptData("map-corrupt", fmt::format("{}: its tables are not those of a map ({})", file, detail));
+      return Failure::kDamaged;
+    case SQLITE_ERROR:
+      return Failure::kOtherTables;
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw Interrupted("map-busy", fmt::format("{}: another process has locked the file. Try again", file));
+      return Failure::kBusy;
     case SQLITE_READONLY:
-      throw IoFailure("map-not-writable", fmt::format("{}: cannot be written to ({})", file, detail));
+      return Failure::kNotWritable;
     case SQLITE_FULL:
-      throw IoFailure("disk-full",
-                      fmt::format("{}: no space left on the disk. Free some and repeat the command", file));
-    case SQLITE_NOMEM:
-      throw std::bad_alloc();
+      return Failure::kFull;
     default:
-      throw IoFailure("map-io", fmt::format("{}: {}", file, detail));
+      return Failure::kOther;
   }
 }
 
@@ -50,21 +36,27 @@ constexpr int kBusyTimeoutMs = 120'000;
 
 void Connection::Close::operator()(sqlite3* handle) const { sqlite3_close(handle); }
 
-Connection::Connection(const std::filesystem::path& path, Access access) : path_(path) {
+Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf error_of)
+    : path_(path), error_of_(error_of) {
   const int mode = access == Access::kRead        ? SQLITE_OPEN_READONLY
                    : access == Access::kReadWrite ? SQLITE_OPEN_READWRITE
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &handle, mode | SQLITE_OPEN_NOMUTEX, nullptr);
   handle_.reset(handle);
-  if (code != SQLITE_OK) fail(path_, code, sqlite3_errstr(code));
+  if (code != SQLITE_OK) fail(code, sqlite3_errstr(code));
   sqlite3_extended_result_codes(handle, 1);
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
 }
 
+void Connection::fail(int code, const std::string& detail) const {
+  if (code == SQLITE_NOMEM) throw std::bad_alloc();
+  std::rethrow_exception(error_of_(path_, failure_of(code), detail));
+}
+
 void Connection::execute(const char* sql) {
   const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) fail(path_, code, sqlite3_errmsg(handle_.get()));
+  if (code != SQLITE_OK) fail(code, sqlite3_errmsg(handle_.get()));
 }
 
 std::int64_t Connection::missing_bytes() const {
@@ -102,7 +94,7 @@ Statement::Statement(Connection& connection, std::string_view sql) : connection_
 }
 
 void Statement::check(int code) const {
-  if (code != SQLITE_OK) fail(connection_->path(), code, sqlite3_errmsg(connection_->handle()));
+  if (code != SQLITE_OK) connection_->fail(code, sqlite3_errmsg(connection_->handle()));
 }
 
 bool Statement::step() {
@@ -111,7 +103,7 @@ bool Statement::step() {
   if (code != SQLITE_DONE) {
     const std::string detail = sqlite3_errmsg(connection_->handle());
     sqlite3_reset(handle_.get());
-    fail(connection_->path(), code, detail.c_str());
+    connection_->fail(code, detail);
   }
   reset();
   return false;

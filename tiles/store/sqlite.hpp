@@ -1,9 +1,10 @@
 // SQLite as values: a connection, a prepared statement, a transaction that rolls back unless committed.
-// Failures throw; the message names the file.
+// Failures throw what the kind of file makes of them: to who uses it, a map and a store of tracks are different things.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -15,16 +16,28 @@ struct sqlite3_stmt;
 
 namespace roadfix::sqlite {
 
-inline constexpr const char* kNeedsRecovery = "map-needs-recovery";
-
 enum class Access { kRead, kReadWrite, kCreate };
+
+/// Why SQLite refused.
+enum class Failure {
+  kNeedsRecovery,  ///< a killed writer left a journal, which kRead may not roll back
+  kNotADatabase,
+  kDamaged,
+  kOtherTables,  ///< a statement does not fit the tables of the file
+  kBusy,         ///< another process has locked the file
+  kNotWritable,
+  kFull,
+  kOther,
+};
+
+/// The error of core/units/error.hpp to throw for a failure of one kind of file; `detail` is SQLite's message.
+using ErrorOf = std::exception_ptr (*)(const std::filesystem::path& file, Failure failure, const std::string& detail);
 
 class Connection {
  public:
-  /// Not to be used from two threads at once. Waits up to 2 min for locks of other processes, then throws Interrupted
-  /// ("map-busy"). Other errors: CorruptData ("map-corrupt"), InvalidInput ("map-not-ours"), IoFailure; of these
-  /// "map-needs-recovery" says that a killed writer left a journal that kRead may not roll back.
-  Connection(const std::filesystem::path& path, Access access);
+  /// Not to be used from two threads at once. Waits up to 2 min for locks of other processes. This and all that uses
+  /// the connection throws what `error_of` returns.
+  Connection(const std::filesystem::path& path, Access access, ErrorOf error_of);
 
   const std::filesystem::path& path() const { return path_; }
   /// Runs statements that return nothing of interest.
@@ -34,12 +47,15 @@ class Connection {
   /// closing another one would drop the locks of every connection of this process.
   std::int64_t missing_bytes() const;
   sqlite3* handle() const { return handle_.get(); }
+  /// Throws what the failure of a call with this result code means.
+  [[noreturn]] void fail(int code, const std::string& detail) const;
 
  private:
   struct Close {
     void operator()(sqlite3* handle) const;
   };
   std::filesystem::path path_;
+  ErrorOf error_of_;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

@@ -12,9 +12,9 @@
 
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_file.hpp"
+#include "tests/support/sqlite_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tiles/store/sqlite.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -109,7 +109,7 @@ TEST_F(TrackRegistryTest, SaysThatTheStoredStateIsDamaged) {
   const auto damaged_by = [&](const char* sql) {
     std::filesystem::copy_file(folder_ / "tracks.sqlite", folder_ / "damaged.sqlite",
                                std::filesystem::copy_options::overwrite_existing);
-    sqlite::Connection(folder_ / "damaged.sqlite", sqlite::Access::kReadWrite).execute(sql);
+    testing::open_sqlite(folder_ / "damaged.sqlite").execute(sql);
     const auto tracks = registry({}, "damaged.sqlite");
     EXPECT_EQ(code_of([&] { (void)tracks->find(id); }), "no error") << "it can still be ended";
     return code_of([&] { take(*tracks, id, 1); });

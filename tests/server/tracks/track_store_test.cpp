@@ -1,17 +1,20 @@
 #include "server/tracks/track_store.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/sqlite_file.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tiles/store/sqlite.hpp"
 
 namespace roadfix::server {
 namespace {
 
 using roadfix::testing::code_of;
+using roadfix::testing::message_of;
+using ::testing::HasSubstr;
 
 constexpr std::int64_t kPlenty = std::int64_t{1} << 30;
 
@@ -48,7 +51,7 @@ TEST(TrackStore, KeepsTracksAndStepsWhenItIsOpenedAgain) {
 /// As version 0.1 with user_version 1 wrote it.
 TEST(TrackStore, GoesOnWithTracksThatWereStoredWithoutFrames) {
   const testing::TemporaryFolder folder;
-  sqlite::Connection(folder / "tracks.sqlite", sqlite::Access::kCreate)
+  testing::open_sqlite(folder / "tracks.sqlite", sqlite::Access::kCreate)
       .execute(
           "PRAGMA user_version = 1; CREATE TABLE tracks (id TEXT PRIMARY KEY NOT NULL, client TEXT NOT NULL, request "
           "TEXT NOT NULL, map TEXT NOT NULL, map_version TEXT NOT NULL, created_us INTEGER NOT NULL, touched_us "
@@ -132,8 +135,10 @@ TEST(TrackStore, SaysWhyItCannotBeOpened) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder / "noise.sqlite") << std::string(8192, 'x');
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "noise.sqlite", kPlenty); }), "track-store-corrupt");
-  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); }), "track-store-unavailable");
-  sqlite::Connection(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 4");
+  const auto open_in_no_folder = [&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); };
+  EXPECT_EQ(code_of(open_in_no_folder), "track-store-unavailable");
+  EXPECT_THAT(message_of(open_in_no_folder), HasSubstr("(unable to open database file)"));
+  testing::open_sqlite(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 4");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
 }
 

@@ -138,7 +138,7 @@ TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
 }
 
 TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
-  sqlite::Connection(path, sqlite::Access::kReadWrite).execute("UPDATE road_probability SET tile_data = x'00'");
+  testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00'");
   for (const auto format : {ExportFormat::kCog, ExportFormat::kPng}) {
     EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
   }

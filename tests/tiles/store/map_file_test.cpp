@@ -26,7 +26,7 @@ class MapFile : public ::testing::Test {
     ingest(writer, {"a", 1, some_blocks(2)});
   }
 
-  void execute(const char* sql) { sqlite::Connection(path, sqlite::Access::kReadWrite).execute(sql); }
+  void execute(const char* sql) { testing::open_sqlite(path).execute(sql); }
 
   /// Code of the error that opening (and reading everything) ends in.
   std::string opened() const {
@@ -122,7 +122,7 @@ TEST_F(MapFile, ACorruptTileIsNamed) {
 
 /// Copies the map as a writer leaves it that is killed in the middle of a transaction, its pages half written.
 void copy_as_if_killed(const fs::path& map, const fs::path& copy) {
-  sqlite::Connection writer(map, sqlite::Access::kReadWrite);
+  sqlite::Connection writer = testing::open_sqlite(map);
   writer.execute("PRAGMA cache_size = 1");  // writes pages before the transaction ends
   writer.execute("BEGIN");
   writer.execute("UPDATE roadfix_meta SET value = 'half written'");

@@ -9,10 +9,10 @@
 #include <tuple>
 #include <vector>
 
+#include "tests/support/sqlite_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_writer.hpp"
-#include "tiles/store/sqlite.hpp"
 
 namespace roadfix::testing {
 
@@ -70,7 +70,7 @@ using TileBytes = std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>,
 
 /// Every tile of the fused map, byte for byte.
 inline TileBytes tile_bytes(const std::filesystem::path& path) {
-  sqlite::Connection map(path, sqlite::Access::kRead);
+  sqlite::Connection map = open_sqlite(path, sqlite::Access::kRead);
   sqlite::Statement select(map, "SELECT zoom_level, tile_column, tile_row, tile_data FROM road_probability");
   TileBytes tiles;
   while (select.step()) {

@@ -30,7 +30,7 @@ class MapVerifier : public ::testing::Test {
   }
 
   std::vector<std::string> codes_after(const char* sql) {
-    sqlite::Connection(path, sqlite::Access::kReadWrite).execute(sql);
+    testing::open_sqlite(path).execute(sql);
     std::vector<std::string> codes;
     for (const MapProblem& problem : verify_map(path).problems) codes.push_back(problem.code);
     return codes;
@@ -156,8 +156,8 @@ TEST_F(MapVerifier, RepairMakesTheTilesAnewFromTheEvidence) {
 
 TEST_F(MapVerifier, RepairNamesTheSourceThatLostEvidenceAndIngestingItAgainHealsTheMap) {
   const auto before = testing::tile_bytes(path);
-  sqlite::Connection(path, sqlite::Access::kReadWrite)
-      .execute("UPDATE roadfix_evidence SET tile_data = x'00' WHERE id = (SELECT max(id) FROM roadfix_evidence)");
+  testing::open_sqlite(path).execute(
+      "UPDATE roadfix_evidence SET tile_data = x'00' WHERE id = (SELECT max(id) FROM roadfix_evidence)");
   MapWriter writer(path, settings_37n());
   EXPECT_THAT(writer.repair(), ElementsAre("b"));
   EXPECT_THAT(verify_map(path).problems, ElementsAre(::testing::Field(&MapProblem::code, "ledger-broken")));
@@ -183,7 +183,7 @@ TEST_F(MapVerifier, LetsWritersInWhileItReads) {
   MapWriter writer(path, settings_37n());
   int writes = 0;
   const auto write = [&](std::int64_t, std::int64_t) {
-    sqlite::Connection other(path, sqlite::Access::kReadWrite);
+    sqlite::Connection other = testing::open_sqlite(path);
     other.execute("PRAGMA busy_timeout = 0; UPDATE roadfix_sources SET licence = licence || 'x'");
     ++writes;
   };

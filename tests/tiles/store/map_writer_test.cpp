@@ -178,7 +178,7 @@ TEST(MapWriter, AWorkListThatNoWriterMadeIsRefused) {
   for (const char* row : {"40, 1, 1", "11, -1, 1", "11, 1, 4294967297"}) {
     MapWriter writer(path, settings_37n());
     ingest(writer, {"a", 1, some_blocks(1)});
-    sqlite::Connection map(path, sqlite::Access::kReadWrite);
+    sqlite::Connection map = testing::open_sqlite(path);
     map.execute((std::string("INSERT INTO roadfix_pending VALUES (") + row + ")").c_str());
     EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "map-corrupt") << row;
     map.execute("DELETE FROM roadfix_pending");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 
 #include "core/locate/tracker.hpp"
 #include "core/units/error.hpp"
@@ -82,24 +83,29 @@ http::Response step_response(const http::Request& request, const api::PositionFo
   return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request)});
 }
 
-void await_predecessor(const Service& service, const http::Request& request) {
-  api::Fields fields(request.query);
-  if (!fields.has("sequence")) {
-    fields = api::read_content(request, joined(step_query(), api::picture_members()), service.limits).fields;
-  }
-  service.tracks.await_predecessor(id_of(request), fields.large_integer("sequence", 0));
-}
-
 /// A picture of no bytes was lost on its way, as curl sends a file that is missing: no step without a picture.
 bool shows_ground(const http::Request& request, const api::Content& content) {
   return !content.image.empty() || content.fields.has("cells") || request.media_type().starts_with("image/");
 }
 
-http::Response post_step(const Service& service, const http::Request& request) {
-  const StoredTrack track = service.tracks.find(id_of(request));
-  const api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
+/// A step as it was sent: all but its feature map, which takes a turn to detect.
+struct PostedStep {
+  StoredTrack track;
+  api::Content content;
+  api::PositionFormat format;
+  StepInput input;
+};
+
+PostedStep read_step(const Service& service, const http::Request& request) {
+  StoredTrack track = service.tracks.find(id_of(request));
+  api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   StepInput input = api::parse_step(content.fields);
+  return {std::move(track), std::move(content), format, std::move(input)};
+}
+
+http::Response take_step(const Service& service, const http::Request& request, PostedStep step) {
+  auto& [track, content, format, input] = step;
   const std::int64_t digest = digest_of(request);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
     http::Response repeated = step_response(request, format, input, std::move(*answer));
@@ -120,6 +126,14 @@ http::Response post_step(const Service& service, const http::Request& request) {
   const std::string status = api::stored_json(answer).at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
   return step_response(request, format, input, std::move(answer));
+}
+
+/// Reads the step and gives those that it overtook the time to be taken first.
+std::function<http::Response()> post_step(const Service& service, const http::Request& request) {
+  PostedStep step = read_step(service, request);
+  service.tracks.await_predecessor(step.track.id, step.input.sequence);
+  return
+      [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, std::move(step)); };
 }
 
 http::Response list_tracks(const Service& service, const http::Request& request) {
@@ -198,9 +212,10 @@ void add_track_routes(http::Router& router, const Service& service) {
   add("GET", "/v1/tracks", {}, http::Load::kLight, list_tracks);
   add("GET", "/v1/tracks/{id}", {"particles"}, http::Load::kLight, get_track);
   add("DELETE", "/v1/tracks/{id}", {}, http::Load::kLight, delete_track);
-  router.add({"POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy,
-              [&service](const http::Request& request) { return post_step(service, request); },
-              [&service](const http::Request& request) { await_predecessor(service, request); }});
+  router.add(
+      {"POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy, {}, [&service](const http::Request& request) {
+         return post_step(service, request);
+       }});
   add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, http::Load::kLight, get_history);
   add("GET", "/v1/tracks/{id}/events", {}, http::Load::kLight, get_events);
 }

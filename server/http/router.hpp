@@ -22,8 +22,9 @@ struct Route {
   std::vector<std::string> parameters;  ///< every query parameter that the route knows; others are refused
   Load load = Load::kLight;
   std::function<Response(const Request&)> handler;
-  /// Where a heavy request depends on others: waits for them before it takes a turn, which they may need.
-  std::function<void(const Request&)> await_others = {};
+  /// Instead of a handler, where a heavy request depends on others: reads the request and waits for those before it
+  /// takes a turn, which they may need. What it returns is called once in that turn; the request lives until then.
+  std::function<std::function<Response()>(const Request&)> prepare = {};
 };
 
 struct RouteMatch {

@@ -242,11 +242,11 @@ Response Server::Impl::answered(Exchange& exchange) {
     request.deadline = request.received + settings_.request_time;
     request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
     if (route.load == Load::kLight) return route.handler(request);
-    if (route.await_others) route.await_others(request);
+    const auto prepared = route.prepare ? route.prepare(request) : nullptr;
     const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
     const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time, given_up);
     request.deadline = Clock::now() + settings_.request_time;
-    return route.handler(request);
+    return prepared ? prepared() : route.handler(request);
   } catch (const Interrupted&) {
     const bool gone = exchange.request.abandoned();
     return failed(exchange, gone ? std::make_exception_ptr(ClientGone()) : std::current_exception());

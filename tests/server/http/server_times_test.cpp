@@ -107,19 +107,13 @@ TEST_F(HttpServerTimes, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
 TEST_F(HttpServerTimes, LetsARequestWaitForOthersWithoutATurnThatTheyMayNeed) {
   settings_.heavy_running = 1;
   settings_.turn_time = 1s;
-  router_.add({"POST",
-               "/dependent",
-               {},
-               Load::kHeavy,
-               [](const Request&) {
-                 return Response{200, "text/plain", "done"};
-               },
-               [this](const Request&) {
+  router_.add({"POST", "/dependent", {}, Load::kHeavy, {}, [this](const Request& request) {
                  ++waiting_;
                  while (!go_) std::this_thread::sleep_for(1ms);
+                 return [read = request.body] { return Response{200, "text/plain", read + " done"}; };
                }});
   const auto server = started();
-  std::jthread dependent([&] { EXPECT_EQ(client().Post("/dependent", "", "text/plain")->body, "done"); });
+  std::jthread dependent([&] { EXPECT_EQ(client().Post("/dependent", "it", "text/plain")->body, "it done"); });
   while (waiting_ == 0) std::this_thread::sleep_for(1ms);
   EXPECT_EQ(client().Post("/length", "abc", "text/plain")->body, "3");
   go_ = true;

@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "cli/bbox_option.hpp"
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "core/geodesy/geo_box.hpp"
@@ -22,18 +22,9 @@ struct ExportArguments {
   std::string map;
   std::string target;
   std::string format;
-  std::vector<double> bbox;
+  std::optional<GeoBox> bbox;
   std::optional<double> cell_m;
 };
-
-GridBox box_of(const MapInfo& map, const std::vector<double>& bbox) {
-  const GeoBox box{{bbox[1], bbox[0]}, {bbox[3], bbox[2]}};
-  if (box.empty()) {
-    throw InvalidInput("bbox-empty",
-                       "--bbox: give WEST,SOUTH,EAST,NORTH in degrees, west below east, south below north");
-  }
-  return grid_box_around(map.settings.zone, box, map.extent);
-}
 
 /// That of the name of the target, where none was asked for.
 ExportFormat format_of(const ExportArguments& options) {
@@ -59,7 +50,7 @@ void run_export(const ExportArguments& options) {
     throw InvalidInput("target-is-source", fmt::format("{} is the map itself: name another file", options.target));
   }
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
-  if (!options.bbox.empty()) what.box = box_of(map.info(), options.bbox);
+  if (options.bbox) what.box = grid_box_around(map.info().settings.zone, *options.bbox, map.info().extent);
   Progress progress("export", "%", 0.1);
   export_map(map, options.target, what, progress.updates(), stop);
 }
@@ -76,7 +67,7 @@ void add_export_command(CLI::App& app) {
   command->add_option("target", options->target, "File to write")->required();
   command->add_option("--format", options->format, "Default: from the file extension, cog for .tif")
       ->check(CLI::IsMember({"cog", "gtiff", "png", "mbtiles"}));
-  command->add_option("--bbox", options->bbox, "Region: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
+  add_bbox_option(*command, "Region", options->bbox);
   command->add_option("--cell", options->cell_m, "Cell size in metres: that of the map times a power of two");
   command->callback([options] { run_export(*options); });
 }

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "cli/bbox_option.hpp"
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
@@ -27,7 +27,7 @@ struct FixArguments {
   double lat = 0.0;
   double lon = 0.0;
   double radius_m = 0.0;
-  std::vector<double> bbox;  ///< west, south, east, north
+  std::optional<GeoBox> bbox;
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
   double time_limit_s = 0.0;
@@ -40,9 +40,7 @@ struct FixArguments {
 Prior prior_of(const FixArguments& options) {
   Prior prior;
   if (options.radius_m > 0.0) prior.circle = GeoCircle{{options.lat, options.lon}, options.radius_m};
-  if (!options.bbox.empty()) {
-    prior.box = GeoBox{{options.bbox[1], options.bbox[0]}, {options.bbox[3], options.bbox[2]}};
-  }
+  prior.box = options.bbox;
   if (options.heading_deg) {
     prior.heading = HeadingRange{Angle::degrees(*options.heading_deg), Angle::degrees(options.heading_range_deg)};
   }
@@ -113,7 +111,7 @@ void add_fix_command(CLI::App& app) {
   radius->check(positive())->needs(lat)->needs(lon);
   lat->needs(lon)->needs(radius);
   lon->needs(lat);
-  command->add_option("--bbox", o->bbox, "Prior: WEST,SOUTH,EAST,NORTH in degrees")->delimiter(',')->expected(4);
+  add_bbox_option(*command, "Prior", o->bbox);
   auto* heading = command->add_option("--heading", o->heading_deg, "Prior: true heading in degrees");
   command
       ->add_option("--heading-range", o->heading_range_deg,

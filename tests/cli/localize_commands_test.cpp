@@ -70,6 +70,9 @@ TEST_F(LocalizeCommands, FixTakesAPrior) {
   EXPECT_THAT(far.err, HasSubstr("[prior-outside-map]"));
   EXPECT_EQ(roadfix("fix " + input + "--lat 50").code, 2);
   EXPECT_EQ(roadfix("fix " + input + "--bbox 1,2,3").code, 2);
+  const ProgramResult swapped = roadfix("fix " + input + "--bbox 50,20,51,20");
+  EXPECT_EQ(swapped.code, 2);
+  EXPECT_THAT(swapped.err, HasSubstr("--bbox: west must lie below east, and south below north"));
   const ProgramResult box = roadfix("fix " + input + "--bbox 20,50,21,51");
   EXPECT_THAT(box.err, HasSubstr("prior-outside-map"));
 }

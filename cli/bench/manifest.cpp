@@ -12,6 +12,7 @@
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/text.hpp"
+#include "server/api/names_once.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -201,8 +202,12 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
 }
 
 json parse_text(std::string_view text) {
+  const auto refuse_second = [](const std::string& name) {
+    throw InvalidInput("manifest-field",
+                       fmt::format("bench manifest: '{}' is given twice in one object: remove one of them", name));
+  };
   try {
-    return json::parse(text);
+    return json::parse(text, api::NamesOnce(refuse_second));
   } catch (const json::parse_error& error) {
     throw InvalidInput("manifest-json",
                        fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <set>
 #include <string>
-#include <vector>
 
 #include "core/units/error.hpp"
+#include "server/api/names_once.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -40,22 +39,9 @@ void check_shape(std::string_view text, const JsonLimits& limits) {
   }
 }
 
-/// Throws at a name that an object has twice: one of the two values is a mistake, and nothing tells which.
-class NamesOnce {
- public:
-  bool operator()(int /*depth*/, json::parse_event_t event, const json& parsed) {
-    if (event == json::parse_event_t::object_start) seen_.emplace_back();
-    if (event == json::parse_event_t::object_end) seen_.pop_back();
-    if (event == json::parse_event_t::key && !seen_.back().insert(parsed.get<std::string>()).second) {
-      const auto& name = parsed.get_ref<const std::string&>();
-      throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::set<std::string>> seen_;  ///< of the objects that are open, outermost first
-};
+void refuse_second(const std::string& name) {
+  throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
+}
 
 /// Without the library's own name of the error: "[json.exception.parse_error.101] parse error at line 1, ...".
 std::string reason_of(const json::exception& error) {
@@ -69,7 +55,7 @@ std::string reason_of(const json::exception& error) {
 json parse_json(std::string_view text, const JsonLimits& limits) {
   check_shape(text, limits);
   try {
-    return json::parse(text, NamesOnce());
+    return json::parse(text, NamesOnce(refuse_second));
   } catch (const json::parse_error& error) {
     throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", reason_of(error)), error.byte);
   } catch (const json::exception& error) {

@@ -88,6 +88,19 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");
 }
 
+TEST(Manifest, GivesNoNameTwice) {
+  for (const auto& [once, twice] :
+       {std::pair{R"("methods": ["roads"])", R"("methods": ["sift"], "methods": ["roads"])"},
+        std::pair{R"("prior": "map")", R"("prior": "map", "prior": {"radius_m": 5})"}}) {
+    const std::string whole = std::string(R"({"maps": [{"name": "a", "sources": [{"path": "a", "as": "roads"}]}], )") +
+                              R"("queries": [{"map": "a", "frames": "f.csv", "prior": "map"}], "methods": ["roads"]})";
+    EXPECT_EQ(parse_manifest(whole, ".").queries.size(), 1u);
+    std::string doubled = whole;
+    doubled.replace(whole.find(once), std::string(once).size(), twice);
+    EXPECT_THAT([&] { parse_manifest(doubled, "."); }, ThrowsMessage<InvalidInput>(HasSubstr("' is given twice")));
+  }
+}
+
 TEST(Manifest, IsAskedForSomeOfItsMethodsButForNoOther) {
   const Manifest manifest = parse_manifest(kManifest, ".");
   EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre("roads", "sift"));

@@ -29,14 +29,15 @@ bool Tracker::Step::start_by_search() {
   const std::optional<Prior> prior = first ? settings_.prior : prior_around(tracker_.map_, filter_.particles());
   if (!prior) return false;
   state_.searched = true;
-  const std::optional<Fix> fix = search_within(*prior);
+  const FeatureMap seen = state_.recent.laid_around(*features_);
+  const std::optional<Fix> fix = search_within(*prior, seen);
   if (!fix || fix->modes.empty()) return false;
   double known = 0.0;
   for (const FixMode& mode : fix->modes) known += mode.weight;
   filter_.restart_from(proposals_of(tracker_.map_, *fix, *features_), std::clamp(1.0 - known, 1.0 - kMaxFixShare, 0.9),
                        first ? tracker_.start_ : tracker_.region_.poses);
   estimate_.measurement = Measurement::kSearched;
-  if (fix->status == FixStatus::kFix && holds_at_other_scales(*fix, *prior)) confirm(*fix);
+  if (fix->status == FixStatus::kFix && holds_at_other_scales(*fix, *prior, seen)) confirm(*fix);
   return true;
 }
 
@@ -56,17 +57,18 @@ bool Tracker::Step::wants_search() const {
 
 void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
+  const FeatureMap seen = state_.recent.laid_around(*features_);
   Prior prior;
-  std::optional<Fix> fix = search_within(prior);
+  std::optional<Fix> fix = search_within(prior, seen);
   if (!fix) {
     prior.circle = GeoCircle{tracker_.map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = search_within(prior);
+    fix = search_within(prior, seen);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, tracker_.map_.zone), believed);
   if (agrees && fix->probability >= kProbabilityForClaim) {
-    state_.claim.confirmed = holds_at_other_scales(*fix, prior);
-  } else if (fix->status != FixStatus::kFix || !holds_at_other_scales(*fix, prior)) {
+    state_.claim.confirmed = holds_at_other_scales(*fix, prior, seen);
+  } else if (fix->status != FixStatus::kFix || !holds_at_other_scales(*fix, prior, seen)) {
     filter_.inject(proposals_of(tracker_.map_, *fix, *features_), kInjectedShare);
   } else {
     filter_.start_from(proposals_of(tracker_.map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
@@ -79,9 +81,9 @@ void Tracker::Step::recover() {
 
 /// Whether the place has no rival where the ground may be of another size than the frames say. From a wrong altitude
 /// the streets of one quarter look like those of another whose blocks are as much smaller, and no frame contradicts it.
-bool Tracker::Step::holds_at_other_scales(const Fix& fix, const Prior& prior) {
+bool Tracker::Step::holds_at_other_scales(const Fix& fix, const Prior& prior, const FeatureMap& seen) {
   if (settings_.vehicle.scale_range >= kUntoldScaleRange) return true;
-  const std::optional<Fix> other = search_for(state_.recent.laid_around(*features_), prior, kUntoldScaleRange);
+  const std::optional<Fix> other = search_for(seen, prior, kUntoldScaleRange);
   if (!other || !other->complete) return false;
   const GridPose place = on_grid(fix.modes.front().pose, tracker_.map_.zone);
   double here = 0.0;
@@ -101,9 +103,9 @@ void Tracker::Step::confirm(const Fix& fix) {
 
 /// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
 /// takes longer. At its beginning that is an error, as a smaller prior helps.
-std::optional<Fix> Tracker::Step::search_within(const Prior& prior) {
+std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen) {
   state_.last_search = state_.measured;
-  std::optional<Fix> fix = search_for(state_.recent.laid_around(*features_), prior, settings_.vehicle.scale_range);
+  std::optional<Fix> fix = search_for(seen, prior, settings_.vehicle.scale_range);
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
   if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);

@@ -38,15 +38,15 @@ class Tracker::Step {
   void weigh(const ParticleMatches& matches, std::int64_t frame_cells);
   bool is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const;
 
-  // tracker_search.cpp
+  // tracker_search.cpp; `seen` is the last feature map, with the frames before it laid around
   bool may_search() const;
   bool start_by_search();
   void search_if_due();
   bool wants_search() const;
   void recover();
-  bool holds_at_other_scales(const Fix& fix, const Prior& prior);
+  bool holds_at_other_scales(const Fix& fix, const Prior& prior, const FeatureMap& seen);
   void confirm(const Fix& fix);
-  std::optional<Fix> search_within(const Prior& prior);
+  std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen);
   std::optional<Fix> search_for(const FeatureMap& features, const Prior& prior, double scale_range);
 
   // tracker_look.cpp

@@ -111,6 +111,17 @@ std::string RoadLayer::class_of(const OGRFeature& feature) const {
   return classified_ ? FeatureTags(feature)(rules_.class_attribute()) : std::string();
 }
 
+void RoadLayer::see(const OGRGeometry& geometry) {
+  if (geometry.IsEmpty() != FALSE) return;
+  OGREnvelope own;
+  geometry.getEnvelope(&own);
+  seen_.Merge(own);
+}
+
+std::optional<OGREnvelope> RoadLayer::extent_seen() const {
+  return seen_.IsInit() != 0 ? std::optional(seen_) : std::nullopt;
+}
+
 std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
   FeatureTags tags(feature);
   if (holds_a_line(*feature.GetGeometryRef())) {

@@ -28,6 +28,11 @@ class RoadLayer {
   /// "no attributes" or "the attributes a, b", for messages.
   std::string attributes() const;
 
+  /// Takes note of a feature of the layer, whether it is drawn or not.
+  void see(const OGRGeometry& geometry);
+  /// Around all geometries seen, in the layer's own coordinates; nullopt where all were empty.
+  std::optional<OGREnvelope> extent_seen() const;
+
   /// Width in metres to draw the feature with, nullopt to leave it out. Its geometry must not be null.
   std::optional<double> width_of(const OGRFeature& feature);
   /// As it stands in the file; empty where the layer or the feature has none.
@@ -41,6 +46,7 @@ class RoadLayer {
   TransformationPtr to_plane_;
   RoadRules rules_;
   bool classified_ = false;
+  OGREnvelope seen_;
   std::int64_t lines_ = 0;
   std::map<std::string, std::int64_t> unknown_classes_;
 };

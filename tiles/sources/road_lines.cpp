@@ -82,7 +82,8 @@ double min_side_m(std::span<const RoadLine> lines) {
 void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
   const bool tile = vector_tile_of(path).has_value();
   if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
-  const std::optional<OGREnvelope> box = file.extent_of(layer.layer());
+  std::optional<OGREnvelope> box = file.cut_out(layer.layer());
+  if (!box) box = layer.extent_seen();
   if (!box) return;
   const std::span<const RoadLine> lines = parts.lines_of_file(layer);
   const double side_m = min_side_m(lines);
@@ -116,6 +117,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     if (found == layers.end() || geometry == nullptr) return;
     ++parts.features;
     RoadLayer& layer = found->second;
+    layer.see(*geometry);
     RoadNetwork& network = parts.network_of(layer);
     const std::optional<double> width = layer.width_of(feature);
     if (!width ||

@@ -44,6 +44,14 @@ DatasetPtr open_in_known_crs(const std::string& path, const std::optional<Vector
   return dataset;
 }
 
+/// What is known without reading the features.
+std::optional<OGREnvelope> stored_extent(OGRLayer& layer) {
+  const GdalMessages messages;
+  OGREnvelope box;
+  if (layer.GetExtent(&box, FALSE) != OGRERR_NONE || box.MinX > box.MaxX) return std::nullopt;
+  return box;
+}
+
 std::vector<GridPoint> ring_on_plane(const OGRLinearRing& ring, OGRCoordinateTransformation& to_plane,
                                      const std::string& path) {
   std::vector<GridPoint> result;
@@ -89,12 +97,12 @@ std::optional<VectorTile> vector_tile_of(const std::string& path) {
 
 VectorFile::VectorFile(const std::string& path, const VectorOptions& options)
     : path_(path), options_(options), tile_(vector_tile_of(path)), dataset_(open_in_known_crs(path, tile_, options)) {
-  const bool osm = EQUAL(dataset_->GetDriverName(), "OSM");
+  osm_ = EQUAL(dataset_->GetDriverName(), "OSM");
   for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
     OGRLayer* layer = dataset_->GetLayer(i);
     const std::string name = layer->GetName();
     // QGIS keeps styles in tables beside the layers of a GeoPackage.
-    const bool usual = layer->GetGeomType() != wkbNone && (!osm || name == "lines");
+    const bool usual = layer->GetGeomType() != wkbNone && (!osm_ || name == "lines");
     if (options.layer.empty() ? usual : name == options.layer) layers_.push_back(layer);
   }
 }
@@ -122,7 +130,13 @@ OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {
 }
 
 std::optional<OGREnvelope> VectorFile::extent_of(OGRLayer& layer) {
-  if (!tile_) return bounding_box(layer);
+  const std::optional<OGREnvelope> stated = cut_out(layer);
+  return stated ? stated : bounding_box(layer);
+}
+
+std::optional<OGREnvelope> VectorFile::cut_out(OGRLayer& layer) const {
+  if (osm_) return stored_extent(layer);
+  if (!tile_) return std::nullopt;
   const double half = 6378137.0 * std::numbers::pi;
   const double side = std::ldexp(2.0 * half, -tile_->zoom);
   OGREnvelope box;
@@ -134,12 +148,8 @@ std::optional<OGREnvelope> VectorFile::extent_of(OGRLayer& layer) {
 }
 
 std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
+  if (const std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
   OGREnvelope box;
-  {
-    const GdalMessages messages;
-    if (layer.GetExtent(&box, FALSE) == OGRERR_NONE && box.MinX <= box.MaxX) return box;
-  }
-  box = OGREnvelope();
   // Not layer.GetExtent(TRUE): the OpenStreetMap driver gives its layers interleaved only.
   for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
     const OGRGeometry* geometry = feature.GetGeometryRef();

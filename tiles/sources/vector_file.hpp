@@ -35,7 +35,10 @@ class VectorFile {
   std::string layer_names() const;
   /// Throws InvalidInput "roads-without-georeference".
   OGRSpatialReference crs_of(OGRLayer& layer) const;
-  /// In the layer's own coordinates; of a vector tile the whole tile. nullopt for an empty layer.
+  /// What the file was cut out of the world with, in the layer's own coordinates: a vector tile, the box of an extract
+  /// of OpenStreetMap. nullopt for other files, in which an extent only says where features are, or once were.
+  std::optional<OGREnvelope> cut_out(OGRLayer& layer) const;
+  /// About where its features are, in the layer's own coordinates. nullopt for an empty layer.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   /// Once through all features of all layers. Throws CorruptData "roads-unreadable".
   void for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit);
@@ -46,6 +49,7 @@ class VectorFile {
   std::string path_;
   VectorOptions options_;
   std::optional<VectorTile> tile_;
+  bool osm_ = false;
   DatasetPtr dataset_;
   std::vector<OGRLayer*> layers_;
 };

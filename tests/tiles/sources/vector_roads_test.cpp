@@ -125,6 +125,30 @@ TEST_F(VectorRoads, EmptyLinesLieNowhereAndStretchNothing) {
   EXPECT_LT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->extent().width_m(), 120.0);
 }
 
+TEST_F(VectorRoads, CoverTheGroundOfTheRoadsThatAreLeftInAFileNotOfThoseDeletedFromIt) {
+  const std::string path = (folder / "roads.gpkg").string();
+  require_gdal();
+  {
+    const DatasetPtr file(
+        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRSpatialReference plane = utm_reference(kZone);
+    OGRLayer* layer = file->CreateLayer("roads", &plane, wkbLineString);
+    for (const double east_m : {0.0, 5000.0}) {
+      OGRLineString line;
+      line.addPoint(kCentre.east_m + east_m, kCentre.north_m - 50.0);
+      line.addPoint(kCentre.east_m + east_m + 100.0, kCentre.north_m + 50.0);
+      OGRFeature road(layer->GetLayerDefn());
+      road.SetGeometry(&line);
+      ASSERT_EQ(layer->CreateFeature(&road), OGRERR_NONE);
+    }
+  }
+  {
+    const DatasetPtr file = open_dataset(path, GDAL_OF_VECTOR | GDAL_OF_UPDATE);
+    ASSERT_EQ(file->GetLayer(0)->DeleteFeature(2), OGRERR_NONE);
+  }
+  EXPECT_LT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->extent().width_m(), 120.0);
+}
+
 TEST_F(VectorRoads, TheCentreIsThatOfTheGroundThatIsAskedFor) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-9000, 0), at(0, 0))});
   EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m - 4500.0, 1.0);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "tiles/sources/picture_range.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -40,6 +42,17 @@ Shares shares_of(RasterFile& file, const ValueRange& range) {
   return {shares.black / kAll, shares.white / kAll};
 }
 
+std::optional<std::string> note_on_fill(RasterFile& file) {
+  const std::optional<Fill> fill = fill_of(file.sample_values());
+  if (!fill || fill->share < kWorthNoting) return std::nullopt;
+  return fmt::format(
+      "{}: about {:.0f} % of its values are {:g}, the {}, and nothing marks that as nodata, so it is taken as ground. "
+      "If "
+      "nothing was seen there, mark it (gdal_edit.py -a_nodata {:g}) and use --replace, or give --nodata-color {}",
+      file.path(), 100.0 * fill->share, fill->value, fill->lowest ? "lowest" : "highest", fill->value,
+      fill->lowest ? "black" : "white");
+}
+
 }  // namespace
 
 std::optional<std::string> note_on_collar(const std::vector<std::string>& paths, const RasterOptions& options) {
@@ -47,7 +60,10 @@ std::optional<std::string> note_on_collar(const std::vector<std::string>& paths,
   const std::size_t step = std::max<std::size_t>(1, (paths.size() + kMaxImages - 1) / kMaxImages);
   for (std::size_t i = 0; i < paths.size(); i += step) {
     RasterFile file(paths[i], options);
-    if (!file.declared_range()) continue;
+    if (!file.declared_range()) {
+      if (auto note = note_on_fill(file)) return note;
+      continue;
+    }
     const Shares shares = shares_of(file, *file.declared_range());
     const bool black = shares.black >= shares.white;
     const double share = std::max(shares.black, shares.white);

@@ -10,8 +10,9 @@
 
 namespace roadfix {
 
-/// A note that names the first of the images of which at least a fiftieth of the samples are pure black or white, and
-/// the option that helps; nullopt where none is, where the user named a colour, and for images of more than 8 bits.
+/// A note that names the first of the images of which at least a fiftieth of the samples are pure black or white, or of
+/// more than 8 bits and all of the lowest or highest value, and the option that helps; nullopt where none is, and where
+/// the user named a colour.
 /// Looks into some of many images, and into 256 windows of each.
 std::optional<std::string> note_on_collar(const std::vector<std::string>& paths, const RasterOptions& options);
 

@@ -36,10 +36,12 @@ void add_content(Fnv1a64& hash, const std::string& path, vsi_l_offset size) {
   hash.add(bytes);
 }
 
-/// The file and what GDAL reads with it: world files, .aux.xml, the parts of a Shapefile, the images of a VRT, and of
-/// the VRTs among them.
+/// The file and what is read with it: world files and their .prj, .aux.xml, the parts of a Shapefile, the images of a
+/// VRT, and of the VRTs among them.
 void add_with_side_files(const std::string& path, std::set<std::string>& files) {
   if (!files.insert(path).second) return;
+  files.insert(CPLResetExtension(path.c_str(), "prj"));
+  files.insert(CPLResetExtension(path.c_str(), "PRJ"));
   const GdalMessages messages;
   const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
   if (!dataset) return;

@@ -11,24 +11,13 @@
 #include "core/units/error.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/georeference.hpp"
+#include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/warp.hpp"
 
 namespace roadfix {
 namespace {
 
 constexpr std::size_t kIdleHandles = 48;
-
-ValueRange percentile_range(std::vector<float> values) {
-  if (values.empty()) return {0.0, 1.0};
-  const auto at = [&values](double share) {
-    const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + index, values.end());
-    return static_cast<double>(values[static_cast<std::size_t>(index)]);
-  };
-  const double low = at(0.005);
-  const double high = at(0.995);
-  return {low, high > low ? high : low + 1.0};
-}
 
 ValueRange share_range(const std::vector<float>& values, bool integers) {
   if (!integers) return {0.0, 1.0};
@@ -103,7 +92,8 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
     if (!image.declared) {
       const std::vector<float> sample = file.sample_values();
       image.sampled = sampled_in(sample);
-      values.insert(values.end(), sample.begin(), sample.end());
+      const std::vector<float> ground = rule == ValueRule::kPicture ? without_fill(sample) : sample;
+      values.insert(values.end(), ground.begin(), ground.end());
     }
     images_.push_back(std::move(image));
   }

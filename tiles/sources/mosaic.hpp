@@ -23,7 +23,8 @@ namespace roadfix {
 /// How values become 0..255 where the type does not say it.
 enum class ValueRule {
   /// Bytes as they are (NBITS of each image respected), anything else from the 0.5th to the 99.5th percentile of values
-  /// sampled evenly over all such images of the source: one range for all their bands, images and blocks.
+  /// sampled evenly over all such images of the source, but for what fills a rim: one range for all their bands, images
+  /// and blocks.
   kPicture,
   /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
   /// Masks of 0 and 1 beside masks of 0 and 255 keep their own range.

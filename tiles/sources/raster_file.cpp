@@ -29,6 +29,21 @@ bool has_transform(GDALDataset& dataset) {
   return dataset.GetGCPCount() >= 3 || dataset.GetMetadata("RPC") != nullptr;
 }
 
+/// Of the .prj file that comes with a world file, which GDAL reads beside few formats.
+std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
+  const GdalMessages messages;
+  for (const char* extension : {"prj", "PRJ"}) {
+    const std::string file = CPLResetExtension(path.c_str(), extension);
+    VSIStatBufL stat;
+    if (VSIStatL(file.c_str(), &stat) != 0) continue;
+    CPLStringList lines(CSLLoad(file.c_str()));
+    OGRSpatialReference crs;
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    if (crs.importFromESRI(lines.List()) == OGRERR_NONE) return crs;
+  }
+  return std::nullopt;
+}
+
 double full_opacity(GDALRasterBand& alpha) {
   switch (alpha.GetRasterDataType()) {
     case GDT_Byte:
@@ -123,7 +138,7 @@ void RasterFile::find_reference(const RasterOptions& options) {
     throw InvalidInput(
         "image-without-georeference",
         fmt::format("{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
-                    "(.jgw, .pgw, .tfw) and name its reference system with --crs EPSG:...",
+                    "(.jgw, .pgw, .tfw), and a .prj file or --crs EPSG:... that names its reference system",
                     path_));
   }
   if (!options.crs.empty()) {
@@ -137,10 +152,12 @@ void RasterFile::find_reference(const RasterOptions& options) {
     crs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   } else if (dataset_->GetMetadata("RPC") != nullptr) {
     crs_ = wgs84_reference();
+  } else if (const auto beside = crs_beside(path_)) {
+    crs_ = *beside;
   } else {
     throw InvalidInput("image-without-georeference",
                        fmt::format("{}: has coordinates but no reference system; name it with --crs, for example --crs "
-                                   "EPSG:32637",
+                                   "EPSG:32637, or in a .prj file beside it",
                                    path_));
   }
 }
@@ -212,23 +229,21 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
   return pixels;
 }
 
+cv::Mat RasterFile::read_opacity(cv::Rect window) {
+  GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_)
+                                         : dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
+  const GdalMessages messages;
+  cv::Mat opacity(window.size(), CV_32FC1);
+  if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, opacity.data, window.width,
+                     window.height, GDT_Float32, 0, static_cast<GSpacing>(opacity.step), nullptr) != CE_None) {
+    fail(window, messages.text());
+  }
+  return opacity / (alpha_band_ > 0 ? full_opacity(*mask) : 1.0);
+}
+
 cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
-  GDALRasterBand* mask = nullptr;
-  if (alpha_band_ > 0)
-    mask = dataset_->GetRasterBand(alpha_band_);
-  else if (has_mask_)
-    mask = dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
-  if (mask != nullptr) {
-    const GdalMessages messages;
-    const double full = alpha_band_ > 0 ? full_opacity(*mask) : 1.0;
-    cv::Mat opacity(window.size(), CV_32FC1);
-    if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, opacity.data, window.width,
-                       window.height, GDT_Float32, 0, static_cast<GSpacing>(opacity.step), nullptr) != CE_None) {
-      fail(window, messages.text());
-    }
-    valid = opacity >= 0.5 * full;
-  }
+  if (alpha_band_ > 0 || has_mask_) valid = read_opacity(window) >= 0.5;
   if (values.depth() == CV_8U) {
     clear_nodata<std::uint8_t>(values, nodata_, valid);
   } else {

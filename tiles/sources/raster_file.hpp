@@ -55,12 +55,16 @@ class RasterFile {
   /// The range that the type declares: 0..255, less where NBITS says so; nullopt where the values must be looked at.
   std::optional<ValueRange> declared_range() const;
   bool holds_integers() const;
+  /// Number of the band that says what is transparent, 0 without.
+  int alpha_band() const { return alpha_band_; }
   /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image; -1 for
   /// none.
   int overview_for(double reduction) const;
 
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
   RasterPixels read(cv::Rect window, const ValueRange& range);
+  /// 0 to 1 by the alpha band or the mask, which the image must have; as CV_32F.
+  cv::Mat read_opacity(cv::Rect window);
   /// Small windows spread evenly over the image, the same at every call.
   std::vector<cv::Rect> sample_windows() const;
   /// Values of valid pixels in these windows as the file stores them: of a palette the indices.

@@ -11,6 +11,7 @@
 
 #include "core/detect/frame.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/collar_note.hpp"
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/mosaic.hpp"
@@ -63,6 +64,8 @@ class Imagery final : public CellSource {
     std::optional<std::string> note = note_on_likely_roads(paths.front(), options);
     if (!note) note = note_on_collar(paths, options);
     if (note) summary_.notes.push_back(std::move(*note));
+    RasterFile first(paths.front(), options);
+    for (std::string& about : notes_on_bands(first)) summary_.notes.push_back(std::move(about));
   }
 
   SourceSummary summary() const override { return summary_; }

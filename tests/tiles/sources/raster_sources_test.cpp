@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "core/geodesy/utm.hpp"
 #include "tests/support/code_of.hpp"
@@ -124,6 +128,65 @@ TEST(Imagery, WithAPaintedCollarGetsANoteUnlessTheUserNamedIt) {
   const std::string plain =
       write_raster(folder / "b.tif", spec, [](int, int col, int row) { return (col + row) % 250 + 3; });
   EXPECT_TRUE(open_imagery({plain}, {}, kZone, 2.0, detector)->summary().notes.empty());
+}
+
+TEST(Imagery, OfManyBitsWithAnUnmarkedRimGetsANoteAndKeepsTheRangeOfTheGround) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  for (const auto& [type, rim, advice] : {std::tuple{GDT_Float32, -9999.0, "-a_nodata -9999"},
+                                          {GDT_UInt16, 0.0, "--nodata-color black"},
+                                          {GDT_UInt16, 65535.0, "--nodata-color white"}}) {
+    const RasterSpec spec{
+        .width = 256, .height = 256, .type = type, .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}}};
+    const std::string path = write_raster(folder / "a.tif", spec, [rim = rim](int, int col, int row) {
+      return col < 64 ? rim : 600.0 + (col + row) % 100;
+    });
+    const SourceSummary summary = open_imagery({path}, {}, kZone, 2.0, detector)->summary();
+    EXPECT_THAT(summary.method, ::testing::HasSubstr("values 600..699")) << rim;
+    EXPECT_THAT(summary.notes, ::testing::ElementsAre(::testing::HasSubstr(advice)));
+  }
+}
+
+TEST(Imagery, WithAnAlphaBandThatLooksLikeNearInfraredGetsANote) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto notes = [&](const std::function<double(int col, int row)>& alpha) {
+    const RasterSpec spec{
+        .width = 256,
+        .height = 256,
+        .bands = 4,
+        .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}},
+        .meanings = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_AlphaBand},
+    };
+    const std::string path = write_raster(folder / "a.tif", spec, [&](int band, int col, int row) {
+      return band == 4 ? alpha(col, row) : 60.0 + (col + row) % 100;
+    });
+    return open_imagery({path}, {}, kZone, 2.0, detector)->summary().notes;
+  };
+  EXPECT_THAT(notes([](int col, int row) { return (3 * col + row) % 256; }),
+              ::testing::ElementsAre(::testing::HasSubstr("-colorinterp_4 undefined")));
+  EXPECT_THAT(notes([](int col, int) { return std::clamp(32 * col - 512, 0, 255); }), ::testing::IsEmpty());
+}
+
+TEST(Imagery, OfMoreBandsThanColoursWithoutNamesGetsANote) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto notes = [&](int bands, const std::vector<GDALColorInterp>& meanings) {
+    const RasterSpec spec{.width = 256,
+                          .height = 256,
+                          .bands = bands,
+                          .type = GDT_UInt16,
+                          .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}},
+                          .meanings = meanings};
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [](int, int col, int row) { return 600.0 + (col + row) % 300; });
+    return open_imagery({path}, {}, kZone, 2.0, detector)->summary().notes;
+  };
+  constexpr GDALColorInterp kNone = GCI_Undefined;
+  EXPECT_THAT(notes(4, {GCI_GrayIndex, kNone, kNone, kNone}),
+              ::testing::ElementsAre(::testing::HasSubstr("which of its 4 bands are red, green and blue")));
+  EXPECT_THAT(notes(3, {GCI_GrayIndex, kNone, kNone}), ::testing::IsEmpty());
+  EXPECT_THAT(notes(4, {GCI_BlueBand, GCI_GreenBand, GCI_RedBand, kNone}), ::testing::IsEmpty());
 }
 
 /// Nine control points of a raster of 1 m, the one in the middle `east_m` off.

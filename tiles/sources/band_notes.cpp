@@ -1,0 +1,57 @@
+#include "tiles/sources/band_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+namespace roadfix {
+namespace {
+
+std::optional<std::string> note_on_colours(const RasterFile& file) {
+  GDALDataset& dataset = file.dataset();
+  int bands = 0;
+  for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
+    const GDALColorInterp meaning = dataset.GetRasterBand(i)->GetColorInterpretation();
+    if (meaning == GCI_RedBand || meaning == GCI_GreenBand || meaning == GCI_BlueBand) return std::nullopt;
+    bands += meaning == GCI_AlphaBand ? 0 : 1;
+  }
+  if (bands <= 3) return std::nullopt;
+  return fmt::format(
+      "{}: nothing says which of its {} bands are red, green and blue, so the first three are taken for them in this "
+      "order. If others are, name them (gdal_edit.py -colorinterp_3 red -colorinterp_2 green -colorinterp_1 blue) and "
+      "use --replace",
+      file.path(), bands);
+}
+
+std::optional<std::string> note_on_alpha(RasterFile& file) {
+  constexpr double kTransparent = 0.02;
+  constexpr double kWorthNoting = 0.1;
+  const int band = file.alpha_band();
+  if (band == 0) return std::nullopt;
+  int seen = 0;
+  int graded = 0;
+  for (const cv::Rect& window : file.sample_windows()) {
+    const cv::Mat opacity = file.read_opacity(window);
+    seen += window.area();
+    graded += cv::countNonZero((opacity > kTransparent) & (opacity < 1.0 - kTransparent));
+  }
+  if (graded <= kWorthNoting * seen) return std::nullopt;
+  return fmt::format(
+      "{0}: {1:.0f} % of it is half transparent by its alpha band, band {2}, and what is less than half opaque counts "
+      "as "
+      "not seen. If band {2} holds something else, such as near infrared, say so (gdal_edit.py -colorinterp_{2} "
+      "undefined) and use --replace",
+      file.path(), 100.0 * graded / seen, band);
+}
+
+}  // namespace
+
+std::vector<std::string> notes_on_bands(RasterFile& file) {
+  std::vector<std::string> notes;
+  if (auto note = note_on_colours(file)) notes.push_back(std::move(*note));
+  if (auto note = note_on_alpha(file)) notes.push_back(std::move(*note));
+  return notes;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,43 @@
+#include "tiles/sources/picture_range.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace roadfix {
+namespace {
+
+constexpr double kBeyondRange = 0.005;  // of the values, at either end
+
+}  // namespace
+
+std::optional<Fill> fill_of(const std::vector<float>& values) {
+  if (values.empty()) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(values);
+  if (std::ranges::all_of(values, [&, a = low, b = high](float v) { return v == a || v == b; })) return std::nullopt;
+  const auto share = [&values](float value) {
+    return static_cast<double>(std::ranges::count(values, value)) / static_cast<double>(values.size());
+  };
+  const Fill dark{low, true, share(low)};
+  const Fill bright{high, false, share(high)};
+  const Fill& fill = dark.share >= bright.share ? dark : bright;
+  return fill.share >= kBeyondRange ? std::optional(fill) : std::nullopt;
+}
+
+std::vector<float> without_fill(std::vector<float> values) {
+  if (const std::optional<Fill> fill = fill_of(values)) std::erase(values, fill->value);
+  return values;
+}
+
+ValueRange percentile_range(std::vector<float> values) {
+  if (values.empty()) return {0.0, 1.0};
+  const auto at = [&values](double share) {
+    const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + index, values.end());
+    return static_cast<double>(values[static_cast<std::size_t>(index)]);
+  };
+  const double low = at(kBeyondRange);
+  const double high = at(1.0 - kBeyondRange);
+  return {low, high > low ? high : low + 1.0};
+}
+
+}  // namespace roadfix

@@ -2,7 +2,7 @@
 // is what the HTTP interface offers to any program.
 import { square } from './geometry.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
-import { drawModes, element, request, showFix, showProblem, showStatus } from './show.js';
+import { drawModes, element, LastQuestion, request, showFix, showProblem, showStatus } from './show.js';
 import { Tracks } from './tracks.js';
 
 const by = (id) => document.getElementById(id);
@@ -12,16 +12,21 @@ const localizability = L.layerGroup().addTo(view);
 L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
 const MAPS_REFRESH_MS = 10_000;
+const mapQuestions = new LastQuestion();
+const pictureQuestions = new LastQuestion();
+const placeQuestions = new LastQuestion();
+const layerQuestions = new LastQuestion();
 let shown = null;  // the map on the page, see maps.js
 let lines = '';    // of the list of maps, as JSON
 let tiles = null;
 let layer = null;
 
-/// Runs `work`; what goes wrong is said in `output`.
+/// Runs `work`; what goes wrong is said in `output`, but nothing of what was given up for a newer question.
 async function attempt(output, work) {
   try {
     await work();
   } catch (error) {
+    if (error.name === 'AbortError') return;
     showProblem(output, error.title ? error : { title: 'The service gives no answer', detail: String(error.message ?? error) });
   }
 }
@@ -31,7 +36,8 @@ const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 /// Draws the chosen map as it is now; gives what the service says of it.
 async function drawMap() {
   const url = mapUrl();
-  const [info, tileset] = await Promise.all([request(url), request(`${url}/tilejson.json`)]);
+  const signal = mapQuestions.next();
+  const [info, tileset] = await Promise.all([request(url, { signal }), request(`${url}/tilejson.json`, { signal })]);
   if (tiles) tiles.remove();
   tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
@@ -44,6 +50,8 @@ async function drawMap() {
 }
 
 async function openMap() {
+  pictureQuestions.next();
+  placeQuestions.next();
   answers.clearLayers();
   localizability.clearLayers();
   by('answer').replaceChildren();
@@ -55,7 +63,7 @@ async function openMap() {
     view.fitBounds([[south, west], [north, east]]);
     await drawLayer();
   } catch (error) {
-    shown = null;  // so that the next look at the list tries again
+    if (error.name !== 'AbortError') shown = null;  // so that the next look at the list tries again
     throw error;
   }
 }
@@ -95,7 +103,7 @@ function questionOf(form) {
   query.set('kind', form.get('what') === 'cells' ? 'feature_map' : 'frame');
   for (const name of names) query.set(name, form.get(name));
   if (form.get('prior') === 'circle') {
-    const { lat, lng } = view.getCenter();
+    const { lat, lng } = view.getCenter().wrap();
     query.set('lat', lat);
     query.set('lon', lng);
     query.set('radius_m', form.get('radius_m'));
@@ -107,10 +115,12 @@ async function ask(event) {
   event.preventDefault();
   const form = new FormData(event.target);
   const picture = form.get('picture');
+  const signal = pictureQuestions.next();
   answers.clearLayers();
   showStatus(by('answer'), 'searching …', []);
   await attempt(by('answer'), async () => {
-    const fix = await request(`${mapUrl()}/fix?${questionOf(form)}`, { method: 'POST', body: picture, headers: { 'Content-Type': picture.type } });
+    const fix = await request(`${mapUrl()}/fix?${questionOf(form)}`,
+      { method: 'POST', body: picture, headers: { 'Content-Type': picture.type }, signal });
     showFix(by('answer'), fix);
     drawModes(answers, fix.modes, fix.status);
     if (fix.pose) view.flyTo([fix.pose.lat, fix.pose.lon], Math.max(view.getZoom(), 16));
@@ -121,12 +131,13 @@ async function showLocalizability({ latlng }) {
   if (!tiles) return;
   const side = Number(by('footprint').value);
   const at = latlng.wrap();
+  const signal = placeQuestions.next();
   localizability.clearLayers();
   const frame = L.polygon(square([at.lat, at.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(localizability);
   showStatus(by('place'), 'looking …', []);
   await attempt(by('place'), async () => {
     const query = new URLSearchParams({ lat: at.lat, lon: at.lng, footprint_m: side });
-    const place = await request(`${mapUrl()}/localizability?${query}`);
+    const place = await request(`${mapUrl()}/localizability?${query}`, { signal });
     showStatus(by('place'), place.status, [
       place.explanation ?? place.reason,
       `probability ${place.probability.toFixed(3)}, ${(100 * place.road_share).toFixed(0)} % road, ${(100 * place.observed_share).toFixed(0)} % of the ground is on the map`]);
@@ -145,11 +156,12 @@ function askAgain({ tile }) {
 }
 
 async function drawLayer() {
+  const signal = layerQuestions.next();
   if (layer) layer.remove();
   layer = null;
   if (!tiles || !by('layer').checked) return;
   const query = `footprint_m=${Number(by('footprint').value)}`;
-  const tileset = await request(`${mapUrl()}/localizability/tilejson.json?${query}`);
+  const tileset = await request(`${mapUrl()}/localizability/tilejson.json?${query}`, { signal });
   const [west, south, east, north] = tileset.bounds;
   layer = L.tileLayer(`${mapUrl()}/localizability/tiles/{z}/{x}/{y}.png?${query}`, {
     minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom: tiles.options.maxZoom, bounds: [[south, west], [north, east]],

@@ -11,6 +11,19 @@ export async function request(url, options) {
   return body;
 }
 
+/// Of the questions to one part of the page the last one counts: an answer to an earlier one would be about another
+/// picture, place or map than the page shows by then.
+export class LastQuestion {
+  #last = new AbortController();
+
+  /// For request(); ends what is asked with the signals before it.
+  next() {
+    this.#last.abort();
+    this.#last = new AbortController();
+    return this.#last.signal;
+  }
+}
+
 /// An element with text, never HTML: names of maps and messages come from outside.
 export function element(name, text = '', className = '') {
   const made = document.createElement(name);
@@ -47,13 +60,15 @@ export function showProblem(output, problem) {
   showStatus(output, 'failed', [problem.title, problem.detail]);
 }
 
-/// Modes of a no_fix are drawn faint: they are hints, not answers. What weighs next to nothing is left out.
+/// Modes of a no_fix are drawn faint: they are hints, not answers. Of a fix the first one is the answer, the others are
+/// its rivals. What weighs next to nothing is left out.
 export function drawModes(layer, modes, status) {
-  const colour = COLOURS[status];
   for (const mode of modes.filter((m) => m.weight >= 0.01 * modes[0].weight)) {
+    const answer = status === 'fix' && mode === modes[0];
+    const colour = COLOURS[status === 'fix' && !answer ? 'ambiguous' : status];
     const at = [mode.pose.lat, mode.pose.lon];
     const opacity = status === 'no_fix' ? 0.35 : 0.4 + 0.6 * Math.min(1, mode.weight);
-    const style = { color: colour, opacity, fillOpacity: 0.15 * opacity, weight: 2, dashArray: status === 'fix' ? null : '4 4' };
+    const style = { color: colour, opacity, fillOpacity: 0.15 * opacity, weight: 2, dashArray: answer ? null : '4 4' };
     L.polygon(ellipse95(at, mode.sigma_m, mode.ellipse_heading_deg), style).addTo(layer);
     L.polyline(arrow(at, mode.pose.heading_deg, 60), style).addTo(layer);
     L.circleMarker(at, { ...style, radius: 5 }).bindTooltip(modeText(mode)).addTo(layer);

@@ -1,4 +1,5 @@
 // Tracks as they fly: a line of the places they were sure of, the last estimate with its ellipse, and how old it is.
+// What cannot be kept up to date is drawn faint and said to be old.
 import { drawModes, element, request, showStatus, table } from './show.js';
 
 const REFRESH_MS = 5000;
@@ -18,7 +19,9 @@ export class Tracks {
 
   /// Keeps the list as the service has it; a service that does not answer now is asked again.
   async refresh() {
-    const { tracks } = await request('/v1/tracks').catch(() => ({ tracks: [] }));
+    const answer = await request('/v1/tracks').catch(() => null);
+    if (!answer) return;
+    const { tracks } = answer;
     const known = new Set([...this.list.options].map((option) => option.value));
     for (const { id, map, stale } of tracks) {
       if (!known.delete(id)) this.list.add(new Option(`${map.name}, ${id.slice(0, 8)}`, id));
@@ -30,19 +33,30 @@ export class Tracks {
 
   follow(id) {
     this.events?.close();
+    this.last = null;
     this.path.setLatLngs([]);
     this.estimate.clearLayers();
     this.output.replaceChildren();
+    this.output.classList.remove('cut-off', 'stale');
     if (!id) return;
     this.events = new EventSource(`/v1/tracks/${encodeURIComponent(id)}/events`);
     this.events.addEventListener('step', (event) => this.show(JSON.parse(event.data)));
+    this.events.addEventListener('open', () => this.setConnected(true));
+    this.events.addEventListener('error', () => this.setConnected(false));
     this.events.addEventListener('end', () => {
       this.events.close();
       this.output.prepend(element('div', 'The track has ended.'));
     });
   }
 
+  /// A browser reconnects by itself, and the service then sends the steps that were missed.
+  setConnected(connected) {
+    this.output.classList.toggle('cut-off', !connected);
+    if (this.last) this.draw(this.last);
+  }
+
   show(step) {
+    this.last = step;
     const status = STATUS[step.status] ?? 'no_fix';
     showStatus(this.output, status, [], step.status);
     this.output.append(table([
@@ -55,7 +69,12 @@ export class Tracks {
       ['odometry', step.drifts ? 'drifts: tell its covariance, or a wind' : 'as it says'],
     ]));
     if (step.pose) this.path.addLatLng([step.pose.lat, step.pose.lon]);
+    this.draw(step);
+  }
+
+  draw(step) {
+    const old = this.output.classList.contains('cut-off');
     this.estimate.clearLayers();
-    drawModes(this.estimate, step.clusters, status);
+    drawModes(this.estimate, step.clusters, old ? 'no_fix' : STATUS[step.status] ?? 'no_fix');
   }
 }

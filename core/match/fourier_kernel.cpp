@@ -24,6 +24,14 @@ struct Complex {
   Floats re, im;
 };
 
+// No number is ever made empty: the constructor that g++ would write for it on Arm lacks the instruction set.
+struct Complex3 {
+  Complex a, b, c;
+};
+struct Complex4 {
+  Complex a, b, c, d;
+};
+
 HWY_INLINE HWY_ATTR Complex operator+(Complex a, Complex b) { return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)}; }
 HWY_INLINE HWY_ATTR Complex operator-(Complex a, Complex b) { return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)}; }
 HWY_INLINE HWY_ATTR Complex times(Complex a, Complex b) {
@@ -51,54 +59,56 @@ struct Strip {
     hn::Store(value.re, kFloats, re + row * stride);
     hn::Store(value.im, kFloats, im + row * stride);
   }
+  /// Every `step` rows from `row` on.
+  HWY_INLINE HWY_ATTR void put(int row, int step, Complex3 values) const {
+    put(row, values.a);
+    put(row + step, values.b);
+    put(row + 2 * step, values.c);
+  }
+  HWY_INLINE HWY_ATTR void put(int row, int step, Complex4 values) const {
+    put(row, step, Complex3{values.a, values.b, values.c});
+    put(row + 3 * step, values.d);
+  }
 };
 
 /// The transform of three numbers (radix 3); backward it is the conjugate's.
-HWY_INLINE HWY_ATTR void butterfly3(Complex a0, Complex a1, Complex a2, bool forward, Complex out[3]) {
+HWY_INLINE HWY_ATTR Complex3 butterfly3(Complex a0, Complex a1, Complex a2, bool forward) {
   const Floats half = hn::Set(kFloats, 0.5F);
   const Floats height = hn::Set(kFloats, 0.8660254037844386F);  // sine of 60 degrees
   const Complex sum = a1 + a2;
   const Complex difference = forward ? a2 - a1 : a1 - a2;
   const Complex middle{hn::NegMulAdd(half, sum.re, a0.re), hn::NegMulAdd(half, sum.im, a0.im)};
   const Complex across = times_i({hn::Mul(height, difference.re), hn::Mul(height, difference.im)});
-  out[0] = a0 + sum;
-  out[1] = middle + across;
-  out[2] = middle - across;
+  return {a0 + sum, middle + across, middle - across};
 }
 
 /// The same of four (radix 4).
-HWY_INLINE HWY_ATTR void butterfly4(Complex a0, Complex a1, Complex a2, Complex a3, bool forward, Complex out[4]) {
+HWY_INLINE HWY_ATTR Complex4 butterfly4(Complex a0, Complex a1, Complex a2, Complex a3, bool forward) {
   const Complex even = a0 + a2;
   const Complex odd = a1 + a3;
   const Complex difference = a0 - a2;
   const Complex turned = times_i(forward ? a3 - a1 : a1 - a3);
-  out[0] = even + odd;
-  out[1] = difference + turned;
-  out[2] = even - odd;
-  out[3] = difference - turned;
+  return {even + odd, difference + turned, even - odd, difference - turned};
 }
 
 HWY_ATTR void forward_strip(const Strip& strip, int side, const float* twiddles) {
   int length = side;
-  Complex out[4];
   if (side % 3 == 0) {
     length /= 3;
     for (int j = 0; j < length; ++j, twiddles += 4) {
-      butterfly3(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true, out);
-      strip.put(j, out[0]);
-      for (int k = 1; k < 3; ++k)
-        strip.put(j + k * length, times(out[k], twiddle_at(twiddles + std::ptrdiff_t{2} * (k - 1))));
+      const Complex3 x = butterfly3(strip.at(j), strip.at(j + length), strip.at(j + 2 * length), true);
+      strip.put(j, length, Complex3{x.a, times(x.b, twiddle_at(twiddles)), times(x.c, twiddle_at(twiddles + 2))});
     }
   }
   for (; length >= 4; length /= 4) {
     const int quarter = length / 4;
     for (int j = 0; j < quarter; ++j, twiddles += 6) {
       for (int row = j; row < side; row += length) {
-        butterfly4(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter), strip.at(row + 3 * quarter),
-                   true, out);
-        strip.put(row, out[0]);
-        for (int k = 1; k < 4; ++k)
-          strip.put(row + k * quarter, times(out[k], twiddle_at(twiddles + std::ptrdiff_t{2} * (k - 1))));
+        const Complex4 x = butterfly4(strip.at(row), strip.at(row + quarter), strip.at(row + 2 * quarter),
+                                      strip.at(row + 3 * quarter), true);
+        strip.put(row, quarter,
+                  Complex4{x.a, times(x.b, twiddle_at(twiddles)), times(x.c, twiddle_at(twiddles + 2)),
+                           times(x.d, twiddle_at(twiddles + 4))});
       }
     }
   }
@@ -116,11 +126,9 @@ HWY_ATTR void forward_strip(const Strip& strip, int side, const float* twiddles)
 template <typename At>
 HWY_INLINE HWY_ATTR void first_backward(const At& at, bool with_radix2, const Strip& strip, int first, int last,
                                         const float* twiddles) {
-  Complex out[4];
   if (!with_radix2) {
     for (int row = first; row < last; row += 4) {
-      butterfly4(at(row), at(row + 1), at(row + 2), at(row + 3), false, out);
-      for (int k = 0; k < 4; ++k) strip.put(row + k, out[k]);
+      strip.put(row, 1, butterfly4(at(row), at(row + 1), at(row + 2), at(row + 3), false));
     }
     return;
   }
@@ -128,29 +136,27 @@ HWY_INLINE HWY_ATTR void first_backward(const At& at, bool with_radix2, const St
   const Complex twiddle2 = twiddle_at(twiddles - 4);
   const Complex twiddle3 = twiddle_at(twiddles - 2);
   for (int row = first; row < last; row += 8) {
-    Complex a[8];
-    for (int k = 0; k < 8; ++k) a[k] = at(row + k);
-    butterfly4(a[0] + a[1], a[2] + a[3], a[4] + a[5], a[6] + a[7], false, out);
-    for (int k = 0; k < 4; ++k) strip.put(row + 2 * k, out[k]);
-    butterfly4(a[0] - a[1], times_conjugate(a[2] - a[3], twiddle1), times_conjugate(a[4] - a[5], twiddle2),
-               times_conjugate(a[6] - a[7], twiddle3), false, out);
-    for (int k = 0; k < 4; ++k) strip.put(row + 2 * k + 1, out[k]);
+    const Complex a0 = at(row), a1 = at(row + 1), a2 = at(row + 2), a3 = at(row + 3);
+    const Complex a4 = at(row + 4), a5 = at(row + 5), a6 = at(row + 6), a7 = at(row + 7);
+    strip.put(row, 2, butterfly4(a0 + a1, a2 + a3, a4 + a5, a6 + a7, false));
+    strip.put(row + 1, 2,
+              butterfly4(a0 - a1, times_conjugate(a2 - a3, twiddle1), times_conjugate(a4 - a5, twiddle2),
+                         times_conjugate(a6 - a7, twiddle3), false));
   }
 }
 
 /// Undoes a stage of radix 4 for the rows [first, last).
 HWY_INLINE HWY_ATTR void radix4_backward(const Strip& strip, int length, int first, int last, const float* twiddle) {
   const int quarter = length / 4;
-  Complex out[4];
   for (int j = first; j < first + quarter; ++j, twiddle += 6) {
     const Complex twiddle1 = twiddle_at(twiddle);
     const Complex twiddle2 = twiddle_at(twiddle + 2);
     const Complex twiddle3 = twiddle_at(twiddle + 4);
     for (int row = j; row < last; row += length) {
-      butterfly4(strip.at(row), times_conjugate(strip.at(row + quarter), twiddle1),
-                 times_conjugate(strip.at(row + 2 * quarter), twiddle2),
-                 times_conjugate(strip.at(row + 3 * quarter), twiddle3), false, out);
-      for (int k = 0; k < 4; ++k) strip.put(row + k * quarter, out[k]);
+      strip.put(row, quarter,
+                butterfly4(strip.at(row), times_conjugate(strip.at(row + quarter), twiddle1),
+                           times_conjugate(strip.at(row + 2 * quarter), twiddle2),
+                           times_conjugate(strip.at(row + 3 * quarter), twiddle3), false));
     }
   }
 }
@@ -181,11 +187,10 @@ HWY_INLINE HWY_ATTR void backward_strip(const At& at, const Strip& strip, int si
   }
   if (whole == side) return;
   twiddle -= std::ptrdiff_t{4} * whole;
-  Complex out[3];
   for (int j = 0; j < whole; ++j, twiddle += 4) {
-    butterfly3(strip.at(j), times_conjugate(strip.at(j + whole), twiddle_at(twiddle)),
-               times_conjugate(strip.at(j + 2 * whole), twiddle_at(twiddle + 2)), false, out);
-    for (int k = 0; k < 3; ++k) strip.put(j + k * whole, out[k]);
+    strip.put(j, whole,
+              butterfly3(strip.at(j), times_conjugate(strip.at(j + whole), twiddle_at(twiddle)),
+                         times_conjugate(strip.at(j + 2 * whole), twiddle_at(twiddle + 2)), false));
   }
 }
 

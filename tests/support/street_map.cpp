@@ -12,6 +12,15 @@
 namespace roadfix::testing {
 namespace {
 
+struct Start {
+  double heading, row, col;
+};
+
+/// Draws of one call would come in the order that the compiler likes; those in braces come as they stand.
+Start any_start(std::mt19937_64& random, int cols, int rows) {
+  return {uniform(random, 0, 6.283), uniform(random, 0, rows), uniform(random, 0, cols)};
+}
+
 /// Walks a road over the cells; unit: cells.
 class Brush {
  public:
@@ -29,8 +38,8 @@ class Brush {
   }
 
   /// `bend` radians of random turning per cell.
-  std::vector<std::pair<double, double>> walk(std::mt19937_64& random, double col, double row, double heading,
-                                              double length, double bend) {
+  std::vector<std::pair<double, double>> walk(std::mt19937_64& random, Start start, double length, double bend) {
+    auto [heading, row, col] = start;
     std::vector<std::pair<double, double>> trace;
     double turn = 0.0;
     for (double done = 0.0; done < length; done += 0.5) {
@@ -60,16 +69,16 @@ RoadGrid street_map(std::uint64_t seed, const GridGeometry& geometry) {
   std::vector<std::pair<double, double>> junctions;
   for (int i = 0; i < main_roads; ++i) {
     Brush brush(map.cells, 9.0 * metre);
-    const auto trace = brush.walk(random, uniform(random, 0, geometry.cols), uniform(random, 0, geometry.rows),
-                                  uniform(random, 0, 6.283), 1500.0 * metre, 0.004 / metre);
+    const auto trace =
+        brush.walk(random, any_start(random, geometry.cols, geometry.rows), 1500.0 * metre, 0.004 / metre);
     junctions.insert(junctions.end(), trace.begin(), trace.end());
   }
   const auto streets = static_cast<int>(std::ceil(70.0 * area_km2)) + 4;
   for (int i = 0; i < streets; ++i) {
     const auto [col, row] = junctions[random() % junctions.size()];
     Brush brush(map.cells, 6.0 * metre);
-    const auto trace =
-        brush.walk(random, col, row, uniform(random, 0, 6.283), uniform(random, 60.0, 350.0) * metre, 0.002 / metre);
+    const double length = uniform(random, 60.0, 350.0) * metre;
+    const auto trace = brush.walk(random, {uniform(random, 0, 6.283), row, col}, length, 0.002 / metre);
     junctions.insert(junctions.end(), trace.begin(), trace.end());
   }
   return map;
@@ -108,8 +117,7 @@ FeatureMap observed_at(const RoadGrid& map, const GridPose& pose, int cols, int 
   Brush brush(invented, 6.0 / cell_m);
   const double length = noise.invent * road_cells / (6.0 / cell_m);
   for (double done = 0.0; done < length; done += 60.0 / cell_m) {
-    brush.walk(random, uniform(random, 0, cols), uniform(random, 0, rows), uniform(random, 0, 6.283), 60.0 / cell_m,
-               0.0);
+    brush.walk(random, any_start(random, cols, rows), 60.0 / cell_m, 0.0);
   }
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) {

@@ -291,9 +291,12 @@ TEST(Search, FindsTheBestPoseOfBruteForceOnSmallMaps) {
     PoseRegion region;
     region.box = map.geometry.box();
     const bool unrelated = round % 3 == 0;
-    const FeatureMap features = unrelated ? FeatureMap::centred(testing::smooth_cells(random, 15, 13), 2.0)
-                                          : observed_at(map, pose_within(region.box, 14.0, random), 12 + below(10),
-                                                        12 + below(10), 2.0, {0.2, 0.1}, random);
+    const auto seen = [&] {
+      const int rows = 12 + below(10);
+      const int cols = 12 + below(10);
+      return observed_at(map, pose_within(region.box, 14.0, random), cols, rows, 2.0, {0.2, 0.1}, random);
+    };
+    const FeatureMap features = unrelated ? FeatureMap::centred(testing::smooth_cells(random, 15, 13), 2.0) : seen();
     const double extent_m = 2.0 * std::max(features.cells.cols(), features.cells.rows());
     const double best =
         brute_force(map, features, HeadingBins::for_footprint(0.5 * extent_m, 2.0), SearchOptions{}.min_observed_share);

@@ -135,24 +135,25 @@ TEST_F(Vehicles, LoseNothingWhenTheServiceIsKilledAmidTheirFlightsAndComesBack) 
   const int port = running->port();
   // Killed after a third of the answers and again after two thirds, while the other vehicles' steps are under way.
   std::atomic<int> answered = 0;
-  std::jthread killer([&] {
-    for (const int after : {kVehicles * kSteps / 3, 2 * kVehicles * kSteps / 3}) {
-      for (int now = answered; now < after; now = answered) answered.wait(now);
-      running->send_signal(SIGKILL);
-      EXPECT_NE(running->wait(10min), -1);
-      running.reset();
-      running = service("tracks.sqlite", port);
-    }
-  });
   campaign_.progress = [&](std::int64_t done, std::int64_t) {
     // Of each flight the steps are seen first and then answered.
     answered = static_cast<int>(done) - kVehicles * kSteps;
     answered.notify_all();
   };
-  const std::vector<fly::Run> flights = flown(port);
-  answered = kVehicles * kSteps;
-  answered.notify_all();
-  killer.join();
+  std::vector<fly::Run> flights;
+  std::jthread flying([&] {
+    flights = flown(port);
+    answered = kVehicles * kSteps;
+    answered.notify_all();
+  });
+  for (const int after : {kVehicles * kSteps / 3, 2 * kVehicles * kSteps / 3}) {
+    for (int now = answered; now < after; now = answered) answered.wait(now);
+    running->send_signal(SIGKILL);
+    EXPECT_NE(running->wait(10min), -1);
+    running.reset();
+    running = service("tracks.sqlite", port);
+  }
+  flying.join();
   expect_equal(flights, expected);
   const auto kept = histories(*running);
   for (const fly::Run& flight : flights) {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,7 +22,9 @@ std::string first_line(int pipe) {
   return line;
 }
 
-[[noreturn]] void become_service(const std::vector<std::string>& arguments, int output) {
+[[noreturn]] void become_service(const std::vector<std::string>& arguments, int output, pid_t test) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != test) ::_exit(127);  // it died before it could be heard of
   std::vector<char*> raw;
   for (const std::string& argument : arguments) raw.push_back(const_cast<char*>(argument.c_str()));
   raw.push_back(nullptr);
@@ -39,8 +42,9 @@ ServiceProcess::ServiceProcess(const std::filesystem::path& maps, const std::vec
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  const pid_t test = ::getpid();
   process_ = ::fork();
-  if (process_ == 0) become_service(arguments, pipe[1]);
+  if (process_ == 0) become_service(arguments, pipe[1], test);
   ::close(pipe[1]);
   const std::string line = first_line(pipe[0]);
   ::close(pipe[0]);

@@ -67,6 +67,11 @@ void take_over(httplib::Request& head, Exchange& exchange) {
   const bool gzip = accepts_gzip(head.get_header_value("Accept-Encoding"));
   head.headers.erase("Accept-Encoding");
   if (gzip) head.headers.emplace("Accept-Encoding", "gzip");
+  // The library closes these after the answer, in which it says that it keeps them.
+  if (head.version == "HTTP/1.0" && head.get_header_value("Connection") != "Keep-Alive") {
+    head.headers.erase("Connection");
+    head.headers.emplace("Connection", "close");
+  }
 }
 
 Request translated(const httplib::Request& head, const Exchange& exchange, const Proxies& proxies) {

@@ -87,6 +87,16 @@ TEST_F(HttpServer, GivesNoLengthToAnswersThatHaveNone) {
   EXPECT_THAT(head, ::testing::Not(::testing::HasSubstr("Accept-Ranges"))) << "there are none";
 }
 
+TEST_F(HttpServer, SaysToClientsOfHttp10ThatItCloses) {
+  const auto server = started();
+  for (const char* asked : {"", "Connection: keep-alive\r\n"}) {
+    const std::string answer = raw(std::string("GET /echo?text=abc HTTP/1.0\r\n") + asked + "\r\n");
+    EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(answer, ::testing::HasSubstr("Connection: close"));
+    EXPECT_THAT(answer, ::testing::Not(::testing::HasSubstr("Keep-Alive"))) << "and yet it is closed";
+  }
+}
+
 TEST_F(HttpServer, SaysWhenItAnswered) {
   const auto server = started();
   EXPECT_THAT(client().Get("/echo?text=a")->get_header_value("Date"),

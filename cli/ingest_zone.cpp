@@ -49,6 +49,16 @@ void refuse_another_zone(const SourceRequest& request, const MapSettings& settin
                   6 * home.number() - 183, 100.0 * stretch(kFalseEastingM)));
 }
 
+/// Throws in place of `error`, which names the file, where a folder holds other files that fit.
+void refuse_several_zones(const SourceRequest& request, const InvalidInput& error) {
+  if (request.files.paths.size() < 2) return;
+  throw InvalidInput("source-in-several-zones",
+                     fmt::format("{}. {} is one source, on one plane: where its files lie too far apart for that, move "
+                                 "those of each place into a folder of their own, and ingest each folder into a map "
+                                 "file of its own (another --map)",
+                                 error.what(), request.files.location));
+}
+
 }  // namespace
 
 MapSettings settings_around_equator(const IngestArguments& arguments, const SourceRequest& first,
@@ -72,7 +82,10 @@ PlannedSource plan_source(const SourceRequest& request, const MapSettings& setti
     planned.blocks = std::ssize(plan_blocks(*planned.cells, request.files.name, settings));
     return planned;
   } catch (const InvalidInput& error) {
-    if (is_about_place(error.code())) refuse_another_zone(request, settings);
+    if (is_about_place(error.code())) {
+      refuse_another_zone(request, settings);
+      refuse_several_zones(request, error);
+    }
     throw;
   } catch (const LimitExceeded&) {
     if (planned.cells) print_notes(request.files, planned.cells->summary());  // of what makes it so large, for one

@@ -239,6 +239,19 @@ TEST_F(IngestCommand, ASourceMadeTooLargeByAStrayRoadHearsOfTheExtentOfTheOthers
   EXPECT_EQ(ingest({source, "--map", map("m.gpkg"), "--extent", extent}).code, 0) << extent;
 }
 
+TEST_F(IngestCommand, AFolderOfImagesFarApartIsToldToBeSplit) {
+  std::filesystem::create_directory(folder / "images");
+  const auto one = [](int, int, int) { return 1.0; };
+  RasterSpec there;
+  write_raster(folder / "images/a.tif", there, one);
+  there.epsg = 32719;
+  write_raster(folder / "images/b.tif", there, one);
+  const ChildResult result = ingest({folder / "images", "--detector", "tree", "--map", map("a.gpkg")});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, ::testing::AllOf(HasSubstr("b.tif: its coordinates in EPSG:32719 have no place"),
+                                           HasSubstr("folder of their own"), HasSubstr("[source-in-several-zones]")));
+}
+
 TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {
   const std::string image =
       write_raster(folder / "empty.tif", RasterSpec{.nodata = 0.0}, [](int, int, int) { return 0; });

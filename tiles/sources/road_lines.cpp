@@ -79,6 +79,20 @@ double min_side_m(std::span<const RoadLine> lines) {
   return side_m;
 }
 
+/// No map holds what lies on two sides of the Earth, and roads on both sides of the 180th meridian seem to.
+void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+  const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
+  std::array<double, 2> lon{box.MinX, box.MaxX};
+  std::array<double, 2> lat{(box.MinY + box.MaxY) / 2.0, (box.MinY + box.MaxY) / 2.0};
+  const GdalMessages messages;
+  if (to_earth->Transform(2, lon.data(), lat.data()) == FALSE || !(lon[1] - lon[0] > 180.0)) return;
+  throw InvalidInput(
+      "roads-around-the-earth",
+      fmt::format("{}: it reaches from longitude {:.2f} to {:.2f}, and no map holds both. Name the ground of the map "
+                  "with --extent W,S,E,N; across the 180th meridian W is larger than E, as in 179.5,-17,-179.5,-16",
+                  path, lon[0], lon[1]));
+}
+
 void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
   const bool tile = vector_tile_of(path).has_value();
   if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
@@ -95,6 +109,8 @@ void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& pa
   if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
     network.notes.push_back(fmt::format("{}: {}", path, *note));
     parts.strays_noted = true;
+  } else {
+    require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), path);
   }
 }
 

@@ -208,6 +208,22 @@ TEST_F(RoadLines, FilesThatHoldNoRoadsAreRefused) {
   EXPECT_EQ(code_of([&] { read_road_network({roads}, options, RoadRules(), kZone); }), "extent-unreadable");
 }
 
+TEST_F(RoadLines, AcrossThe180thMeridianAskForAnExtent) {
+  const auto road = [](double lon) {
+    return fmt::format(
+        R"({{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[{},-16.5],[{},-16.4]]}}}})",
+        lon, lon);
+  };
+  const std::string path = geojson({road(179.99), road(-179.99)});
+  const auto read = [&](const std::string& extent) {
+    return read_road_network({path}, {.crs = "", .layer = "", .extent = extent}, RoadRules(),
+                             *UtmZone::from_epsg(32760));
+  };
+  EXPECT_EQ(code_of([&] { read(""); }), "roads-around-the-earth");
+  EXPECT_THAT(message_of([&] { read(""); }), HasSubstr("from longitude -179.99 to 179.99"));
+  EXPECT_EQ(read("179.5,-17,-179.5,-16").lines.size(), 2U);
+}
+
 TEST_F(RoadLines, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {
   const std::string empty = (folder / "empty.geojson").string();
   std::ofstream(empty) << R"({"type":"FeatureCollection","features":[]})";

@@ -125,6 +125,18 @@ void run_fly(const FlyOptions& options) {
 void add_fly_command(CLI::App& app) {
   auto* command = app.add_subcommand("fly", "Flies simulated UAVs over imagery or a map and tracks them on the map");
   command->footer(
+      "Columns of the table; medians over flights or steps, in brackets what 90 % (of the times 95 %) do not exceed:\n"
+      "  found        flights whose best guess comes within 25 m of the truth and stays there for 10 steps\n"
+      "  updates      frames until it is found\n"
+      "  error m      of all steps from then on\n"
+      "  final m      error of the last step of every flight, found or not\n"
+      "  wrong        flights that end with most of their weight on a wrong place\n"
+      "  claims (at)  flights that ever claim a place (status converged), and after how many frames\n"
+      "  false steps  steps that claim a place more than 25 m off, of all steps that claim one\n"
+      "  NEES         squared error by the stated covariance, mean over the claims: 2 is consistent, more "
+      "overconfident\n"
+      "  in 95        share of the claims with the truth in their 95 % ellipse\n"
+      "  ms/step      time of a step with a frame\n\n"
       "Examples: roadfix fly town.gpkg --over post.tif --filter paper,default --pictures figures\n"
       "          roadfix fly city.gpkg --over flight/frames.csv --filter paper,default --film flight.gif\n"
       "          roadfix fly city.gpkg --runs 100 --erase 0.3 --kidnap 50,2000 --json out.json\n"

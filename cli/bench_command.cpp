@@ -152,9 +152,9 @@ void run_bench(BenchArguments& arguments) {
              bench::to_table(results));
   const bench::Honesty honesty = bench::honesty_of(bench::road_outcomes(results));
   fmt::print("\n{}", bench::to_text(honesty));
+  if (!arguments.json_file.empty()) write_json(document(arguments, detector->describe(), results), arguments.json_file);
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
   if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results);
-  if (!arguments.json_file.empty()) write_json(document(arguments, detector->describe(), results), arguments.json_file);
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// roadfix bench as a script meets it, over an invented town.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::ProgramResult;
+using testing::run_program;
+using testing::text_of;
+
+TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 2, "footprint_m": [300, 300], "prior": {"radius_m": 200}}]})";
+  const std::string file = (folder / "out.json").string();
+  const ProgramResult bench =
+      run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +
+                                     (folder / "cache").string() + " --json " + file + " --calibrate " +
+                                     (folder / "calibration.json").string());
+  EXPECT_EQ(bench.code, 1);
+  EXPECT_THAT(bench.err, HasSubstr("calibration-too-few-examples"));
+  EXPECT_EQ(nlohmann::json::parse(text_of(file), nullptr, false).value("results", nlohmann::json::array()).size(), 1U);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -121,7 +121,7 @@ class Filter {
   bool keep_within_region();
   void resample();
   void roughen(std::span<const std::size_t> ancestors);
-  /// Of the particles' columns.
+  /// Adds noise to two columns of the particles.
   void scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose);
   double share_to_inject() const;
   template <typename DrawState>

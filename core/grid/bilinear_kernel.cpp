@@ -45,7 +45,7 @@ HWY_INLINE HWY_ATTR Quads parted(Ints quads) {
           cell(hn::ShiftRight<24>(quads))};
 }
 
-/// Of which quads a byte is 255: of the others none borrows when 1 is taken from each byte's complement.
+/// Which quads have a byte that is 255: of the others none borrows when 1 is taken from each byte's complement.
 HWY_INLINE HWY_ATTR auto any_unobserved(Ints quads) {
   const Ints borrowed = hn::Sub(hn::Not(quads), hn::Set(kInts, 0x01010101));
   const Ints high_bits = hn::Set(kInts, static_cast<std::int32_t>(0x80808080U));

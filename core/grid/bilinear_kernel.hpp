@@ -22,8 +22,8 @@ class BilinearSource {
  private:
   int cols_;
   int rows_;
-  /// Of a frame of unobserved cells around the source: cell (c, r) holds (c - 1, r - 1) in its lowest byte, then (c, r
-  /// - 1), (c - 1, r) and (c, r).
+  /// The source in a border of unobserved cells: cell (c, r) holds the source's (c - 1, r - 1) in its lowest byte, then
+  /// (c, r - 1), (c - 1, r) and (c, r).
   std::vector<std::int32_t> quads_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace roadfix {
 
-/// Of an observed cell. Certainty is bounded at a quarter of a step of the cell scale (p = 1/1016), the mean of what
-/// rounds to 0.
+/// Log odds of an observed cell. Certainty is bounded at a quarter of a step of the cell scale (p = 1/1016), the mean
+/// of what rounds to 0.
 inline double log_odds(Cell cell) {
   constexpr double kMin = 0.25 / kRoad;
   const double p = std::clamp(probability(cell), kMin, 1.0 - kMin);

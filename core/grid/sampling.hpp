@@ -47,7 +47,7 @@ class SnappedPlacement {
  public:
   static constexpr int kShareBits = 7;  ///< of a position within its cell
   static constexpr int kCellBits = 17;  ///< a cell is 2^17 of the numbers below
-  /// Of a source, an edge: beyond that the numbers would not hold.
+  /// The longest edge of a source: beyond that the numbers would not hold.
   static constexpr int kMaxCells = 12'000;
 
   explicit SnappedPlacement(const Placement& placement);
@@ -64,7 +64,7 @@ class SnappedPlacement {
   /// After so many the steps start anew from exact numbers: their errors add up to less than 1/1000 of a cell.
   static int cells_left(int col) { return kRunCells - col % kRunCells; }
 
-  /// Of the cell (col, row) of the result: within 1/200 of a cell of placement.source_of() its middle.
+  /// The position of the cell (col, row) of the result: within 1/200 of a cell of placement.source_of() its middle.
   GridGeometry::CellPosition position_of(int col, int row) const;
 
  private:

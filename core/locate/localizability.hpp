@@ -10,7 +10,7 @@ struct LocalizabilityQuery {
   LatLon position;
   double footprint_m = 400.0;  ///< side of the square of ground that a frame shows
   double radius_m = 1500.0;    ///< of the prior circle that the place must be told from
-  /// Of the detector that is assumed: about that of a frame of a damaged town.
+  /// What the detector is assumed to do: about as well as over a damaged town.
   FeatureQuality quality{.erase = 0.25, .invent = 0.25};
   FixOptions fix;
 };

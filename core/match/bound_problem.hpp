@@ -25,16 +25,16 @@ struct BoundProblem {
         full_cells(static_cast<double>(asked.features->cells.observed_count())),
         base(base_of(*asked.features)) {}
 
-  /// Of an index into the headings searched.
+  /// The heading with this index among those searched.
   Angle heading(std::size_t index) const { return search.bins.heading(search.headings[index]); }
-  /// Of a cell of the map.
+  /// Whether this cell of the map is one of the positions searched,
   bool cell_eligible(int map_col, int map_row) const {
     const int col = map_col - shift_col;
     const int row = map_row - shift_row;
     return col >= 0 && row >= 0 && col < search.positions.cols && row < search.positions.rows &&
            search.eligible(col, row);
   }
-  /// Of any cell of a block of the map.
+  /// or on any cell of this block of the map.
   bool block_eligible(int col, int row) const {
     for (int i = 0; i < kBlockCells * kBlockCells; ++i) {
       if (cell_eligible(col * kBlockCells + i % kBlockCells, row * kBlockCells + i / kBlockCells)) return true;

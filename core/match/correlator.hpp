@@ -27,7 +27,7 @@ class Correlator {
     explicit Workspace(int side) : sums(side), scratch(side) {}
   };
 
-  /// Of a patch, or of two where there is one plane; `second` is empty for one.
+  /// The spectrum of a patch, or of two where there is one plane; `second` is empty for one.
   Spectrum spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
   void spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace, Spectrum& spectrum) const;
 
@@ -38,7 +38,7 @@ class Correlator {
   /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
   /// patch's last cell, counted in the turned patch.
   FloatPlanes correlate(const Spectrum& patch_spectrum, bool half_turn) const;
-  /// The same.
+  /// The same, into memory that is kept.
   void correlate(const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace, FloatPlanes& result) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.

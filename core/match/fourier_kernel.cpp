@@ -256,7 +256,7 @@ HWY_ATTR void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& sc
   }
 }
 
-/// Of some columns of the product of two spectra.
+/// Some columns of the product of two spectra.
 template <bool kConjugate>
 struct ProductStrip {
   const float* a;

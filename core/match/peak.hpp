@@ -8,9 +8,9 @@
 namespace roadfix {
 
 struct PeakShape {
-  // Of the top, relative to the middle of the scores: columns, rows, bins; each within +-0.5.
+  /// Where the top is, from the middle of the scores: columns, rows, bins; each within +-0.5.
   std::array<double, 3> offset{};
-  /// Of (column, row, bin), from the likelihood over the poses around.
+  /// Covariance of (column, row, bin), from the likelihood over the poses around.
   std::array<std::array<double, 3>, 3> covariance{};
 };
 

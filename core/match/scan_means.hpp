@@ -28,7 +28,7 @@ class ScanMeansGrid {
   /// Position i (from -1 on) lies between these rows or columns of ScanMeans.
   const BlockMixes& cols(bool half_turn) const { return cols_[half_turn ? 1 : 0]; }
   const BlockMixes& rows(bool half_turn) const { return rows_[half_turn ? 1 : 0]; }
-  /// Of the patch's cells (2 reach + 1 of them, the nadir in the middle): means over each block.
+  /// Means over each block of the patch's cells (2 reach + 1 of them, the nadir in the middle).
   BlockSumPlanes block_means(const CellArray& cells, double mean) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace roadfix {
 namespace {
 
-/// Of each kind of cell, the value less a mean; 0 for those not observed.
+/// The value of each kind of cell less a mean; 0 for those not observed.
 std::array<float, 256> value_table(double mean) {
   std::array<float, 256> table{};
   for (int cell = kNoRoad; cell <= kRoad; ++cell) {

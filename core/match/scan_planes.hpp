@@ -9,7 +9,7 @@
 
 namespace roadfix {
 
-/// Of the observed cells; 0 where there is none.
+/// The mean of the observed cells; 0 where there is none.
 double mean_of(const CellArray& cells);
 
 /// What is observed as its value less a mean, 0 elsewhere.

@@ -95,7 +95,7 @@ struct SearchResult {
   int headings = 0;                  ///< bins of the exhaustive scan within the range
   int scales = 1;                    ///< of the exhaustive scan
   std::optional<SearchProof> proof;  ///< where one was asked for
-  /// Of all poses, scored at the coarse cells before the deadline. Of the others nothing is known.
+  /// Share of the poses that were scored at the coarse cells before the deadline; of the others nothing is known.
   double scanned_share = 1.0;
   bool refined =
       true;  ///< what the scan found was followed to the finest cells; else the modes are only near the peaks

@@ -54,7 +54,7 @@ class Spectrum {
   /// The strip's real parts of the first row; its imaginary parts, and then the next row, follow.
   float* strip(int index) { return blocks_[first_block(index)].values; }
   const float* strip(int index) const { return blocks_[first_block(index)].values; }
-  /// Of frequency 0: the plane's sums.
+  /// The plane's sums, which stand at frequency 0.
   float sum_re() const { return blocks_[0].values[0]; }
   float sum_im() const { return blocks_[1].values[0]; }
   std::size_t bytes() const { return blocks_.size() * sizeof(FloatBlock); }

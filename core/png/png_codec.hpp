@@ -16,7 +16,7 @@ struct PngShape {
   int channels = 1;
   int bits = 8;  ///< of each channel: 8 or 16
 
-  /// Of the pixels, row by row without gaps.
+  /// Size of the pixels, row by row without gaps.
   std::size_t bytes() const;
   friend bool operator==(const PngShape&, const PngShape&) = default;
 };
@@ -39,7 +39,7 @@ class PngReader {
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
 
-  /// Of the pixels that read() gives.
+  /// The shape of what read() gives.
   const PngShape& shape() const;
   /// Once, to the end of the image; `pixels` has shape().bytes(). Throws as the constructor does.
   void read(std::span<std::uint8_t> pixels);

@@ -19,7 +19,7 @@ class Fnv1a64 {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// Of these bytes alone.
+/// The hash of these bytes alone, as text().
 std::string fnv1a64(std::string_view bytes);
 
 }  // namespace roadfix

@@ -20,7 +20,7 @@ struct GridPose {
   Angle heading;
 };
 
-/// Of east (m), north (m) and heading (rad, clockwise), about a pose.
+/// Covariance of east (m), north (m) and heading (rad, clockwise) about a pose.
 using PoseCovariance = std::array<std::array<double, 3>, 3>;
 
 /// Where one pose of a body is, seen from another: so far ahead of it and to its right, turned so far clockwise.

@@ -81,8 +81,8 @@ class Scan {
     const int count = static_cast<int>(bases.size());
     parallel_for((count + kHeadingsTogether - 1) / kHeadingsTogether, request_.threads, [&](int i) {
       const int first = i * kHeadingsTogether;
-      scan_pairs(std::span(bases).subspan(static_cast<std::size_t>(first),
-                                          static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))));
+      scan_pair(std::span(bases).subspan(static_cast<std::size_t>(first),
+                                         static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))));
     });
     result_.share =
         static_cast<double>(scanned_) / static_cast<double>(std::max<std::size_t>(1, request_.headings.size()));
@@ -92,38 +92,47 @@ class Scan {
   }
 
  private:
-  /// One of the directions of a pair of headings; -1 where a heading is not asked for.
+  /// A pair of headings as they are, or both turned by half a turn; -1 for one that is not asked for.
   struct Direction {
     bool half_turn = false;
     std::array<int, kHeadingsTogether> bins{-1, -1};
+
+    std::size_t count() const {
+      return static_cast<std::size_t>(std::ranges::count_if(bins, [](int bin) { return bin >= 0; }));
+    }
   };
 
-  void scan_pairs(std::span<const int> bases) {
-    if (deadline_.over()) return;
-    std::unique_ptr<ScanBuffers> buffers = taken_buffers();
-    const CellArray first = patch_at(bases.front());
-    const ScanMeansPatch means(map_, means_grid_.block_means(first, feature_mean_), buffers->means_workspace);
+  /// Those with a heading that is asked for.
+  std::vector<Direction> directions_of(std::span<const int> bases) const {
     std::vector<Direction> directions;
     for (const bool half_turn : {false, true}) {
-      Direction direction;
-      direction.half_turn = half_turn;
+      Direction direction{half_turn};
       for (std::size_t i = 0; i < bases.size(); ++i) {
         const int bin = bases[i] + (half_turn ? request_.bins.count() / 2 : 0);
         if (std::ranges::binary_search(request_.headings, bin)) direction.bins[i] = bin;
       }
-      if (std::ranges::all_of(direction.bins, [](int bin) { return bin < 0; })) continue;
-      means.at(half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_),
-               buffers->means[half_turn ? 1 : 0]);
-      directions.push_back(direction);
+      if (direction.count() > 0) directions.push_back(direction);
+    }
+    return directions;
+  }
+
+  /// A pair of neighbouring headings, and the same turned by half a turn.
+  void scan_pair(std::span<const int> bases) {
+    if (deadline_.over()) return;
+    std::unique_ptr<ScanBuffers> buffers = taken_buffers();
+    const CellArray first = patch_at(bases.front());
+    const ScanMeansPatch means(map_, means_grid_.block_means(first, feature_mean_), buffers->means_workspace);
+    const std::vector<Direction> directions = directions_of(bases);
+    Found found;
+    for (const Direction& direction : directions) {
+      means.at(direction.half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_),
+               buffers->means[direction.half_turn ? 1 : 0]);
+      found.headings += direction.count();
     }
     map_.values().spectrum_of(values_of(first, feature_mean_),
                               bases.size() > 1 ? values_of(patch_at(bases.back()), feature_mean_) : FloatPlane(),
                               buffers->workspace, buffers->cross);
-    Found found;
     const float floor = current_floor();
-    for (const Direction& direction : directions) {
-      found.headings += static_cast<std::size_t>(std::ranges::count_if(direction.bins, [](int b) { return b >= 0; }));
-    }
     for (std::size_t tile = 0; tile < map_.values().tiles(); ++tile) {
       if (deadline_.over()) return;
       for (const Direction& direction : directions) scan_tile(tile, direction, floor, *buffers, found);

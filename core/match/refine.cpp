@@ -81,7 +81,7 @@ void add_places_around(PlaneCell place, int cells, std::vector<PlaneCell>& place
   }
 }
 
-/// Those candidates that ask for a scale and bin: turning the feature map is expensive, so they share it.
+/// Candidates that ask for the same scale and bin: turning the feature map is expensive, so they share it.
 struct RefineTask {
   int scale;
   int bin;
@@ -102,6 +102,32 @@ LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, st
     best.score = score;
   }
   return best;
+}
+
+/// Indices of the candidates that ask for each (scale, bin).
+using CandidatesOf = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+
+CandidatesOf by_scale_and_bin(const Level& level, int bins, const std::vector<LatticePose>& candidates) {
+  CandidatesOf result;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
+      if (std::abs(scale) > level.scales.reach()) continue;
+      for (int d = -bins; d <= bins; ++d) result[{scale, level.bins.wrapped(candidates[i].bin + d)}].push_back(i);
+    }
+  }
+  return result;
+}
+
+/// What the tasks found best of each candidate.
+std::vector<LatticePose> best_of(const std::vector<RefineTask>& tasks, std::vector<LatticePose> candidates) {
+  for (LatticePose& pose : candidates) pose.score = 0.0;
+  for (const RefineTask& task : tasks) {
+    for (std::size_t k = 0; k < task.best.size(); ++k) {
+      LatticePose& pose = candidates[task.candidates[k]];
+      if (task.best[k].score > pose.score) pose = task.best[k];
+    }
+  }
+  return candidates;
 }
 
 void run(RefineTask& task, const Level& level, int cells, const GroundAround& ground,
@@ -154,21 +180,13 @@ GridGeometry padded(const GridGeometry& geometry, int cells) {
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
   const GroundAround ground(level, cells, deadline, candidates);
   if (!ground.complete()) return false;
-  std::map<std::pair<int, int>, std::vector<std::size_t>> candidates_of;  // scale and bin
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
-      if (std::abs(scale) > level.scales.reach()) continue;
-      for (int d = -bins; d <= bins; ++d)
-        candidates_of[{scale, level.bins.wrapped(candidates[i].bin + d)}].push_back(i);
-    }
-  }
-  std::map<int, LevelFeatures> features;
+  std::map<int, LevelFeatures> at_scale;
   std::vector<RefineTask> tasks;
-  for (auto& [key, members] : candidates_of) {
+  for (auto& [key, members] : by_scale_and_bin(level, bins, candidates)) {
     if (deadline.over()) return false;
     const auto [scale, bin] = key;
-    if (!features.contains(scale)) features.emplace(scale, level.at_scale(scale));
-    tasks.push_back({scale, bin, &features.at(scale), std::move(members), {}});
+    if (!at_scale.contains(scale)) at_scale.emplace(scale, level.at_scale(scale));
+    tasks.push_back({scale, bin, &at_scale.at(scale), std::move(members), {}});
   }
   std::atomic<bool> complete{true};
   parallel_for(static_cast<int>(tasks.size()), level.threads, [&](int t) {
@@ -179,15 +197,7 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
     }
   });
   if (!complete) return false;
-  std::vector<LatticePose> refined = candidates;
-  for (LatticePose& pose : refined) pose.score = 0.0;
-  for (const RefineTask& task : tasks) {
-    for (std::size_t k = 0; k < task.best.size(); ++k) {
-      LatticePose& pose = refined[task.candidates[k]];
-      if (task.best[k].score > pose.score) pose = task.best[k];
-    }
-  }
-  candidates = std::move(refined);
+  candidates = best_of(tasks, std::move(candidates));
   return true;
 }
 

@@ -97,6 +97,18 @@ std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, 
   return kept;
 }
 
+std::vector<int> bins_within(const HeadingBins& bins, const PoseRegion& region) {
+  std::vector<int> within;
+  for (int bin = 0; bin < bins.count(); ++bin) {
+    if (region.contains(bins.heading(bin))) within.push_back(bin);
+  }
+  return within;
+}
+
+std::function<bool(int, int)> cells_within(const GridGeometry& positions, const PoseRegion& region) {
+  return [positions, region](int col, int row) { return region.contains(positions.cell_center(col, row)); };
+}
+
 void descend(std::vector<LatticePose>& candidates) {
   for (LatticePose& pose : candidates) {
     pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/match/refine.hpp"
@@ -42,6 +43,12 @@ class SearchLevels {
   double side_m_;
   std::vector<Level> levels_;  ///< finest first
 };
+
+/// The bins whose headings lie in the region.
+std::vector<int> bins_within(const HeadingBins& bins, const PoseRegion& region);
+
+/// Tells of a cell (column, row) of `positions` whether its middle lies in the region.
+std::function<bool(int, int)> cells_within(const GridGeometry& positions, const PoseRegion& region);
 
 /// From the cells of one level to those of the next finer one.
 void descend(std::vector<LatticePose>& candidates);

@@ -15,13 +15,9 @@ BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, con
   const PoseRegion& region = levels.region();
   BoundedSearch bounded;
   bounded.bins = level.bins;
-  for (int bin = 0; bin < level.bins.count(); ++bin) {
-    if (region.contains(level.bins.heading(bin))) bounded.headings.push_back(bin);
-  }
+  bounded.headings = bins_within(level.bins, region);
   bounded.positions = GridGeometry::covering(region.box, level.cell_m());
-  bounded.eligible = [&region, positions = bounded.positions](int col, int row) {
-    return region.contains(positions.cell_center(col, row));
-  };
+  bounded.eligible = cells_within(bounded.positions, region);
   bounded.threads = options.threads;
   for (const LatticePose& pose : candidates) {
     const GridPose at = level.pose_of(pose);

@@ -45,12 +45,8 @@ ScanRequest SearchScan::request() const {
   request.positions = GridGeometry::covering(scanned_.box, coarse.cell_m());
   request.bins = coarse.bins;
   const PoseRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
-  for (int bin = 0; bin < request.bins.count(); ++bin) {
-    if (wide.contains(request.bins.heading(bin))) request.headings.push_back(bin);
-  }
-  request.eligible = [wide, positions = request.positions](int col, int row) {
-    return wide.contains(positions.cell_center(col, row));
-  };
+  request.headings = bins_within(request.bins, wide);
+  request.eligible = cells_within(request.positions, wide);
   request.min_observed_share = options_.min_observed_share;
   request.keep = kScanMaxima;
   request.threads = options_.threads;

@@ -94,9 +94,7 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
     auto [sums, map_observed] = HeadingSectors::covered(headings_.sector_of(heading), known.run, i);
     sums.cross_max = cross_max;
     if (map_observed) {
-      sums.cells = {turned.cells, turned.cells};
-      sums.feature = {turned.sum, turned.sum};
-      sums.feature_square_min = turned.square;
+      narrow(sums, turned);
     } else {
       if (!partial_known) {
         partial_known = true;
@@ -104,10 +102,9 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
         term_sums(problem_.map, turned.sum_max, col, row, partial.sum_max);
         term_sums(problem_.map, turned.square_min, col, row, partial.square_min);
       }
-      sums.cells.max = std::min(sums.cells.max, turned.cells);
-      sums.feature = {partial.sum_min[i] * turned.sum_min.unit,
-                      std::min(turned.sum, partial.sum_max[i] * turned.sum_max.unit)};
-      sums.feature_square_min = partial.square_min[i] * turned.square_min.unit;
+      narrow(sums, turned,
+             {partial.sum_min[i] * turned.sum_min.unit, partial.sum_max[i] * turned.sum_max.unit,
+              partial.square_min[i] * turned.square_min.unit});
     }
     const double bound = score_bound(sums, problem_.full_cells, problem_.search.min_cells);
     if (bound <= best_) continue;

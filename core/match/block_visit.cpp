@@ -7,13 +7,18 @@
 #include "core/match/score.hpp"
 
 namespace roadfix {
+namespace {
+
+constexpr int kQuarterCells = kBlockCells / 2;  // along an edge
+
+}  // namespace
 
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
   const FeatureMap turned = problem_.rotator.rotated(problem_.heading(heading));
   const PackedFootprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(heading, nodes);
   parts = surviving(std::move(parts), above, kBlockCells);
-  parts = surviving(halves(parts), above, kBlockCells / 2);
+  parts = surviving(quarters(parts), above, kQuarterCells);
   return best_of(heading, PackedFootprint(turned), parts);
 }
 
@@ -25,14 +30,14 @@ std::vector<BlockVisit::Part> BlockVisit::parts_of(std::size_t heading, std::spa
   return parts;
 }
 
-std::vector<BlockVisit::Part> BlockVisit::halves(std::span<const Part> parts) {
+std::vector<BlockVisit::Part> BlockVisit::quarters(std::span<const Part> parts) {
   std::vector<Part> result;
   for (const Part& part : parts) {
     for (int i = 0; i < 4; ++i) {
-      Part half = part;
-      half.col += kBlockCells / 2 * (i % 2);
-      half.row += kBlockCells / 2 * (i / 2);
-      result.push_back(half);
+      Part quarter = part;
+      quarter.col += kQuarterCells * (i % 2);
+      quarter.row += kQuarterCells * (i / 2);
+      result.push_back(quarter);
     }
   }
   return result;
@@ -61,9 +66,7 @@ BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const 
     BlockSums sums = sector.features;
     sums.map = {static_cast<double>(node.map_min), static_cast<double>(node.map_max)};
     sums.map_square = {static_cast<double>(node.square_min), static_cast<double>(node.square_max)};
-    sums.cells = {turned.cells, turned.cells};
-    sums.feature = {turned.sum, turned.sum};
-    sums.feature_square_min = turned.square;
+    narrow(sums, turned);
     return sums;
   }
   SectorRun run;
@@ -75,19 +78,17 @@ BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const 
     term_sums(problem_.map, terms, node.col, node.row, values);
     return values[0] * terms.unit;
   };
-  sums.cells.max = std::min(sums.cells.max, turned.cells);
-  sums.feature = {at(turned.sum_min), std::min(turned.sum, at(turned.sum_max))};
-  sums.feature_square_min = at(turned.square_min);
+  narrow(sums, turned, {at(turned.sum_min), at(turned.sum_max), at(turned.square_min)});
   return sums;
 }
 
 std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFootprint& footprint,
-                                             std::span<const Part> parts) const {
+                                             std::span<const Part> quarters) const {
   std::vector<PlaneCell> places;
   std::vector<std::size_t> owners;
-  for (const Part& part : parts) {
-    for (int i = 0; i < kBlockCells; ++i) {
-      const PlaneCell place{part.col + i % 2, part.row + i / 2};
+  for (const Part& part : quarters) {
+    for (int i = 0; i < kQuarterCells * kQuarterCells; ++i) {
+      const PlaneCell place{part.col + i % kQuarterCells, part.row + i / kQuarterCells};
       if (!problem_.cell_eligible(place.col, place.row)) continue;
       places.push_back(place);
       owners.push_back(part.node);

@@ -1,4 +1,4 @@
-// The second half of a proof: a closer look into blocks that may hold a better pose, in halves and then cell by cell.
+// The second half of a proof: a closer look into blocks that may hold a better pose, by quarters and then cell by cell.
 #pragma once
 
 #include <atomic>
@@ -29,11 +29,11 @@ class BlockVisit {
   };
 
   std::vector<Part> parts_of(std::size_t heading, std::span<const BoundNode> nodes) const;
-  static std::vector<Part> halves(std::span<const Part> parts);
+  static std::vector<Part> quarters(std::span<const Part> parts);
   std::vector<Part> surviving(std::vector<Part> parts, const PackedFootprint& above, int side) const;
   BlockSums sums_at(std::size_t heading, const BoundNode& node) const;
   std::vector<LatticePose> best_of(std::size_t heading, const PackedFootprint& footprint,
-                                   std::span<const Part> parts) const;
+                                   std::span<const Part> quarters) const;
 
   const BoundProblem& problem_;
   const HeadingSectors& headings_;

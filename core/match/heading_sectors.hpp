@@ -25,6 +25,16 @@ struct SectorRun {
   CoveredSums inner, outer;
 };
 
+/// Sums of a feature map over those of its cells where the map is observed.
+struct PartialFeatures {
+  double sum_min = 0.0, sum_max = 0.0, square_min = 0.0;
+};
+
+/// Puts what holds for one heading in place of what holds for its sector: where all of the map under the footprint is
+/// observed, and where parts of it are not.
+void narrow(BlockSums& sums, const TurnedFeatures& turned);
+void narrow(BlockSums& sums, const TurnedFeatures& turned, const PartialFeatures& observed);
+
 class HeadingSectors {
  public:
   explicit HeadingSectors(const BoundProblem& problem) : problem_(problem) {}

@@ -103,13 +103,17 @@ std::string crs_name(const OGRSpatialReference& reference) {
   return name != nullptr ? name : "unnamed";
 }
 
-void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path) {
+bool on_old_ellipsoid(const OGRSpatialReference& reference) {
   constexpr double kWgs84M = 6378137.0;
   // GRS 80, WGS 72 and the sphere of web maps; those of older surveys differ by 69 m and more.
   constexpr double kSameM = 5.0;
   OGRErr outcome = OGRERR_NONE;
-  const double axis_m = from.GetSemiMajor(&outcome);
-  if (outcome != OGRERR_NONE || std::abs(axis_m - kWgs84M) < kSameM) return;
+  const double axis_m = reference.GetSemiMajor(&outcome);
+  return outcome == OGRERR_NONE && std::abs(axis_m - kWgs84M) >= kSameM;
+}
+
+void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path) {
+  if (!on_old_ellipsoid(from)) return;
   const GdalMessages messages;
   OGRCoordinateTransformationOptions options;
   options.SetBallparkAllowed(false);

@@ -54,6 +54,8 @@ struct DestroyTransformation {
   void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
 };
 using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation>;
+/// Whether it rests on another ellipsoid than that of WGS 84, on which the same place has other coordinates.
+bool on_old_ellipsoid(const OGRSpatialReference& reference);
 /// Throws InvalidInput "datum-unknown" where the way from one to the other is a guess, which takes places on another
 /// ellipsoid than that of WGS 84 for places on it: they lie up to some hundred metres apart. `path` is named in it.
 void require_known_datum(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& path);

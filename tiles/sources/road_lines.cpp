@@ -15,6 +15,7 @@
 
 #include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/position_error.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_layer.hpp"
 #include "tiles/sources/stray_roads.hpp"
@@ -93,6 +94,21 @@ void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialRefer
                   path, lon[0], lon[1]));
 }
 
+void add_datum_error(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
+  const std::optional<OGREnvelope> box = layer.extent_seen();
+  if (layer.lines() == 0 || !box) return;
+  const OGRSpatialReference crs = file.crs_of(layer.layer());
+  double east_m = (box->MinX + box->MaxX) / 2.0;
+  double north_m = (box->MinY + box->MaxY) / 2.0;
+  const GdalMessages messages;
+  if (!on_old_ellipsoid(crs) || layer.to_plane().Transform(1, &east_m, &north_m) == FALSE) return;
+  PositionError error = datum_error(crs, zone, zone.unproject({east_m, north_m}), path);
+  RoadNetwork& network = parts.network_of(layer);
+  if (error.sigma_m <= network.datum_sigma_m) return;
+  network.datum_sigma_m = error.sigma_m;
+  network.notes.push_back(std::move(error.reason));
+}
+
 void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
   const bool tile = vector_tile_of(path).has_value();
   if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
@@ -144,6 +160,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
     add_layer(layer, rules, path, parts);
+    add_datum_error(file, layer, path, zone, parts);
     if (options.extent.empty()) add_covered(file, layer, path, zone, parts);
   }
 }

@@ -37,6 +37,7 @@ struct RoadNetwork {
   std::vector<PlanePolygon> covered;
   std::int64_t left_out = 0;  ///< features that the rules leave out or that have no place in the zone
   std::string crs;
+  double datum_sigma_m = 0.0;      ///< see datum_error(); of the layer whose place is the least certain
   std::string class_attribute;     ///< of the first layer that has one where the rules do not name it; else empty
   std::vector<std::string> notes;  ///< what was assumed, for the user to read: one for each layer name
 };

@@ -216,6 +216,18 @@ TEST(Imagery, IsAsUncertainAsItsControlPointsContradictEachOther) {
   EXPECT_THAT(off.notes, ::testing::ElementsAre(::testing::HasSubstr("its 9 control points contradict each other")));
 }
 
+TEST(Imagery, IsAsUncertainAsTheWayFromItsDatum) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto sigma_m = [&](int epsg) {
+    const RasterSpec spec{.epsg = epsg, .transform = {{300000.0, 1.0, 0.0, 6350000.0, 0.0, -1.0}}};
+    const std::string path = write_raster(folder / "a.tif", spec, [](int, int col, int) { return 3 * col; });
+    return open_imagery({path}, {}, *UtmZone::from_epsg(32719), 2.0, detector)->summary().registration_sigma_m;
+  };
+  EXPECT_EQ(sigma_m(24879), 20.0) << "PSAD56";
+  EXPECT_EQ(sigma_m(31979), 2.0) << "SIRGAS 2000";
+}
+
 TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
   const testing::TemporaryFolder folder;
   const auto note = [&](GDALDataType type, const testing::PixelFunction& value) {

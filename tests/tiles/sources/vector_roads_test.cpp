@@ -100,6 +100,25 @@ TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
   EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, options); }), "datum-unknown");
 }
 
+TEST_F(VectorRoads, AreAsUncertainAsTheWayFromTheirDatum) {
+  // Chile in PSAD56, of which the registry states 20 m; Turkey in ED50, 2 m.
+  const auto summary_of = [&](const char* crs, double lon, double lat, int zone) {
+    const std::string path = (folder / "roads.geojson").string();
+    std::ofstream(path) << fmt::format(
+        R"({{"type":"Feature","properties":{{"highway":"primary"}},"geometry":{{"type":"LineString",)"
+        R"("coordinates":[[{0},{1}],[{2},{1}]]}}}})",
+        lon, lat, lon + 0.01);
+    VectorOptions options;
+    options.crs = crs;
+    return open_road_vectors({path}, options, RoadRules(), *UtmZone::from_epsg(zone), 2.0)->summary();
+  };
+  const SourceSummary rough = summary_of("EPSG:4248", -72.0, -33.0, 32718);
+  EXPECT_EQ(rough.registration_sigma_m, 20.0);
+  EXPECT_THAT(rough.notes, ::testing::Contains(::testing::HasSubstr("known to 20 m only")));
+  EXPECT_EQ(summary_of("EPSG:4230", 38.0, 37.8, 32637).registration_sigma_m, 4.0);
+  EXPECT_EQ(summary_of("+proj=longlat +ellps=intl +towgs84=-87,-98,-121", 38.0, 37.8, 32637).registration_sigma_m, 4.0);
+}
+
 TEST_F(VectorRoads, OfAReferenceSystemThatNobodyKnowsAreNotTakenForWgs84) {
   const std::string road = feature(R"("highway":"primary")", at(-50, -50), at(50, 50));
   for (const std::string name : {"urn:ogc:def:crs:EPSG::999999", "EPSG:42 30"}) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace roadfix {
 namespace {
@@ -53,17 +52,23 @@ ScanRequest SearchScan::request() const {
   return request;
 }
 
+/// The map below footprints of any scale at these positions.
+std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positions) const {
+  const Level& coarse = levels_.coarse();
+  const int reach = coarse.reach(coarse.scales.reach());
+  const GridGeometry window = padded(positions, reach);
+  const int block = scan_block(coarse.features.map);
+  // Its cells are means of the finest ones, which are not as fine in every search.
+  return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.coarsest()},
+                               [&] { return ScanMap(coarse.read(window), reach, block); });
+}
+
 std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, SearchResult& result) const {
   const Level& coarse = levels_.coarse();
   const ScanRequest asked = request();
   const int largest = coarse.scales.reach();
-  const int reach = coarse.reach(largest);
-  const GridGeometry& positions = asked.positions;
-  const GridGeometry window = padded(positions, reach);
-  const int block = scan_block(coarse.features.map);
-  // Its cells are means of the finest ones, which are not as fine in every search.
-  const auto map = get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.coarsest()},
-                                         [&] { return ScanMap(coarse.read(window), reach, block); });
+  const LatticeIndex origin = asked.positions.origin;
+  const std::shared_ptr<const ScanMap> map = map_below(asked.positions);
   const Deadline end = deadline.after(kScanTimeShare);
   std::vector<LatticePose> inside;
   std::vector<LatticePose> outside;
@@ -76,10 +81,8 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
     result.background.poses += found.poses;
     squares += found.score_square_sum;
     for (const ScanPose& pose : found.maxima) {
-      const LatticePose lattice{{positions.origin.col + pose.col, positions.origin.row + pose.row},
-                                pose.bin,
-                                static_cast<double>(pose.score),
-                                scale};
+      const LatticePose lattice{
+          {origin.col + pose.col, origin.row + pose.row}, pose.bin, static_cast<double>(pose.score), scale};
       (levels_.within_region(coarse, lattice) ? inside : outside).push_back(lattice);
     }
   }

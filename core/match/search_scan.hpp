@@ -2,6 +2,7 @@
 // level.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/match/coarse_scan.hpp"
@@ -24,6 +25,7 @@ class SearchScan {
  private:
   PoseRegion enlarged() const;
   ScanRequest request() const;
+  std::shared_ptr<const ScanMap> map_below(const GridGeometry& positions) const;
 
   const SearchLevels& levels_;
   const SearchOptions& options_;

@@ -99,7 +99,11 @@ MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& f
 }
 
 CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
-  command.add_option("SOURCE", a.sources, "Files, or folders of images or vector files (one source each)")->required();
+  command
+      .add_option("SOURCE", a.sources,
+                  "Files, or folders of images or vector files (one source each; where images of a folder overlap, the "
+                  "first by name is used)")
+      ->required();
   command.add_option("--map", a.map, "The map file to create or extend")->required();
   CLI::Option* cell =
       command.add_option("--cell", a.cell_m, "Cell size of a new map: 0.25, 0.5, 1, 2, 4, 8 or 16 m; default: 2");

@@ -23,7 +23,8 @@ Polyline across(const Plan& plan, const Course& course, Random& random) {
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
   const PlanPoint along(std::cos(angle), std::sin(angle));
   const PlanPoint side = perpendicular(along);
-  const PlanPoint through(plan.width_m * random.uniform(0.15, 0.85), plan.height_m * random.uniform(0.15, 0.85));
+  const PlanPoint through =
+      any_point({0.15 * plan.width_m, 0.15 * plan.height_m, 0.7 * plan.width_m, 0.7 * plan.height_m}, random);
   const double reach = std::hypot(plan.width_m, plan.height_m);
   const double phase = random.uniform(0.0, 6.3);
   Polyline line;
@@ -71,9 +72,10 @@ void dig_ponds(Plan& plan, Random& random) {
   Corridor roads(plan);
   roads.add(plan.streets, 8.0);
   roads.add(plan.country.railway, 16.0);
-  const int count = static_cast<int>(plan.square_km() * random.uniform(0.0, 6.0) + random.unit());
+  const double expected = plan.square_km() * random.uniform(0.0, 6.0);
+  const int count = static_cast<int>(expected + random.unit());
   for (int i = 0; i < count; ++i) {
-    const PlanPoint at(random.uniform(0.0, plan.width_m), random.uniform(0.0, plan.height_m));
+    const PlanPoint at = any_point({0.0, 0.0, plan.width_m, plan.height_m}, random);
     Polyline pond = blob(at, random.uniform(6.0, 38.0), random);
     Polyline rim = pond;
     rim.push_back(pond.front());

@@ -37,8 +37,9 @@ void fell_trees(Plan& plan, double share, Random& random) {
 
 void slide(Plan& plan, Random& random) {
   const Street& street = plan.streets[random.index(plan.streets.size())];
-  const PlanPoint off(random.normal() * 6.0, random.normal() * 6.0);
-  Slide slide{blob(street.line[random.index(street.line.size())] + off, random.uniform(5.0, 22.0), random),
+  const PlanPoint off = offset(6.0, 6.0, random);
+  const double radius_m = random.uniform(5.0, 22.0);
+  Slide slide{blob(street.line[random.index(street.line.size())] + off, radius_m, random),
               palette::varied(plan.country.soil, 0.15, random), random.bits()};
   const std::vector<cv::Point2f> outline(slide.outline.begin(), slide.outline.end());
   std::erase_if(plan.trees, [&](const Tree& tree) {

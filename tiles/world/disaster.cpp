@@ -5,6 +5,7 @@
 
 #include "tiles/world/furnishing.hpp"
 #include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -48,7 +49,8 @@ void pitch_tents(Plan& plan, const Site& site, int number, const Block& block, R
   const int across = random.integer(2, 6);
   for (int i = 0; i < along; ++i) {
     for (int j = 0; j < across; ++j) {
-      const PlanPoint at = camp.at(i * 7.5 + 0.4 * random.normal(), j * 9.5 + 0.4 * random.normal());
+      const PlanPoint off = offset(0.4, 0.4, random);
+      const PlanPoint at = camp.at(i * 7.5 + off.x, j * 9.5 + off.y);
       const Footprint tent{at, camp.angle_rad + 0.05 * random.normal(), 4.2, 5.6};
       if (random.chance(0.88) && site.has_room(tent, number)) {
         plan.boxes.push_back({tent, 2.2, palette::varied(cloth, 0.05, random)});
@@ -73,7 +75,7 @@ void collapse(Plan& plan, double share, Random& random) {
     const double spill = std::min(9.0, 0.35 * building.height_m) * random.uniform(0.5, 1.2);
     spread.length_m += spill;
     spread.width_m += spill;
-    spread.centre += PlanPoint(random.normal(), random.normal()) * (spill * 0.25);
+    spread.centre += offset(spill * 0.25, spill * 0.25, random);
     spread.angle_rad += 0.1 * random.normal();
     plan.debris.push_back({spread, 1.0 + 0.16 * building.height_m, random.bits()});
   }

@@ -52,7 +52,7 @@ class Settler {
     Street drive = unpaved(random_);
     drive.road_class = "service";
     if (random_.chance(0.3)) drive.surface = Surface::kAsphalt;
-    const PlanPoint bend = (gate + yard.centre) / 2.0 + PlanPoint(random_.normal(), random_.normal()) * 3.0;
+    const PlanPoint bend = (gate + yard.centre) / 2.0 + offset(3.0, 3.0, random_);
     for (int i = 0; i <= 8; ++i) {
       const double t = i / 8.0;
       drive.line.push_back(gate * ((1 - t) * (1 - t)) + bend * (2 * t * (1 - t)) + yard.centre * (t * t));
@@ -63,11 +63,12 @@ class Settler {
 
   void add_building(const Footprint& yard) {
     const bool barn = random_.chance(0.5);
-    const double angle = yard.angle_rad + (random_.chance(0.5) ? 1.5707963 : 0.0) + 0.04 * random_.normal();
-    const Footprint footprint{
-        yard.at(random_.uniform(-0.7, 0.7) * yard.length_m, random_.uniform(-0.8, 0.8) * yard.width_m), angle,
-        barn ? random_.uniform(14.0, 34.0) : random_.uniform(8.0, 15.0),
-        barn ? random_.uniform(9.0, 15.0) : random_.uniform(7.0, 10.0)};
+    const double side = yard.angle_rad + (random_.chance(0.5) ? 1.5707963 : 0.0);
+    const double angle = side + 0.04 * random_.normal();
+    const double across_m = random_.uniform(-0.8, 0.8) * yard.width_m;
+    const Footprint footprint{yard.at(random_.uniform(-0.7, 0.7) * yard.length_m, across_m), angle,
+                              barn ? random_.uniform(14.0, 34.0) : random_.uniform(8.0, 15.0),
+                              barn ? random_.uniform(9.0, 15.0) : random_.uniform(7.0, 10.0)};
     if (!is_free(footprint)) return;
     taken_.add_area(footprint.corners(2.5));
     Building building{.footprint = footprint,
@@ -131,7 +132,7 @@ std::vector<Box> country_traffic(const Plan& plan, Random& random) {
   for (const Block& yard : plan.blocks) {
     const int count = random.integer(0, 4);
     for (int i = 0; i < count; ++i) {
-      const PlanPoint off(random.normal() * 6.0, random.normal() * 5.0);
+      const PlanPoint off = offset(6.0, 5.0, random);
       put(middle_of(yard.outline) + off, random.uniform(0.0, 3.1));
     }
   }

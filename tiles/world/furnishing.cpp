@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -49,7 +50,7 @@ class Gardener {
     const double box_m2 = (east.x - west.x) * (south.y - north.y);
     const int count = static_cast<int>(box_m2 / 1000.0 * clumps_per_1000_m2(block.use) + random_.unit());
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at(random_.uniform(west.x, east.x), random_.uniform(north.y, south.y));
+      const PlanPoint at = any_point({west.x, north.y, east.x - west.x, south.y - north.y}, random_);
       if (site_.block_at(at) == number) clump(number, at);
     }
   }
@@ -63,7 +64,8 @@ class Gardener {
     const Footprint grid{{(west.x + east.x) / 2.0, (north.y + south.y) / 2.0}, angle, 0.0, 0.0};
     for (double u = -reach; u < reach; u += spacing) {
       for (double v = -reach; v < reach; v += spacing) {
-        const PlanPoint at = grid.at(u + 0.4 * random_.normal(), v + 0.4 * random_.normal());
+        const PlanPoint off = offset(0.4, 0.4, random_);
+        const PlanPoint at = grid.at(u + off.x, v + off.y);
         if (random_.chance(0.92) && site_.block_at(at) == number) tree(at, random_.uniform(1.3, 2.3));
       }
     }
@@ -85,7 +87,7 @@ class Gardener {
   void clump(int number, PlanPoint centre) {
     const int count = random_.integer(1, 5);
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at = centre + PlanPoint(random_.normal(), random_.normal()) * 3.0;
+      const PlanPoint at = centre + offset(3.0, 3.0, random_);
       if (site_.is_free(at) && site_.block_at(at) == number) tree(at, random_.uniform(1.4, 3.4));
     }
   }

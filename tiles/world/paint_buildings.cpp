@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tiles/world/palette.hpp"
+#include "tiles/world/polygon.hpp"
 #include "tiles/world/random.hpp"
 
 namespace roadfix::world {
@@ -78,13 +79,17 @@ class BuildingPainter {
     const double b = roof_.width_m / 2.0 - 1.2;
     if (random_.chance(0.6)) {  // a part that was sealed anew
       const double share = random_.uniform(0.3, 0.6);
-      detail(random_.chance(0.5) ? a * (1.0 - share) : -a * (1.0 - share), 0.0, 2.0 * a * share, 2.0 * b,
-             building_.roof_colour * random_.uniform(0.82, 1.12), 0.0);
+      const Colour tone = building_.roof_colour * random_.uniform(0.82, 1.12);
+      const double end = random_.chance(0.5) ? a : -a;
+      detail(end * (1.0 - share), 0.0, 2.0 * a * share, 2.0 * b, tone, 0.0);
     }
     const int heads = random_.integer(1, building_.footprint.length_m > 18.0 ? 3 : 1);
     for (int i = 0; i < heads; ++i) {  // stairs and lifts
-      detail(random_.uniform(-a, a) * 0.7, random_.uniform(-b, b) * 0.6, random_.uniform(2.2, 4.0),
-             random_.uniform(2.0, 3.2), building_.roof_colour * random_.uniform(0.9, 1.1), 2.4);
+      const Colour tone = building_.roof_colour * random_.uniform(0.9, 1.1);
+      const double width_m = random_.uniform(2.0, 3.2);
+      const double length_m = random_.uniform(2.2, 4.0);
+      const PlanPoint at = any_point({-0.7 * a, -0.6 * b, 1.4 * a, 1.2 * b}, random_);
+      detail(at.x, at.y, length_m, width_m, tone, 2.4);
     }
     const int heaters = random_.integer(0, static_cast<int>(roof_.length_m * roof_.width_m / 28.0));
     for (int i = 0; i < heaters; ++i) {  // solar water heaters: a dark panel, a white tank

@@ -18,9 +18,10 @@ void paint_slides(Canvas& canvas, const Countryside& country) {
     canvas.fill(slide.outline, slide.colour, Material::kRubble);
     const int stones = static_cast<int>(box.area() / kStoneM2);
     for (int i = 0; i < stones; ++i) {
-      const PlanPoint at = middle + PlanPoint(random.normal() * box.width, random.normal() * box.height) * 0.24;
+      const PlanPoint at = middle + offset(0.24 * box.width, 0.24 * box.height, random);
       const Polyline clod = blob(at, random.uniform(0.4, 2.6), random);
-      canvas.fill(clod, slide.colour * random.uniform(0.7, 1.25), Material::kRubble, random.uniform(0.2, 1.6));
+      const double height_m = random.uniform(0.2, 1.6);
+      canvas.fill(clod, slide.colour * random.uniform(0.7, 1.25), Material::kRubble, height_m);
     }
   }
 }
@@ -37,9 +38,10 @@ void paint_logs(Canvas& canvas, const Countryside& country, const Conditions& co
     for (int i = 0; i < tufts; ++i) {
       const double along = random.uniform(0.4, 1.0);
       const double wide = log.crown_m * 0.75 * (1.25 - along);
-      const PlanPoint at = log.foot + way * along + PlanPoint(random.normal(), random.normal()) * wide;
-      canvas.disc(at, random.uniform(0.3, 0.9), leaf * random.uniform(0.7, 1.3), Material::kLeaves,
-                  random.uniform(0.5, 2.0));
+      const PlanPoint at = log.foot + way * along + offset(wide, wide, random);
+      const double height_m = random.uniform(0.5, 2.0);
+      const Colour tone = leaf * random.uniform(0.7, 1.3);
+      canvas.disc(at, random.uniform(0.3, 0.9), tone, Material::kLeaves, height_m);
     }
     canvas.stroke({log.foot, log.foot + way * 0.8}, kTrunkM, Colour(128, 112, 92) * random.uniform(0.75, 1.2),
                   Material::kBare);

@@ -107,7 +107,7 @@ class ParcelPainter {
     const auto within = [&](const PlanPoint& p) { return cv::pointPolygonTest(outline, p, false) > 0.0; };
     const int count = static_cast<int>(box.area() / m2_each);
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at(box.x + box.width * random_.unit(), box.y + box.height * random_.unit());
+      const PlanPoint at = any_point(box, random_);
       const Polyline patch = blob(at, random_.uniform(1.5, 7.0), random_);
       const double share = strength * random_.uniform(0.0, 0.6);
       const Colour tone = random_.chance(0.6) ? soil_ : colour_ * 0.6;

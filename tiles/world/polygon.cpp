@@ -77,6 +77,16 @@ std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, 
   return result;
 }
 
+PlanPoint any_point(const cv::Rect2d& box, Random& random) {
+  const double y = box.y + box.height * random.unit();
+  return {box.x + box.width * random.unit(), y};
+}
+
+PlanPoint offset(double sigma_x_m, double sigma_y_m, Random& random) {
+  const double y = sigma_y_m * random.normal();
+  return {sigma_x_m * random.normal(), y};
+}
+
 Polyline blob(PlanPoint centre, double radius_m, Random& random) {
   constexpr int kCorners = 28;
   constexpr double kTau = 2.0 * std::numbers::pi;

@@ -29,6 +29,10 @@ Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along);
 /// Pieces of that line that lie in the polygon, which need not be convex.
 std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, PlanPoint point, PlanPoint along);
 
+/// Uniform over the box.
+PlanPoint any_point(const cv::Rect2d& box, Random& random);
+/// Normally distributed around 0 with these standard deviations.
+PlanPoint offset(double sigma_x_m, double sigma_y_m, Random& random);
 /// A round shape with an uneven rim.
 Polyline blob(PlanPoint centre, double radius_m, Random& random);
 

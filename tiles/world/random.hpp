@@ -1,4 +1,5 @@
-// Random numbers that come out equal with every standard library: worlds of the same seed are the same bytes.
+// Random numbers that come out equal with every standard library and compiler: worlds of the same seed are the same. So
+// no call has two draws among its arguments, whose order is the compiler's; in braces they come as they stand.
 #pragma once
 
 #include <cstddef>

@@ -153,7 +153,7 @@ class Forester {
     const std::vector<cv::Point2f> outline(parcel.outline.begin(), parcel.outline.end());
     const int count = static_cast<int>(box.area() / m2_each + random_.unit());
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at(box.x + box.width * random_.unit(), box.y + box.height * random_.unit());
+      const PlanPoint at = any_point(box, random_);
       if (cv::pointPolygonTest(outline, at, false) > 0.0) tree(stand, at);
     }
   }
@@ -167,9 +167,8 @@ class Forester {
     const double reach = std::hypot(box_of(parcel.outline).width, box_of(parcel.outline).height);
     for (double across = -reach; across < reach; across += spacing) {
       for (const auto& [from, to] : stretches(parcel.outline, middle + side * across, along)) {
-        walk({from, to}, random_.uniform(0.0, jitter > 0.2 ? spacing : 0.5), spacing, [&](PlanPoint p, PlanPoint) {
-          visit(p + PlanPoint(random_.normal(), random_.normal()) * (spacing * jitter));
-        });
+        walk({from, to}, random_.uniform(0.0, jitter > 0.2 ? spacing : 0.5), spacing,
+             [&](PlanPoint p, PlanPoint) { visit(p + offset(spacing * jitter, spacing * jitter, random_)); });
       }
     }
   }

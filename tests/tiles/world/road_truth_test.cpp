@@ -5,11 +5,17 @@
 namespace roadfix::world {
 namespace {
 
+/// Points on the rim come out a rounding beside it on some processors.
+void expect_line(const Polyline& line, const Polyline& expected) {
+  ASSERT_EQ(line.size(), expected.size());
+  for (std::size_t i = 0; i < line.size(); ++i) EXPECT_LT(cv::norm(line[i] - expected[i]), 1e-9) << "point " << i;
+}
+
 TEST(RoadTruth, CutsLinesAtTheRimOfThePicture) {
   const auto parts = clipped({{-10, 5}, {5, 5}, {5, 30}, {8, 30}, {8, 5}, {9, 6}}, 20, 10);
   ASSERT_EQ(parts.size(), 2U);
-  EXPECT_EQ(parts[0], (Polyline{{0, 5}, {5, 5}, {5, 10}}));
-  EXPECT_EQ(parts[1], (Polyline{{8, 10}, {8, 5}, {9, 6}}));
+  expect_line(parts[0], {{0, 5}, {5, 5}, {5, 10}});
+  expect_line(parts[1], {{8, 10}, {8, 5}, {9, 6}});
 }
 
 TEST(RoadTruth, LeavesOutLinesThatPassThePictureBy) {

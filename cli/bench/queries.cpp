@@ -79,7 +79,9 @@ int number_of(int wanted, const QueryDrawing& drawing) {
 }
 
 std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
-  const Orthoimage ortho = read_orthoimage(set.path.string(), map.zone);
+  // Ground that is not on the map may lie anywhere on Earth.
+  const UtmZone zone = set.elsewhere ? zone_of_image(set.path.string()) : map.zone;
+  const Orthoimage ortho = read_orthoimage(set.path.string(), zone);
   const RoadGrid grid = whole(map);
   const Observed in_imagery = seen_by(ortho);
   const Observed in_map = set.elsewhere ? Observed([](GridPoint) { return true; }) : seen_by(grid);
@@ -153,7 +155,8 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
     query.picture = picture_of(frame, set);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position), set,
                                map.zone, random);
-    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, map.zone);
+    const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
+    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone);
     queries.push_back(std::move(query));
   }
   return queries;

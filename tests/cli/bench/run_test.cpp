@@ -178,6 +178,25 @@ TEST_F(BenchRun, CountsEveryFixOfGroundThatIsNotOnTheMapAsFalse) {
   EXPECT_EQ(summary_of(results[1].outcomes).recall_5, 1.0);
 }
 
+TEST_F(BenchRun, AsksImageryAndFramesOfAnotherContinentThatAreElsewhere) {
+  std::filesystem::copy_file(folder / "town.png", folder / "far.png");
+  std::filesystem::copy_file(folder / "town.pgw", folder / "far.pgw");
+  std::ofstream(folder / "far.png.aux.xml") << "<PAMDataset><SRS>EPSG:32721</SRS></PAMDataset>";
+  std::ofstream(folder / "far.csv") << "sequence,file,lat,lon,heading_deg,gsd_m\n"
+                                       "a,frame.png,-34.9,-56.2,0,1\na,frame.png,-34.9,-56.2,0,1\n";
+  const auto results = run(R"({"map": "town", "image": "far.png", "count": 2, "footprint_m": [300, 300],
+                               "elsewhere": true},
+                              {"map": "town", "frames": "far.csv", "together": 2, "elsewhere": true})",
+                           R"("roads")");
+  ASSERT_EQ(results.size(), 2u);
+  for (const SetResult& result : results) {
+    const Summary s = summary_of(result.outcomes);
+    EXPECT_EQ(s.n, 2) << result.query_set;
+    EXPECT_GT(s.answered, 0) << result.query_set;  // it is the picture of the town, wherever it is said to be
+    EXPECT_EQ(s.false_fixes, s.answered) << result.query_set;
+  }
+}
+
 TEST_F(BenchRun, RefusesToLookForAPlaceOfAnotherZone) {
   const Manifest manifest = parse_manifest(R"({
     "maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}]},

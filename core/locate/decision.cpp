@@ -59,7 +59,21 @@ void explain(Decision& decision, const char* reason, std::string explanation) {
   decision.explanation = std::move(explanation);
 }
 
-void call_ambiguous(Decision& decision, const std::vector<double>& posterior, double confidence) {
+std::string below_confidence(double probability, const Calibration& calibration, double confidence) {
+  if (confidence > calibration.highest) {
+    return fmt::format(
+        "the roads fit best at one place (probability {:.3f}), but the calibration vouches for no more than {:.4f} and "
+        "a confidence of {} was asked for: ask for less, or learn a calibration from more queries",
+        probability, calibration.highest, confidence);
+  }
+  return fmt::format(
+      "the roads fit best at one place, but its probability ({:.3f}) is below the confidence asked for ({}): use a "
+      "larger footprint or a narrower prior, or fly on and ask again",
+      probability, confidence);
+}
+
+void call_ambiguous(Decision& decision, const std::vector<double>& posterior, const Calibration& calibration,
+                    double confidence) {
   const auto alike =
       std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
   decision.status = FixStatus::kAmbiguous;
@@ -71,10 +85,7 @@ void call_ambiguous(Decision& decision, const std::vector<double>& posterior, do
             "the roads fit about equally well at {} places: narrow the prior, give a heading, or fly on and ask again",
             alike));
   } else {
-    explain(decision, "below-confidence",
-            fmt::format("the roads fit best at one place, but its probability ({:.3f}) is below the confidence asked "
-                        "for ({}): use a larger footprint or a narrower prior, or fly on and ask again",
-                        decision.probability, confidence));
+    explain(decision, "below-confidence", below_confidence(decision.probability, calibration, confidence));
   }
 }
 
@@ -112,7 +123,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   } else if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
-    call_ambiguous(decision, posterior, confidence);
+    call_ambiguous(decision, posterior, calibration, confidence);
   } else {
     explain(decision, kNotAboveChanceReason,
             "the best place fits no better than chance allows among so many places: use a larger footprint or a "

@@ -20,8 +20,12 @@ constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
 constexpr double kProofCellM = 4.0;       // roads are hardly wider
 constexpr int kProofFootprintCells = 64;  // likewise at least, where a proof is given in coarser cells than the map's
 
-constexpr std::size_t kCandidates = 256;          // followed from the coarse level, or from 8 m
-constexpr std::size_t kCandidatesOfLarge = 4096;  // followed from coarser cells
+// Followed from the coarse level. What is known of chance comes from the places that are followed: where they are few
+// for the ground, the one of them that happens to fit looks as if no other did.
+constexpr double kCandidatesPerKm2 = 32.0;
+constexpr double kFewestCandidates = 256.0;
+constexpr double kMostCandidates = 4096.0;
+constexpr std::size_t kCandidatesAfterCoarser = 1024;  // from 8 m, where the scan was coarser
 
 int coarse_level(double finest_cell_m, double side_m, const PoseRegion& region) {
   const bool large = region.area_km2() >= kLargeKm2;
@@ -55,8 +59,12 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
 
 std::size_t SearchLevels::followed(int index) const {
   const double cell_m = at(index).cell_m();
-  if (cell_m > kCoarsestCellM) return kCandidatesOfLarge;
-  return index == coarsest() || cell_m == kCoarsestCellM ? kCandidates : kSurvivors;
+  if (index == coarsest()) {
+    if (cell_m > kCoarsestCellM) return static_cast<std::size_t>(kMostCandidates);
+    return static_cast<std::size_t>(
+        std::clamp(kCandidatesPerKm2 * region_.area_km2(), kFewestCandidates, kMostCandidates));
+  }
+  return cell_m == kCoarsestCellM ? kCandidatesAfterCoarser : kSurvivors;
 }
 
 int SearchLevels::proof_level() const {

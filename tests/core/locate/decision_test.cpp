@@ -58,6 +58,7 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   const Decision decision = decide(result, default_calibration(), 0.9999);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "below-confidence");
+  EXPECT_NE(decision.explanation.find("vouches for no more than 0.9959"), std::string::npos) << decision.explanation;
   EXPECT_EQ(decision.weights.size(), 1U);
 }
 

@@ -104,7 +104,7 @@ PostedStep read_step(const Service& service, const http::Request& request) {
   return {std::move(track), std::move(content), format, std::move(input)};
 }
 
-http::Response take_step(const Service& service, const http::Request& request, PostedStep step) {
+http::Response take_step(const Service& service, const http::Request& request, PostedStep& step) {
   auto& [track, content, format, input] = step;
   const std::int64_t digest = digest_of(request);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
@@ -132,8 +132,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
 std::function<http::Response()> post_step(const Service& service, const http::Request& request) {
   PostedStep step = read_step(service, request);
   service.tracks.await_predecessor(step.track.id, step.input.sequence);
-  return
-      [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, std::move(step)); };
+  return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };
 }
 
 http::Response list_tracks(const Service& service, const http::Request& request) {

@@ -158,6 +158,16 @@ void parse_footprint_and_count(const Field& field, QuerySet& set) {
   set.count = static_cast<int>(field.at("count").whole_number(1.0, kMaxCount));
 }
 
+void parse_prior(const Field& field, QuerySet& set) {
+  if (!field.is_object()) {
+    field.one_of({"map"});
+    return;
+  }
+  field.allow_only({"radius_m", "beyond_m"});
+  set.prior_radius_m = field.at("radius_m").number(1.0, 1e6);
+  if (field.has("beyond_m")) set.prior_beyond_m = field.at("beyond_m").number(0.0, 1e6);
+}
+
 QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
   field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved", "from",
                     "elsewhere", "together"});
@@ -192,12 +202,7 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
     if (set.kind != QuerySet::Kind::kFrames) field.at("together").refuse("needs 'frames'");
     set.together = static_cast<int>(field.at("together").whole_number(1.0, 64.0));
   }
-  if (field.has("prior") && field.at("prior").is_object()) {
-    field.at("prior").allow_only({"radius_m"});
-    set.prior_radius_m = field.at("prior").at("radius_m").number(1.0, 1e6);
-  } else if (field.has("prior")) {
-    field.at("prior").one_of({"map"});
-  }
+  if (field.has("prior")) parse_prior(field.at("prior"), set);
   return set;
 }
 

@@ -53,6 +53,7 @@ struct QuerySet {
   bool black_is_unobserved = false;
   int together = 1;  ///< each frame with so many less one of its sequence before it, laid together by their true poses
   std::optional<double> prior_radius_m;  ///< nullopt = the whole map
+  std::optional<double> prior_beyond_m;  ///< the truth is so far outside of that circle; nullopt = it is inside
 };
 
 struct Manifest {

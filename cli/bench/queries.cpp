@@ -37,8 +37,9 @@ GridPoint anywhere_on(const MapView& map, Random& random) {
 
 Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& zone, Random& random) {
   if (!set.prior_radius_m) return {};
-  // Uniform over the disc, so that the truth is anywhere in the circle that is told.
-  const double radius = *set.prior_radius_m * std::sqrt(uniform(random, 0.0, 1.0));
+  // Uniform over the disc, so that the truth is anywhere in the circle that is told; or outside of it.
+  const double within = *set.prior_radius_m * std::sqrt(uniform(random, 0.0, 1.0));
+  const double radius = set.prior_beyond_m ? *set.prior_radius_m + *set.prior_beyond_m : within;
   const double direction = uniform(random, 0.0, 2.0 * std::numbers::pi);
   const GridPoint centre{truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
   return {.circle = GeoCircle{zone.unproject(centre), *set.prior_radius_m}, .box = {}, .heading = {}};

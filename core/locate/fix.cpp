@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/grid/resample.hpp"
+#include "core/locate/beyond_prior.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/ellipse.hpp"
@@ -132,11 +133,20 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
       return fix;
     }
   }
-  const SearchResult found = search(compared_cells(map, cells.cell_m), cells.cell_m, compared, region,
-                                    search_options_of(options, map, started));
+  const auto search_in = [&](const PoseRegion& where) {
+    return search(compared_cells(map, cells.cell_m), cells.cell_m, compared, where,
+                  search_options_of(options, map, started));
+  };
+  const SearchResult found = search_in(region);
 
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   Decision decision = decide(found, calibration, options.confidence);
+  if (decision.status == FixStatus::kFix) {
+    const SearchMode& best = found.modes.front();
+    if (const auto near = ground_beyond(region, best.pose, compared)) {
+      decision = confirmed(std::move(decision), found, region, search_in(*near));
+    }
+  }
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);
   fix.explanation = std::move(decision.explanation);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/grid/resample.hpp"
+#include "core/locate/decision.hpp"
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/tracker_step.hpp"
 
@@ -22,7 +23,8 @@ bool is_beside(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
   constexpr double kMinShare = 0.01;  // of the best mode's weight
   constexpr double kNearM = 15.0;
   constexpr double kSigmas = 2.0;
-  if (fix.status == FixStatus::kNoFix || fix.probability < kMinProbability) return false;
+  const bool sure = fix.status != FixStatus::kNoFix && fix.probability >= kMinProbability;
+  if (!sure && fix.reason != kBetterOutsideReason) return false;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
   return std::ranges::none_of(fix.modes, [&](const FixMode& mode) {
     return mode.weight >= kMinShare * fix.modes.front().weight &&

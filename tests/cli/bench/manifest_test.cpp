@@ -30,6 +30,7 @@ TEST(Manifest, ReadsAllThreeKindsOfQueries) {
   EXPECT_TRUE(manifest.queries[1].black_is_unobserved);
   EXPECT_EQ(manifest.queries[2].kind, QuerySet::Kind::kSimulated);
   EXPECT_EQ(manifest.queries[2].prior_radius_m, 500);
+  EXPECT_FALSE(manifest.queries[2].prior_beyond_m);
 }
 
 TEST(Manifest, WithoutMethodsAsksForRoads) {
@@ -64,6 +65,11 @@ std::string with(const std::string& from, const std::string& to) {
   std::string text = kManifest;
   text.replace(text.find(from), from.size(), to);
   return text;
+}
+
+TEST(Manifest, ReadsThatAPriorIsWrong) {
+  const Manifest manifest = parse_manifest(with(R"({"radius_m": 500})", R"({"radius_m": 500, "beyond_m": 30})"), ".");
+  EXPECT_EQ(manifest.queries[2].prior_beyond_m, 30);
 }
 
 void expect_complaint(const std::string& text, const std::string& part) {

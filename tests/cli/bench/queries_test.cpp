@@ -1,0 +1,33 @@
+#include "cli/bench/queries.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/map_view.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+double from_the_centre_of_the_prior_m(const Query& query, const UtmZone& zone) {
+  return distance_m(zone.project(query.prior.circle.value().centre), zone.project(query.truth.value().position));
+}
+
+TEST(Queries, TellACircleThatHoldsTheTruthOrOneThatItLiesSoFarBeyond) {
+  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
+  QuerySet set;
+  set.kind = QuerySet::Kind::kSimulated;
+  set.count = 20;
+  set.footprint = {200.0, 200.0};
+  set.prior_radius_m = 100.0;
+  for (const Query& query : make_queries(set, map, map, {})) {
+    EXPECT_LE(from_the_centre_of_the_prior_m(query, map.zone), 100.0);
+  }
+  set.prior_beyond_m = 30.0;
+  for (const Query& query : make_queries(set, map, map, {})) {
+    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map.zone), 130.0, 0.01);
+    EXPECT_EQ(query.prior.circle->radius_m, 100.0);
+  }
+}
+
+}  // namespace
+}  // namespace roadfix::bench

@@ -38,6 +38,9 @@ double variance_of(const CellArray& cells) {
 // holds.
 constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
+// A probability says the same whatever confidence is asked for: what may lower it is looked at from here on.
+constexpr double kLikely = 0.5;
+
 struct Refusal {
   const char* reason;
   std::string explanation;
@@ -141,7 +144,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
 
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   Decision decision = decide(found, calibration, options.confidence);
-  if (decision.status == FixStatus::kFix) {
+  if (decision.status == FixStatus::kFix || decision.probability > kLikely) {
     const SearchMode& best = found.modes.front();
     if (const auto near = ground_beyond(region, best.pose, compared)) {
       decision = confirmed(std::move(decision), found, region, search_in(*near));

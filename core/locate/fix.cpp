@@ -144,7 +144,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
 
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   Decision decision = decide(found, calibration, options.confidence);
-  if (decision.status == FixStatus::kFix || decision.probability > kLikely) {
+  if (options.looks_beyond_prior && (decision.status == FixStatus::kFix || decision.probability > kLikely)) {
     const SearchMode& best = found.modes.front();
     if (const auto near = ground_beyond(region, best.pose, compared)) {
       decision = confirmed(std::move(decision), found, region, search_in(*near));

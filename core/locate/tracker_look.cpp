@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/grid/resample.hpp"
-#include "core/locate/decision.hpp"
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/tracker_step.hpp"
 
@@ -23,8 +22,7 @@ bool is_beside(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
   constexpr double kMinShare = 0.01;  // of the best mode's weight
   constexpr double kNearM = 15.0;
   constexpr double kSigmas = 2.0;
-  const bool sure = fix.status != FixStatus::kNoFix && fix.probability >= kMinProbability;
-  if (!sure && fix.reason != kBetterOutsideReason) return false;
+  if (fix.status == FixStatus::kNoFix || fix.probability < kMinProbability) return false;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
   return std::ranges::none_of(fix.modes, [&](const FixMode& mode) {
     return mode.weight >= kMinShare * fix.modes.front().weight &&
@@ -48,7 +46,7 @@ void Tracker::Step::look_around() {
   const auto around = prior_near(map, belief.mean, kLookRadiusM, kLookHeading);
   if (!around) return;
   const FeatureMap seen = resampled(*features_, features_->cell_m, std::exp(belief.log_scale));
-  const std::optional<Fix> fix = search_for(seen, *around, 0.0);
+  const std::optional<Fix> fix = search_for(seen, *around, {.looks_beyond_prior = false});
   if (!fix || !fix->complete || !is_beside(*fix, belief, map.zone)) return;
   state_.claim.reject();
   if (!state_.drifts) {

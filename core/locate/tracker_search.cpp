@@ -83,7 +83,8 @@ void Tracker::Step::recover() {
 /// the streets of one quarter look like those of another whose blocks are as much smaller, and no frame contradicts it.
 bool Tracker::Step::holds_at_other_scales(const Fix& fix, const Prior& prior, const FeatureMap& seen) {
   if (settings_.vehicle.scale_range >= kUntoldScaleRange) return true;
-  const std::optional<Fix> other = search_for(seen, prior, kUntoldScaleRange);
+  const std::optional<Fix> other =
+      search_for(seen, prior, {.scale_range = kUntoldScaleRange, .looks_beyond_prior = false});
   if (!other || !other->complete) return false;
   const GridPose place = on_grid(fix.modes.front().pose, tracker_.map_.zone);
   double here = 0.0;
@@ -105,7 +106,7 @@ void Tracker::Step::confirm(const Fix& fix) {
 /// takes longer. At its beginning that is an error, as a smaller prior helps.
 std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen) {
   state_.last_search = state_.measured;
-  std::optional<Fix> fix = search_for(seen, prior, settings_.vehicle.scale_range);
+  std::optional<Fix> fix = search_for(seen, prior, {.scale_range = settings_.vehicle.scale_range});
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
   if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);
@@ -113,9 +114,7 @@ std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const Featur
 }
 
 /// nullopt where the area is beyond the limit.
-std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const Prior& prior, double scale_range) {
-  FixOptions options;
-  options.scale_range = scale_range;
+std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const Prior& prior, FixOptions options) {
   options.max_search_km2 = settings_.max_search_km2;
   options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
   options.time_limit = limits_.search_time;

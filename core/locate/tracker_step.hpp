@@ -47,7 +47,7 @@ class Tracker::Step {
   bool holds_at_other_scales(const Fix& fix, const Prior& prior, const FeatureMap& seen);
   void confirm(const Fix& fix);
   std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen);
-  std::optional<Fix> search_for(const FeatureMap& features, const Prior& prior, double scale_range);
+  std::optional<Fix> search_for(const FeatureMap& features, const Prior& prior, FixOptions options);
 
   // tracker_look.cpp
   void look_around_if_due();

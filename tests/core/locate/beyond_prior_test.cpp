@@ -94,8 +94,9 @@ TEST_F(BeyondPrior, LooksAQuarterOfTheFootprintAroundAPlaceThatIsNearerThanThatT
   EXPECT_FALSE(near->contains(GridPoint{902.0, 400.0}));
   EXPECT_TRUE(near->contains(Angle::degrees(39.0)));
   EXPECT_FALSE(near->contains(Angle::degrees(41.0)));
-  const PoseRegion small{.box = {{0.0, 0.0}, {50.0, 50.0}}, .circle = GridCircle{{25.0, 25.0}, 25.0}};
-  EXPECT_TRUE(ground_beyond(small, {{25.0, 25.0}, {}}, features)) << "it reaches beyond on all sides";
+  PoseRegion small = kRegion;
+  small.circle->radius_m = 25.0;
+  EXPECT_TRUE(ground_beyond(small, {{500.0, 400.0}, {}}, features)) << "it reaches beyond on all sides";
 }
 
 // A confidence so low that the best place inside would be a fix.

@@ -44,7 +44,7 @@ std::vector<double> weights_of(const std::vector<double>& shares, double probabi
 }
 
 std::string time_was_over(const SearchResult& found) {
-  const char* advice = "give more time, a smaller region or a narrower heading range";
+  const char* advice = "give more time or a smaller region";
   if (found.scanned_share < 1.0) {
     return fmt::format(
         "the time limit ended the search after {:.0f} % of the poses, and a better one may be among the others: {}",

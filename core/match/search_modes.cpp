@@ -78,6 +78,9 @@ void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOpt
       if (in_region) result.background.rivals_within.push_back(pose.score);
     }
   }
+  // The region's own places go deeper than those at other headings: as many count as where none is told.
+  std::vector<double>& rivals = result.background.rivals;
+  if (scanned.area_km2() == levels.region().area_km2()) rivals.resize(std::min(rivals.size(), kSurvivors));
   const double all = poses_of(scanned);
   result.background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
   for (const LatticePose& pose : inside) {

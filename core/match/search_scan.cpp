@@ -10,6 +10,7 @@ constexpr std::size_t kScanMaxima = 16384;
 constexpr std::size_t kCandidatesAround = 256;  // followed from outside of the region
 constexpr double kScanTimeShare = 0.75;         // at most, if the time is limited: what it finds has to be followed
 constexpr int kRivalsWanted = 1000;             // distinct places that a background is drawn from
+constexpr double kKm2AtAllHeadings = 50.0;      // at least, as far as the region is as large
 
 }  // namespace
 
@@ -19,9 +20,18 @@ SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
       separation_m_(std::max(2.5 * levels.coarse().cell_m(), 0.1 * levels.side_m())),
       scanned_(enlarged()) {}
 
+/// What chance gives is told from the best places at all headings, whatever range of them is asked for: among the few
+/// within a range, poor ones count too, and next to them chance seems to explain the best.
+PoseRegion SearchScan::at_more_headings() const {
+  PoseRegion result = levels_.region();
+  const Angle told = Angle::degrees(180.0 * std::min(1.0, kKm2AtAllHeadings / result.area_km2()));
+  result.heading_half_width = std::max(result.heading_half_width, told);
+  return result;
+}
+
 /// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
 PoseRegion SearchScan::enlarged() const {
-  const PoseRegion& region = levels_.region();
+  const PoseRegion region = at_more_headings();
   const double turns = region.heading_half_width.degrees() / 180.0;
   const double places_per_m2 = levels_.coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
   const double wanted_m2 = kRivalsWanted / places_per_m2;

@@ -23,6 +23,7 @@ class SearchScan {
   const PoseRegion& scanned() const { return scanned_; }
 
  private:
+  PoseRegion at_more_headings() const;
   PoseRegion enlarged() const;
   ScanRequest request() const;
   std::shared_ptr<const ScanMap> map_below(const GridGeometry& positions) const;

@@ -143,6 +143,22 @@ TEST_F(Locate, WithANarrowPriorIsSureOfSmallerFootprints) {
   EXPECT_LT(error_m(fix.modes[0].pose, truth), 2.0);
 }
 
+TEST_F(Locate, WhatIsAFixIsOneForAKnownHeadingToo) {
+  for (int round = 0; round < 2; ++round) {
+    const GridPose truth = pose_within(view_.extent, 300.0, random_);
+    const FeatureMap seen = observed_at(map_, truth, 180, 180, 2.0, {0.4, 0.4}, random_);
+    const Fix unknown = locate(view_, seen, {}, {});
+    ASSERT_EQ(unknown.status, FixStatus::kFix) << unknown.reason << ' ' << unknown.probability;
+    for (const double half_width : {10.0, 60.0}) {
+      Prior prior;
+      prior.heading = {on_earth(truth, view_.zone).heading + Angle::degrees(0.3 * half_width),
+                       Angle::degrees(half_width)};
+      const Fix known = locate(view_, seen, prior, {});
+      EXPECT_EQ(known.status, FixStatus::kFix) << half_width << ' ' << known.reason << ' ' << known.probability;
+    }
+  }
+}
+
 TEST_F(Locate, SaysNoFixOverAnotherTown) {
   const RoadGrid elsewhere = street_map(77, town(2400, 1800));
   for (int round = 0; round < 2; ++round) {

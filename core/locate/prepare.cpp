@@ -29,7 +29,8 @@ void require_usable(const FeatureMap& features) {
   const double side_m = features.cell_m * std::max(features.cells.cols(), features.cells.rows());
   if (side_m > kLargestSideM) {
     throw InvalidInput("feature-map-too-large",
-                       fmt::format("the feature map spans {:.6g} m, more than {:.0f} m: check its cell size ({} m)",
+                       fmt::format("the feature map spans {:.6g} m, more than {:.0f} m: check its cell size ({} m), or "
+                                   "of several frames how far apart they are",
                                    side_m, kLargestSideM, features.cell_m));
   }
 }

@@ -139,7 +139,17 @@ const std::vector<std::string>& picture_members() {
 
 Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                      const std::stop_token& stop) {
-  if (content.fields.word("kind", kKinds) == "frame") return detected(content, detector, default_cell_m, limits, stop);
+  if (content.fields.word("kind", kKinds) == "frame") {
+    for (const char* name : {"nadir_col", "nadir_row"}) {
+      if (content.fields.has(name)) {
+        throw InvalidField("bad-parameter", name,
+                           fmt::format("'{}' describes a feature map; of a frame the point below the UAV follows from "
+                                       "roll_deg and pitch_deg: leave it out",
+                                       name));
+      }
+    }
+    return detected(content, detector, default_cell_m, limits, stop);
+  }
   for (const std::string& name : frame_fields()) {
     if (name != "cell_m" && content.fields.has(name)) {
       throw InvalidField(

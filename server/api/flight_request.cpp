@@ -29,7 +29,7 @@ double number_of(const json& frame, const char* name, const std::string& place, 
 std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place) {
   const std::string field = place + ".image";
   const auto found = frame.find("image");
-  if (found == frame.end() || !found->is_string()) {
+  if (found == frame.end() || !found->is_string() || found->get_ref<const std::string&>().empty()) {
     throw InvalidField("missing-parameter", field, fmt::format("'{}' must be a picture in base64", field));
   }
   return bytes_of_base64(field, found->get_ref<const std::string&>());

@@ -83,6 +83,8 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&lat=57.7", png, "image/png")), "400 missing-parameter lon");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&bbox=1,2,3", png, "image/png")), "400 bad-parameter bbox");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&gsd_m=1", png, "image/png")), "400 bad-parameter gsd_m");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1&nadir_col=3", png, "image/png")),
+            "400 bad-parameter nadir_col");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=20", png, "image/png")), "422 frame-too-coarse");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1e-4", png, "image/png")), "422 frame-too-fine");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame", png, "image/png")), "400 missing-parameter fov_deg");

@@ -75,11 +75,21 @@ void print_extent(const MapInfo& info) {
              ne.lon_deg);
 }
 
+std::string state_of(const SourceStatus& source) {
+  const std::int64_t lost = source.blocks_total - source.blocks_done;
+  if (!source.complete) {
+    return fmt::format("incomplete: {} of {} blocks. Repeat the ingest to go on", source.blocks_done,
+                       source.blocks_total);
+  }
+  if (lost > 0) {
+    return fmt::format("damaged: {} of {} blocks are lost. Ingest it again with --replace", lost, source.blocks_total);
+  }
+  return fmt::format("ingested {}", source.ingested_at);
+}
+
 void print_source(const SourceStatus& source) {
   const SourceRecord& r = source.record;
-  const std::string state = source.complete ? fmt::format("ingested {}", source.ingested_at)
-                                            : fmt::format("incomplete: {} of {} blocks. Repeat the ingest to go on",
-                                                          source.blocks_done, source.blocks_total);
+  const std::string state = state_of(source);
   fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name, r.kind, state,
              r.location, r.method);
   for (const auto& [label, value] :

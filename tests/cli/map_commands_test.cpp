@@ -74,6 +74,12 @@ TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
 }
 
+TEST_F(MapCommands, InfoSaysWhatARepairLost) {
+  testing::open_sqlite(path).execute("UPDATE roadfix_evidence SET tile_data = x'00' WHERE id = 1");
+  EXPECT_EQ(roadfix("verify --repair " + path.string()).code, 1);
+  EXPECT_THAT(roadfix("info " + path.string()).out, HasSubstr("damaged: 1 of "));
+}
+
 TEST_F(MapCommands, VerifySaysThatAMapIsEmpty) {
   const auto empty = folder / "empty.gpkg";
   { const MapWriter made(empty, settings_37n()); }

@@ -128,10 +128,9 @@ void require_ours(Connection& map) {
 }
 
 void require_content(const fs::path& path) {
+  if (!is_there(path)) throw NotFound("map-not-found", fmt::format("{}: no such file", path.string()));
   std::error_code error;
-  const auto status = fs::status(path, error);
-  if (!fs::exists(status)) throw NotFound("map-not-found", fmt::format("{}: no such file", path.string()));
-  if (!fs::is_regular_file(status)) {
+  if (!fs::is_regular_file(path, error)) {
     throw InvalidInput("map-not-ours", fmt::format("{}: not a file. Name a map made by roadfix", path.string()));
   }
   if (fs::file_size(path, error) == 0 && !error) {
@@ -175,6 +174,14 @@ GridBox extent_of(Connection& map, const Statement& row) {
 }
 
 }  // namespace
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (fs::status_known(status) && !error) return true;
+  throw IoFailure("map-io", fmt::format("{}: {}", path.string(), error.message()));
+}
 
 void create_map(const fs::path& path, const MapSettings& settings) {
   if (!is_map_cell_size(settings.cell_m)) {

@@ -13,6 +13,9 @@ inline constexpr int kSchemaVersion = 1;
 /// SQL for the present time as GeoPackage writes it.
 inline constexpr const char* kSqlNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
 
+/// Throws IoFailure ("map-io") where that cannot be told.
+bool is_there(const std::filesystem::path& path);
+
 /// Makes an empty map under the name in one step: killed at any point, there is a whole map or none.
 /// Throws InvalidInput ("cell-size-not-supported") or IoFailure.
 void create_map(const std::filesystem::path& path, const MapSettings& settings);

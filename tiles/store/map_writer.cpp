@@ -26,7 +26,7 @@ using sqlite::Transaction;
 
 /// Makes the map where there is none, and says so.
 bool create_if_missing(const std::filesystem::path& path, const MapSettings& settings) {
-  if (std::filesystem::exists(path)) return false;
+  if (is_there(path)) return false;
   create_map(path, settings);
   return true;
 }
@@ -123,7 +123,7 @@ MapWriter::MapWriter(MapWriter&&) noexcept = default;
 MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;
 
 std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   Connection map = open_map(path, Access::kRead);
   return read_settings(map);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <system_error>
 
 namespace roadfix::sqlite {
 namespace {
@@ -44,7 +45,10 @@ Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &handle, mode | SQLITE_OPEN_NOMUTEX, nullptr);
   handle_.reset(handle);
-  if (code != SQLITE_OK) fail(code, sqlite3_errstr(code));
+  if (code != SQLITE_OK) {
+    const int reason = handle == nullptr ? 0 : sqlite3_system_errno(handle);
+    fail(code, reason == 0 ? std::string(sqlite3_errstr(code)) : std::system_category().message(reason));
+  }
   sqlite3_extended_result_codes(handle, 1);
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
 }

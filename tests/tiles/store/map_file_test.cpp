@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -47,6 +48,12 @@ class MapFile : public ::testing::Test {
 TEST_F(MapFile, AMissingOneIsNotFound) {
   fs::remove(path);
   EXPECT_EQ(opened(), "map-not-found");
+}
+
+TEST_F(MapFile, OneThatCannotEvenBeLookedForSaysWhy) {
+  path = folder / (std::string(300, 'm') + ".gpkg");
+  EXPECT_EQ(opened(), "map-io");
+  EXPECT_EQ(testing::code_of([&] { MapWriter::settings_of(path); }), "map-io");
 }
 
 TEST_F(MapFile, AFolderIsNotOne) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <stdexcept>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -50,6 +51,18 @@ class Sqlite : public ::testing::Test {
   testing::TemporaryFolder folder;
   fs::path path;
 };
+
+TEST(SqliteFile, SaysWhyItCannotBeOpened) {
+  const auto detail_of = [](const fs::path&, Failure, const std::string& detail) {
+    return std::make_exception_ptr(std::runtime_error(detail));
+  };
+  try {
+    const Connection none("no/such/folder/file.sqlite", Access::kCreate, detail_of);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "No such file or directory");
+  }
+}
 
 TEST_F(Sqlite, TheKindOfFileSaysWhatAFailureIs) {
   EXPECT_EQ(failure_to_read("SELECT v FROM another"), Failure::kOtherTables);

@@ -33,6 +33,16 @@ SourceRecord record_of(const IngestArguments& arguments, const SourceRequest& re
   return record;
 }
 
+/// Under another name, the same file would be taken for another witness.
+void note_twins(MapWriter& writer, const std::string& source, const std::string& map) {
+  for (const std::string& twin : writer.twins_of(source)) {
+    fmt::print(stderr,
+               "note: '{}' says exactly what the source '{}' says, and counts beside it where other sources differ. If "
+               "it is the same content, take it out: roadfix remove {} {}\n",
+               source, twin, map, source);
+  }
+}
+
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
   const auto [source, blocks] = plan_source(request, settings, detector);
@@ -64,6 +74,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
                summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent or no numbers"
                                           : "its --extent holds the centre of no cell");
   }
+  if (report.blocks_before < report.blocks) note_twins(*writer, record.name, arguments.map);
   print_report(json, report, cell_mp, arguments.json);
 }
 

@@ -260,6 +260,16 @@ TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {
   EXPECT_THAT(result.err, ::testing::HasSubstr("nothing of " + image + " was observed"));
 }
 
+TEST_F(IngestCommand, ACopyUnderAnotherNameIsNoticed) {
+  const std::string image = picture(600, 0.5);
+  const std::string copy = folder / "copy.tif";
+  std::filesystem::copy_file(image, copy);
+  EXPECT_EQ(ingest({image, "--name", "first", "--detector", "tree", "--map", map("a.gpkg")}).code, 0);
+  const ChildResult again = ingest({copy, "--detector", "tree", "--map", map("a.gpkg")});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, ::testing::HasSubstr("'copy' says exactly what the source 'first' says"));
+}
+
 TEST_F(IngestCommand, ADryRunPrintsThePlanAndWritesNothing) {
   const ChildResult result = ingest({picture(600, 0.5), "--detector", "tree", "--dry-run", "--map", map("a.gpkg")});
   EXPECT_EQ(result.code, 0) << result.err;

@@ -213,6 +213,20 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
   s.fusion.drain(progress, stop);
 }
 
+std::vector<std::string> MapWriter::twins_of(const std::string& source) {
+  std::vector<std::string> names;
+  // Equal cells are equal bytes.
+  Statement twins(
+      state_->map,
+      "WITH own AS (SELECT e.* FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE "
+      "s.name = ?1 AND s.in_force = 1) SELECT name FROM roadfix_sources s WHERE in_force = 1 AND name <> ?1 "
+      "AND EXISTS (SELECT 1 FROM own) AND NOT EXISTS (SELECT 1 FROM own WHERE NOT EXISTS (SELECT 1 FROM "
+      "roadfix_evidence o WHERE o.source_id = s.id AND o.tile_column = own.tile_column AND o.tile_row = "
+      "own.tile_row AND o.tile_data = own.tile_data)) ORDER BY name");
+  for (twins.with(source); twins.step();) names.push_back(twins.text(0));
+  return names;
+}
+
 void MapWriter::remove_if_new_and_empty() {
   State& s = *state_;
   if (!s.made_here || Statement(s.map, "SELECT 1 FROM roadfix_blocks WHERE done = 1").step()) return;

@@ -39,6 +39,9 @@ class MapWriter {
   /// overviews. Can be interrupted and repeated.
   void finish_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
+  /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
+  std::vector<std::string> twins_of(const std::string& source);
+
   /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
   /// leaves no map. Nothing but the destructor may be called afterwards.
   void remove_if_new_and_empty();

@@ -46,6 +46,22 @@ TEST(MapWriter, WhatWasPutCanBeRead) {
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-writer"));
 }
 
+TEST(MapWriter, FindsSourcesThatSayTheSame) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  ingest(writer, {"a", 1, some_blocks(2)});
+  EXPECT_TRUE(writer.twins_of("a").empty());
+  ingest(writer, {"another", 2, some_blocks(2)});
+  EXPECT_TRUE(writer.twins_of("another").empty());
+  ingest(writer, {"copy", 1, some_blocks(2)});
+  EXPECT_EQ(writer.twins_of("copy"), std::vector<std::string>{"a"});
+  ingest(writer, {"part", 2, some_blocks(1)});
+  EXPECT_EQ(writer.twins_of("part"), std::vector<std::string>{"another"});
+  EXPECT_TRUE(writer.twins_of("another").empty());
+  ingest(writer, {"more", 1, some_blocks(3)});
+  EXPECT_TRUE(writer.twins_of("more").empty());
+}
+
 TEST(MapWriter, OverviewsAreTheHalvedLevelBelow) {
   const TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", settings_37n());

@@ -19,6 +19,9 @@ using nlohmann::json;
 constexpr std::size_t kFigures = kCountedFigures.size();
 constexpr int kFewest = 50;
 constexpr double kChiSquare95OfHeading = 3.841;  // with one degree of freedom
+// What parse_calibration() takes. Errors far below what the peak tells are those of simulated frames without a shift.
+constexpr double kSmallestScale = 0.1;
+constexpr double kLargestScale = 100.0;
 
 struct Example {
   std::array<double, kFigures> figures{};
@@ -46,8 +49,9 @@ Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force)
     heading.push_back(std::pow(*outcome.heading_error_deg / outcome.answer.mode->heading_sigma.degrees(), 2));
   }
   if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
-  return {in_force.position_sigma_scale * scale_of(position, 2.0, kChiSquare95),
-          in_force.heading_sigma_scale * scale_of(heading, 1.0, kChiSquare95OfHeading)};
+  const auto bounded = [](double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); };
+  return {bounded(in_force.position_sigma_scale * scale_of(position, 2.0, kChiSquare95)),
+          bounded(in_force.heading_sigma_scale * scale_of(heading, 1.0, kChiSquare95OfHeading))};
 }
 
 /// Bias first.

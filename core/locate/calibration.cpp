@@ -39,8 +39,10 @@ Calibration::Term term(const json& terms, const std::string& name) {
 json parsed(std::string_view text) {
   try {
     return json::parse(text);
-  } catch (const json::exception& error) {
-    throw InvalidInput("calibration-json", fmt::format("calibration file: {}", error.what()));
+  } catch (const json::parse_error& error) {
+    throw InvalidInput("calibration-json", fmt::format("calibration file: byte {} is no JSON; write a new one with "
+                                                       "roadfix bench --calibrate",
+                                                       error.byte));
   }
 }
 

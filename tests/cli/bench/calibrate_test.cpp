@@ -69,5 +69,15 @@ TEST(LearnCalibration, WritesWhatTheServiceReads) {
   EXPECT_EQ(to_json(report, {{"seed", 5}})["origin"]["examples"], 1000);
 }
 
+TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
+  std::vector<Outcome> exact = drawn(1000, 6);
+  for (Outcome& outcome : exact) {
+    outcome.position_nees = *outcome.position_nees < 1e6 ? 1e-6 * *outcome.position_nees : 1e6;
+    outcome.heading_error_deg = 1e-3;
+  }
+  const CalibrationReport report = learn_calibration(exact, default_calibration());
+  EXPECT_EQ(parse_calibration(to_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
+}
+
 }  // namespace
 }  // namespace roadfix::bench

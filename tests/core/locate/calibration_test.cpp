@@ -86,7 +86,7 @@ TEST(Calibration, SaysWhichFieldOfAFileIsWrong) {
   complain("\"lead\"", "\"load\"", "lead");
   complain("0.995", "1.0", "highest");
   complain("\"position\": 1.1, ", "", "position");
-  complain("{\"format\"", "[\"format\"", "calibration file");
+  complain("{\"format\"", "[\"format\"", "calibration file: byte 10 is no JSON");
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ void explain(Decision& decision, const char* reason, std::string explanation) {
 }
 
 std::string below_confidence(double probability, const Calibration& calibration, double confidence) {
-  if (confidence > calibration.highest) {
+  constexpr double kNearly = 0.95;
+  if (confidence > calibration.highest && probability >= kNearly * calibration.highest) {
     return fmt::format(
         "the roads fit best at one place (probability {:.3f}), but the calibration vouches for no more than {:.4f} and "
         "a confidence of {} was asked for: ask for less, or learn a calibration from more queries",

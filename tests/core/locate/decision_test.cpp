@@ -59,6 +59,11 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "below-confidence");
   EXPECT_NE(decision.explanation.find("vouches for no more than 0.9959"), std::string::npos) << decision.explanation;
+  Calibration doubtful = default_calibration();
+  doubtful.bias -= 20.0;
+  const Decision doubted = decide(result, doubtful, 0.9999);
+  EXPECT_EQ(doubted.reason, "below-confidence");
+  EXPECT_EQ(doubted.explanation.find("vouches"), std::string::npos) << doubted.explanation;
   EXPECT_EQ(decision.weights.size(), 1U);
 }
 

@@ -103,9 +103,10 @@ std::string shares_one_road(const SearchFigures& figures) {
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
   Decision decision;
   if (found.modes.empty() && found.complete()) {
-    explain(decision, "map-too-empty",
-            "nowhere in the searched region has the map enough observed ground with roads for this footprint: widen "
-            "the region or ingest more sources");
+    explain(
+        decision, "map-too-empty",
+        "nowhere in the searched region do the roads fit at all, or the map has too little observed ground with roads "
+        "there for this footprint: check the prior, widen it, or ingest more sources");
     return decision;
   }
   if (found.modes.empty()) {

@@ -30,6 +30,7 @@ struct FixArguments {
   std::optional<GeoBox> bbox;
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
+  std::optional<double> nadir_sigma_m;
   double time_limit_s = 0.0;
   double proof_s = 0.0;
   std::string calibration;
@@ -86,6 +87,7 @@ void run_fix(const FixArguments& options) {
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
+  fix_options.nadir_sigma_m = options.nadir_sigma_m.value_or(expected_nadir_sigma_m(options.input.frame));
   fix_options.stop = stop_on_signals();
   fix_options.time_limit = milliseconds(options.time_limit_s);
   fix_options.proof_time = milliseconds(options.proof_s);
@@ -133,6 +135,12 @@ void add_fix_command(CLI::App& app) {
                    "The ground may be smaller or larger by this share (roughly known altitude)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, kMaxScaleRange));
+  command
+      ->add_option(
+          "--nadir-sigma", o->nadir_sigma_m,
+          "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
+          "the error of roll and pitch (default: 1 degree at --agl, otherwise 0)")
+      ->check(CLI::Range(0.0, 1000.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")
       ->check(positive());

@@ -32,7 +32,20 @@ auto decoded(const std::string& path, const auto& decode) {
   }
 }
 
+FrameCamera camera_of(const FrameOptions& options) {
+  FrameCamera camera;
+  camera.horizontal_fov = Angle::degrees(options.fov_deg);
+  camera.agl_m = options.agl_m;
+  camera.roll = Angle::degrees(options.roll_deg);
+  camera.pitch = Angle::degrees(options.pitch_deg);
+  return camera;
+}
+
 }  // namespace
+
+double expected_nadir_sigma_m(const FrameOptions& options) {
+  return options.fov_deg > 0.0 ? nadir_sigma_m(camera_of(options), kAttitudeSigma) : 0.0;
+}
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
   auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
@@ -59,12 +72,7 @@ GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, cons
     return rectified(frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen));
   }
   constexpr double kAnyGsd = 1.0;  // follows from the camera
-  FrameCamera camera;
-  camera.horizontal_fov = Angle::degrees(options.fov_deg);
-  camera.agl_m = options.agl_m;
-  camera.roll = Angle::degrees(options.roll_deg);
-  camera.pitch = Angle::degrees(options.pitch_deg);
-  return ground_seen(frame_image(decoded, kAnyGsd), camera, detector, static_cast<double>(kMaxPixels));
+  return ground_seen(frame_image(decoded, kAnyGsd), camera_of(options), detector, static_cast<double>(kMaxPixels));
 }
 
 cv::Mat picture_in(const std::string& path) {

@@ -27,6 +27,10 @@ struct FrameOptions {
 /// the two of which one says that there is a frame.
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
 
+/// How well the nadir of a frame is known, 1 sigma per axis: by kAttitudeSigma if it is described by its camera. 0 if
+/// it is seen straight from above, or no frame.
+double expected_nadir_sigma_m(const FrameOptions& options);
+
 /// The ground that the frame (see decode_image) shows, in pixels that the detector makes use of.
 /// Throws what frame_image and rectify throw. options.given() must hold.
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector);

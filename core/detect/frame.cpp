@@ -12,6 +12,8 @@
 namespace roadfix {
 namespace {
 
+const Angle kFlattestView = Angle::degrees(80.0);
+
 void require_camera(bool condition, const char* field, const char* range) {
   if (!condition) throw InvalidInput("frame-camera", fmt::format("frame: {} must lie in {}", field, range));
 }
@@ -40,11 +42,12 @@ cv::Matx33d pixel_from_ground(const FrameCamera& camera, cv::Size size) {
   return intrinsics * level_from_camera(camera).t() * plane;
 }
 
+/// Cosine of the angle between the optical axis and straight down.
+double down(const FrameCamera& camera) { return (level_from_camera(camera) * cv::Vec3d(0.0, 0.0, 1.0))[2]; }
+
 /// Gimbals and autopilots that call straight down -90 degrees would be taken at their word and look at the horizon.
 void require_looking_down(const FrameCamera& camera) {
-  const Angle flattest = Angle::degrees(80.0);
-  const double down = (level_from_camera(camera) * cv::Vec3d(0.0, 0.0, 1.0))[2];
-  if (down >= cos(flattest)) return;
+  if (down(camera) >= cos(kFlattestView)) return;
   throw InvalidInput(
       "frame-sees-no-ground",
       fmt::format(
@@ -93,6 +96,12 @@ void validate(const FrameCamera& camera) {
   require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
   require_camera(std::abs(camera.roll.degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
   require_camera(std::abs(camera.pitch.degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
+}
+
+double nadir_sigma_m(const FrameCamera& camera, Angle attitude) {
+  // The ground on the optical axis is agl tan(angle) from the nadir.
+  const double steepness = std::max(down(camera), cos(kFlattestView));
+  return camera.agl_m * attitude.radians() / (steepness * steepness);
 }
 
 std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Size size, cv::Point2d pixel) {

@@ -33,6 +33,13 @@ struct GroundView {
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
 void validate(const FrameCamera& camera);
 
+/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres, where roll and
+/// pitch are known to `attitude`: that many times the height, more in oblique views.
+double nadir_sigma_m(const FrameCamera& camera, Angle attitude);
+
+/// What is expected of a gimbal or an autopilot that says nothing of its own attitude.
+inline constexpr Angle kAttitudeSigma = Angle::degrees(1.0);
+
 /// Where on the ground a pixel (continuous, (0, 0) = outer corner of a frame of `size`) looks: metres right and *back*
 /// of the nadir point. nullopt at and above the horizon.
 std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Size size, cv::Point2d pixel);

@@ -75,15 +75,16 @@ bool shows_less_than_a_road_across(const FeatureMap& features) {
 }
 
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
-                      const Calibration& calibration) {
+                      const Calibration& calibration, double nadir_sigma_m) {
   const Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
   FixMode result;
   result.pose = on_earth(mode.pose, map.zone);
   result.scale = mode.scale;
   result.weight = weight;
   result.rho = rho_at(map, resampled(cells, cells.cell_m, mode.scale), mode.pose).value_or(0.0);
-  result.sigma_m = {calibration.position_sigma_scale * ellipse.sigma_m[0],
-                    calibration.position_sigma_scale * ellipse.sigma_m[1]};
+  for (std::size_t axis : {0U, 1U}) {
+    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], nadir_sigma_m);
+  }
   result.ellipse_heading = ellipse.heading;
   result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]));
   result.observed_cells = mode.observed_cells;
@@ -161,7 +162,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   }
   fix.probability = decision.probability;
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {
-    fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
+    fix.modes.push_back(
+        to_geographic(map, cells, found.modes[i], decision.weights[i], calibration, options.nadir_sigma_m));
   }
   fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();

@@ -64,15 +64,15 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
   return proposals;
 }
 
-TrackCluster to_geographic(const MapView& map, const Cluster& cluster) {
-  const double registration95_m = kSigmasOf95 * map.registration_sigma_m;
+TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m) {
+  const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m, nadir_sigma_m);
   const Ellipse ellipse = ellipse_of(map, cluster.mean.position, cluster.covariance);
   return {on_earth(cluster.mean, map.zone),
           cluster.weight,
-          ellipse.sigma_m,
+          {std::hypot(ellipse.sigma_m[0], nadir_sigma_m), std::hypot(ellipse.sigma_m[1], nadir_sigma_m)},
           ellipse.heading,
           Angle::radians(std::sqrt(cluster.covariance[2][2])),
-          std::hypot(cluster.radius95_m, registration95_m),
+          std::hypot(cluster.radius95_m, told95_m),
           std::exp(cluster.log_scale),
           std::exp(cluster.log_scale) * cluster.log_scale_sigma};
 }

@@ -51,6 +51,9 @@ struct VehicleNoise {
   /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
   /// that stays much the same from step to step; in [0, kMaxScaleRange].
   double scale_range = 0.0;
+  /// 1 sigma per axis of where the nadir of the feature maps really is, as far as the attitude is known. Part of the
+  /// standard deviations of the position, since a camera that is mounted askew errs alike in all frames.
+  double nadir_sigma_m = 0.0;
 };
 
 enum class TrackStart { kSearch, kUniform };

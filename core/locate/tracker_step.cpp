@@ -211,7 +211,7 @@ void Tracker::Step::fill_estimate() {
   const std::vector<Cluster> clusters = clusters_of(filter_.particles(), settings_.clusters);
   estimate_.cluster_count = clusters.size();
   for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {
-    estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i]));
+    estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i], settings_.vehicle.nadir_sigma_m));
   }
   estimate_.particles = filter_.particles().size();
   estimate_.resets = filter_.state().resets;

@@ -177,4 +177,9 @@ Features detected(const Content& content, const RoadDetector& detector, double d
   return {std::move(map), std::chrono::steady_clock::now() - start};
 }
 
+double expected_nadir_sigma_m(const Fields& fields) {
+  const bool camera = fields.word("kind", kKinds) == "frame" && !fields.has("gsd_m");
+  return camera ? nadir_sigma_m(camera_of(fields), kAttitudeSigma) : 0.0;
+}
+
 }  // namespace roadfix::api

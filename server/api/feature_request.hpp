@@ -46,4 +46,8 @@ Features features_of(const Content& content, const RoadDetector& detector, doubl
 Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                   const std::stop_token& stop);
 
+/// How well the nadir of what is posted is known if the request does not say, 1 sigma per axis: by kAttitudeSigma in a
+/// frame that its camera describes; 0 in all else, of which nobody but the client knows.
+double expected_nadir_sigma_m(const Fields& fields);
+
 }  // namespace roadfix::api

@@ -32,6 +32,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
   noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),
                         fields.optional_number("wind_walk", {0.0, 10.0}));
   noise.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(noise.scale_range);
+  noise.nadir_sigma_m = fields.optional_number("nadir_sigma_m", {0.0, 1000.0}).value_or(0.0);
   return noise;
 }
 
@@ -63,7 +64,8 @@ const std::vector<std::string>& track_members() {
                                                  "odometry_share",
                                                  "wind_sigma_m_s",
                                                  "wind_walk",
-                                                 "scale_range"};
+                                                 "scale_range",
+                                                 "nadir_sigma_m"};
   return kMembers;
 }
 

@@ -61,6 +61,15 @@ TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
   EXPECT_EQ(answer["map"]["name"], "town");
 }
 
+TEST_F(LocalizeCommands, FixIsAsAccurateAsTheNadirIsKnown) {
+  const ProgramResult told = roadfix("fix --json " + input + "--nadir-sigma 30");
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_GT(nlohmann::json::parse(told.out)["sigma_m"][1].get<double>(), 30.0);
+  const ProgramResult exact = roadfix("fix --json " + input);
+  EXPECT_LT(nlohmann::json::parse(exact.out)["sigma_m"][0].get<double>(), 10.0);
+  EXPECT_EQ(roadfix("fix " + input + "--nadir-sigma -1").code, 2);
+}
+
 TEST_F(LocalizeCommands, FixTakesAPrior) {
   const ProgramResult near = roadfix("fix " + input + at(place) + " --radius 100 --heading 217 --heading-range 20");
   EXPECT_EQ(near.code, 0) << near.err;

@@ -189,7 +189,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   const json& schemas = document_.at("components").at("schemas");
   const json prior{{"lat", 1},          {"lon", 2}, {"radius_m", 300}, {"heading_deg", 4}, {"heading_range_deg", 5},
                    {"scale_range", 0.1}};
-  json fix{{"confidence", 0.9}, {"max_modes", 1}, {"proof_s", 0}, {"time_limit_s", 1}};
+  json fix{{"confidence", 0.9}, {"max_modes", 1}, {"proof_s", 0}, {"time_limit_s", 1}, {"nadir_sigma_m", 3}};
   fix.update(prior);
   expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
     api::Fields fields;
@@ -200,6 +200,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   json track{{"map", "m"},
              {"particles", 1000},
              {"measure_every", 1},
+             {"nadir_sigma_m", 3},
              {"seed", 1},
              {"speed_m_s", 3},
              {"speed_sigma_m_s", 1},

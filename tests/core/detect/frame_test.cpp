@@ -40,6 +40,25 @@ TEST(GroundOf, PitchLooksForwardAndRollLooksLeft) {
   EXPECT_NEAR(ground_of(camera, kFrame, {640, 240})->x, 100 * std::tan((45 - 10) * M_PI / 180), 1e-9);
 }
 
+// Oracle: how far the ground on the optical axis moves when the camera turns by a hundredth of the angle.
+TEST(NadirSigma, IsWhatASmallErrorOfPitchOrRollMovesTheGroundInViewBy) {
+  const cv::Point2d middle(320, 240);
+  const Angle little = Angle::degrees(0.01);
+  for (const double pitch_deg : {0.0, 30.0, -45.0}) {
+    FrameCamera camera = level();
+    camera.pitch = Angle::degrees(pitch_deg);
+    FrameCamera turned = camera;
+    turned.pitch += little;
+    const double moved_m = std::abs(ground_of(turned, kFrame, middle)->y - ground_of(camera, kFrame, middle)->y);
+    EXPECT_NEAR(nadir_sigma_m(camera, Angle::degrees(1.0)), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
+  }
+  FrameCamera rolled = level();
+  rolled.roll = Angle::degrees(60.0);
+  EXPECT_NEAR(nadir_sigma_m(rolled, Angle::degrees(1.0)), 4.0 * nadir_sigma_m(level(), Angle::degrees(1.0)), 1e-9);
+  rolled.roll = Angle::degrees(90.0);
+  EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled, Angle::degrees(1.0))));
+}
+
 TEST(GroundOf, NothingLiesAboveTheHorizon) {
   FrameCamera camera = level();
   camera.pitch = Angle::degrees(80);

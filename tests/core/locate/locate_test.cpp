@@ -112,6 +112,20 @@ TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {
   EXPECT_LT(error_m(fix.modes.at(0).pose, truth), 2.0);
 }
 
+TEST_F(Locate, CountsHowWellTheNadirIsKnownInItsAccuracy) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  const FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.1, 0.1}, random_);
+  const Fix exact = locate(view_, features, {}, {});
+  FixOptions options;
+  options.nadir_sigma_m = 7.0;
+  const Fix fix = locate(view_, features, {}, options);
+  ASSERT_FALSE(fix.modes.empty());
+  for (const std::size_t axis : {0U, 1U}) {
+    EXPECT_NEAR(fix.modes[0].sigma_m[axis], std::hypot(exact.modes.at(0).sigma_m[axis], 7.0), 1e-9);
+  }
+  EXPECT_EQ(fix.probability, exact.probability);
+}
+
 TEST_F(Locate, TakesFinerCellsThanTheMapHas) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   const Fix fix = locate(view_, cut_out(map_, truth, 600, 600, 0.6), {}, {});

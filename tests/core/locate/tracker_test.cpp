@@ -31,6 +31,20 @@ TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
   EXPECT_LT(state_.filter.particles.size(), 4000U);
 }
 
+TEST_F(Track, CountsHowWellTheNadirIsKnownInItsAccuracy) {
+  TrackSettings askew = settings();
+  askew.vehicle.nadir_sigma_m = 12.0;
+  Flight one(map_, start_, 1);
+  const TrackEstimate exact = fly(Tracker(view_, settings()), one, 3);
+  state_ = {};
+  Flight same(map_, start_, 1);
+  const TrackEstimate told = fly(Tracker(view_, askew), same, 3);
+  EXPECT_EQ(told.clusters.at(0).pose.position, exact.clusters.at(0).pose.position);
+  for (const std::size_t axis : {0U, 1U}) {
+    EXPECT_NEAR(told.clusters[0].sigma_m[axis], std::hypot(exact.clusters[0].sigma_m[axis], 12.0), 1e-9);
+  }
+}
+
 TEST_F(Track, ConvergesFromAUniformBeliefWithoutSearch) {
   TrackSettings uniform = settings();
   uniform.start = TrackStart::kUniform;

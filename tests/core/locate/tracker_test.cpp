@@ -39,7 +39,7 @@ TEST_F(Track, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   state_ = {};
   Flight same(map_, start_, 1);
   const TrackEstimate told = fly(Tracker(view_, askew), same, 3);
-  EXPECT_EQ(told.clusters.at(0).pose.position, exact.clusters.at(0).pose.position);
+  EXPECT_EQ(told.clusters.at(0).pose.position.lat_deg, exact.clusters.at(0).pose.position.lat_deg);
   for (const std::size_t axis : {0U, 1U}) {
     EXPECT_NEAR(told.clusters[0].sigma_m[axis], std::hypot(exact.clusters[0].sigma_m[axis], 12.0), 1e-9);
   }

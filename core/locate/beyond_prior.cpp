@@ -8,8 +8,17 @@
 namespace roadfix {
 namespace {
 
-// Two footprints farther apart share too few of their streets. Seen of wrong places: up to 0.18.
-constexpr double kSharedGroundShare = 0.25;
+// Beyond the border, in sides of the footprint: from there a place inside shares few of the streets that are seen.
+constexpr double kBeyond = 0.5;
+// Around the best place; farther away in a large region other places in it speak for themselves.
+constexpr double kAroundM = 1000.0;
+
+/// A region is convex: it holds what its corners span.
+bool holds(const PoseRegion& region, const GridBox& box) {
+  return region.contains(box.min) && region.contains(box.max) &&
+         region.contains(GridPoint{box.min.east_m, box.max.north_m}) &&
+         region.contains(GridPoint{box.max.east_m, box.min.north_m});
+}
 
 bool is_another_place(const SearchMode& a, const SearchMode& b) {
   return distance_m(a.pose.position, b.pose.position) >
@@ -24,12 +33,13 @@ void take_back(Decision& decision, const char* reason, std::string explanation) 
 
 }  // namespace
 
-std::optional<PoseRegion> ground_beyond(const PoseRegion& region, const GridPose& pose, const FeatureMap& features) {
-  const double reach_m = kSharedGroundShare * features.cell_m * std::max(features.cells.cols(), features.cells.rows());
-  if (region.grown(-reach_m, {}).contains(pose.position)) return std::nullopt;
-  PoseRegion near = region;
-  near.circle = GridCircle{pose.position, reach_m};
-  near.box = grown({pose.position, pose.position}, reach_m);
+std::optional<PoseRegion> ground_beyond(const PoseRegion& region, const GridBox& map_extent, const GridPose& pose,
+                                        const FeatureMap& features) {
+  const double side_m = features.cell_m * std::max(features.cells.cols(), features.cells.rows());
+  PoseRegion near = region.grown(kBeyond * side_m, {});
+  const GridBox around = grown({pose.position, pose.position}, kAroundM);
+  near.box = intersection(intersection(near.box, around), map_extent);
+  if (near.box.empty() || holds(region, near.box)) return std::nullopt;
   return near;
 }
 
@@ -50,8 +60,8 @@ Decision confirmed(Decision decision, const SearchResult& found, const PoseRegio
   decision.probability *= share;
   for (double& weight : decision.weights) weight *= share;
   take_back(decision, kBetterOutsideReason,
-            fmt::format("the roads fit better just outside of the searched region, {:.0f} m from the best place in it: "
-                        "give a wider prior, or a map that reaches farther",
+            fmt::format("the roads fit better just outside of the prior, {:.0f} m from the best place in it: check the "
+                        "prior, or give a wider one",
                         distance_m(best.pose.position, better->pose.position)));
   return decision;
 }

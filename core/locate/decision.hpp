@@ -32,7 +32,7 @@ inline constexpr const char* kTimeLimitReason = "search-time-limit";
 /// Chance explains the best place: the UAV is not over the map, or what it sees looks like everywhere.
 inline constexpr const char* kNotAboveChanceReason = "not-above-chance";
 
-/// A place just outside of the searched region fits better.
+/// A place just outside of the prior fits better.
 inline constexpr const char* kBetterOutsideReason = "better-outside-prior";
 
 inline constexpr double kModeShare = 0.01;

@@ -147,7 +147,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   Decision decision = decide(found, calibration, options.confidence);
   if (options.looks_beyond_prior && (decision.status == FixStatus::kFix || decision.probability > kLikely)) {
     const SearchMode& best = found.modes.front();
-    if (const auto near = ground_beyond(region, best.pose, compared)) {
+    if (const auto near = ground_beyond(region, map.extent, best.pose, compared)) {
       decision = confirmed(std::move(decision), found, region, search_in(*near));
     }
   }

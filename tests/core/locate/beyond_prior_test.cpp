@@ -84,19 +84,31 @@ TEST_F(BeyondPrior, ASearchThatCouldNotFinishConfirmsNothing) {
   EXPECT_EQ(decision.reason, "search-time-limit");
 }
 
-TEST_F(BeyondPrior, LooksAQuarterOfTheFootprintAroundAPlaceThatIsNearerThanThatToTheBorder) {
+TEST_F(BeyondPrior, LooksHalfAFootprintBeyondTheBorderWhereThePlaceIsNear) {
   const FeatureMap features = FeatureMap::centred(CellArray(100, 50, kNoRoad), 4.0);
-  EXPECT_FALSE(ground_beyond(kRegion, {{799.0, 400.0}, {}}, features));
-  const auto near = ground_beyond(kRegion, {{801.0, 400.0}, {}}, features);
+  constexpr GridBox kMap{{-2000.0, -2000.0}, {3000.0, 3000.0}};
+  const auto near = ground_beyond(kRegion, kMap, {{500.0, 400.0}, {}}, features);
   ASSERT_TRUE(near);
-  EXPECT_TRUE(near->contains(GridPoint{801.0, 499.0}));
-  EXPECT_TRUE(near->contains(GridPoint{901.0, 400.0}));
-  EXPECT_FALSE(near->contains(GridPoint{902.0, 400.0}));
+  EXPECT_TRUE(near->contains(GridPoint{1099.0, 400.0}));
+  EXPECT_FALSE(near->contains(GridPoint{1101.0, 400.0}));
   EXPECT_TRUE(near->contains(Angle::degrees(39.0)));
   EXPECT_FALSE(near->contains(Angle::degrees(41.0)));
-  PoseRegion small = kRegion;
-  small.circle->radius_m = 25.0;
-  EXPECT_TRUE(ground_beyond(small, {{500.0, 400.0}, {}}, features)) << "it reaches beyond on all sides";
+}
+
+TEST_F(BeyondPrior, LooksNoFartherThanTheMapAndAKilometreAround) {
+  const FeatureMap features = FeatureMap::centred(CellArray(100, 50, kNoRoad), 4.0);
+  const GridPose middle{{500.0, 400.0}, {}};
+  EXPECT_FALSE(ground_beyond({.box = kRegion.box, .circle = {}, .heading = {}}, kRegion.box, middle, features))
+      << "nothing but the map was asked for";
+  constexpr GridBox kCountry{{-50e3, -50e3}, {50e3, 50e3}};
+  PoseRegion large = kRegion;
+  large.box = kCountry;
+  large.circle = GridCircle{middle.position, 9000.0};
+  EXPECT_FALSE(ground_beyond(large, kCountry, middle, features)) << "far from the border";
+  const auto near = ground_beyond(large, kCountry, {{9400.0, 400.0}, {}}, features);
+  ASSERT_TRUE(near);
+  EXPECT_TRUE(near->contains(GridPoint{9690.0, 400.0}));
+  EXPECT_FALSE(near->contains(GridPoint{8300.0, 400.0}));
 }
 
 // A confidence so low that the best place inside would be a fix.

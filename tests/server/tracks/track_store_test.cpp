@@ -137,7 +137,7 @@ TEST(TrackStore, SaysWhyItCannotBeOpened) {
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "noise.sqlite", kPlenty); }), "track-store-corrupt");
   const auto open_in_no_folder = [&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); };
   EXPECT_EQ(code_of(open_in_no_folder), "track-store-unavailable");
-  EXPECT_THAT(message_of(open_in_no_folder), HasSubstr("(unable to open database file)"));
+  EXPECT_THAT(message_of(open_in_no_folder), HasSubstr("(No such file or directory)"));
   testing::open_sqlite(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 4");
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
 }

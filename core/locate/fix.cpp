@@ -118,6 +118,27 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   return result;
 }
 
+struct Answer {
+  SearchResult found;
+  Decision decision;
+};
+
+Answer answer_to(const MapView& map, const FeatureMap& compared, const PoseRegion& region, const FixOptions& options,
+                 const Calibration& calibration, std::chrono::steady_clock::time_point started) {
+  SearchOptions how = search_options_of(options, map, started);
+  const GridReader read = compared_cells(map, compared.cell_m);
+  Answer answer{search(read, compared.cell_m, compared, region, how), {}};
+  answer.decision = decide(answer.found, calibration, options.confidence);
+  const bool likely = answer.decision.status == FixStatus::kFix || answer.decision.probability > kLikely;
+  if (!options.looks_beyond_prior || !likely || !answer.found.complete()) return answer;
+  if (const auto near = ground_beyond(region, map.extent, answer.found.modes.front().pose, compared)) {
+    how.proof_time = {};
+    const SearchResult beyond = search(read, compared.cell_m, compared, *near, how);
+    answer.decision = confirmed(std::move(answer.decision), answer.found, region, beyond);
+  }
+  return answer;
+}
+
 }  // namespace
 
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
@@ -137,20 +158,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
       return fix;
     }
   }
-  const auto search_in = [&](const PoseRegion& where) {
-    return search(compared_cells(map, cells.cell_m), cells.cell_m, compared, where,
-                  search_options_of(options, map, started));
-  };
-  const SearchResult found = search_in(region);
-
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
-  Decision decision = decide(found, calibration, options.confidence);
-  if (options.looks_beyond_prior && (decision.status == FixStatus::kFix || decision.probability > kLikely)) {
-    const SearchMode& best = found.modes.front();
-    if (const auto near = ground_beyond(region, map.extent, best.pose, compared)) {
-      decision = confirmed(std::move(decision), found, region, search_in(*near));
-    }
-  }
+  auto [found, decision] = answer_to(map, compared, region, options, calibration, started);
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);
   fix.explanation = std::move(decision.explanation);
@@ -168,7 +177,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();
   fix.searched_share = found.scanned_share;
-  fix.complete = found.complete();
+  fix.complete = fix.reason != kTimeLimitReason;
   fix.headings = found.headings;
   fix.scales = found.scales;
   fix.proof = found.proof;

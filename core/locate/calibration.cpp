@@ -51,11 +51,14 @@ json parsed(std::string_view text) {
 double Calibration::probability(const SearchFigures& figures) const {
   double sum = bias;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    sum += terms[i].weight * std::min(figures.*kCountedFigures[i].value, terms[i].max);
+    const double figure = figures.*kCountedFigures[i].value;
+    if (std::isnan(figure)) return 0.0;
+    sum += terms[i].weight * std::min(figure, terms[i].max);
   }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
-  const double not_by_chance = figures.roads_across < kMinRoadsAcross ? 0.0 : std::exp(-std::exp(-figures.surprise));
+  const bool one_road = !(figures.roads_across >= kMinRoadsAcross);
+  const double not_by_chance = one_road ? 0.0 : std::exp(-std::exp(-figures.surprise));
   return std::min(learned, std::max(kSureByExamples, not_by_chance));
 }
 

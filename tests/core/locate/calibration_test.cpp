@@ -50,6 +50,17 @@ TEST(Calibration, IsNotSureOfAPlaceThatRestsOnNoMoreThanOneStraightRoad) {
   EXPECT_GE(default_calibration().probability(far_ahead), 0.99);
 }
 
+TEST(Calibration, TrustsNoFigureThatIsNoNumber) {
+  for (const CountedFigure& figure : kCountedFigures) {
+    SearchFigures broken = figures(100.0, 100.0, 100.0);
+    broken.*figure.value = std::nan("");
+    EXPECT_EQ(default_calibration().probability(broken), 0.0) << figure.name;
+  }
+  SearchFigures broken = figures(100.0, 100.0, 100.0);
+  broken.roads_across = std::nan("");
+  EXPECT_LE(default_calibration().probability(broken), 0.5);
+}
+
 TEST(Calibration, RisesWithEveryFigure) {
   const Calibration& calibration = default_calibration();
   for (double surprise = -10.0; surprise < 20.0; surprise += 1.0) {

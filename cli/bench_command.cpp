@@ -129,6 +129,7 @@ void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
 
 void run_bench(BenchArguments& arguments) {
   const bench::Manifest manifest = manifest_of(arguments);
+  require_apart({arguments.json_file, arguments.calibrate_file}, {arguments.manifest});
   require_writable({arguments.json_file, arguments.calibrate_file});
   const auto detector = make_detector(arguments.detector);
   TaskProgress building("blocks");

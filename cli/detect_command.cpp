@@ -71,6 +71,7 @@ double mean_probability(const CellArray& cells) {
 }
 
 void run_detect(const DetectOptions& options) {
+  require_apart({options.target}, {options.image});
   const auto detector = make_detector(options.detector);
   const Picture picture = read_picture(options, *detector);
   const auto start = std::chrono::steady_clock::now();

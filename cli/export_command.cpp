@@ -9,6 +9,7 @@
 
 #include "cli/bbox_option.hpp"
 #include "cli/command.hpp"
+#include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
@@ -45,10 +46,7 @@ ExportFormat format_of(const ExportArguments& options) {
 void run_export(const ExportArguments& options) {
   const std::stop_token stop = stop_on_signals();
   const MapReader map(options.map);
-  std::error_code none;  // where there is no target yet
-  if (std::filesystem::equivalent(options.map, options.target, none)) {
-    throw InvalidInput("target-is-source", fmt::format("{} is the map itself: name another file", options.target));
-  }
+  require_apart({options.target}, {options.map});
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
   if (options.bbox) what.box = grid_box_around(map.info().settings.zone, *options.bbox, map.info().extent);
   Progress progress("export", "%", 0.1);

@@ -96,6 +96,8 @@ fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const G
 }
 
 void run_fly(const FlyOptions& options) {
+  require_apart({options.json_file, options.csv_file, options.geojson_file, options.pictures.film},
+                {options.map, options.over, options.course});
   require_writable({options.json_file, options.csv_file, options.geojson_file});
   const MapView map = map_of(options);
   const Ground ground = ground_of(options, map);

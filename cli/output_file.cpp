@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -20,7 +21,29 @@ namespace fs = std::filesystem;
                               file.string(), std::generic_category().message(reason)));
 }
 
+/// Devices, such as /dev/null and /dev/stdout, take what several outputs say.
+bool same_file(const fs::path& a, const fs::path& b) {
+  if (a.empty() || b.empty()) return false;
+  std::error_code none;  // where one of them does not exist yet
+  if (fs::exists(a, none) && !fs::is_regular_file(a, none)) return false;
+  return fs::equivalent(a, b, none) || fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
+
 }  // namespace
+
+void require_apart(std::initializer_list<fs::path> outputs, std::initializer_list<fs::path> inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    const auto is_it = [&](const fs::path& other) { return same_file(*output, other); };
+    if (std::any_of(inputs.begin(), inputs.end(), is_it)) {
+      throw InvalidInput("target-is-source",
+                         fmt::format("{} is read, and would be overwritten: name another file", output->string()));
+    }
+    if (std::any_of(outputs.begin(), output, is_it)) {
+      throw InvalidInput("target-given-twice",
+                         fmt::format("{} would hold two results: name a file for each", output->string()));
+    }
+  }
+}
 
 void write_file(const fs::path& file, std::string_view bytes) {
   errno = 0;

@@ -11,6 +11,11 @@ namespace roadfix::cli {
 /// part of it then.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
+/// Nothing is written over what the command reads, or over another of its outputs: throws InvalidInput
+/// "target-is-source" or "target-given-twice". Empty paths are files that nobody wants.
+void require_apart(std::initializer_list<std::filesystem::path> outputs,
+                   std::initializer_list<std::filesystem::path> inputs);
+
 /// What takes long looks first whether its answers can be written: throws as write_file. Changes nothing; empty paths
 /// are files that nobody wants.
 void require_writable(std::initializer_list<std::filesystem::path> files);

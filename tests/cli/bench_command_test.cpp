@@ -21,6 +21,9 @@ TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
   std::ofstream(folder / "town.json")
       << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
     "queries": [{"map": "town", "image": null, "count": 2, "footprint_m": [300, 300], "prior": {"radius_m": 200}}]})";
+  const std::string manifest = (folder / "town.json").string();
+  EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --json " + manifest).err,
+              HasSubstr("target-is-source"));
   const std::string file = (folder / "out.json").string();
   const ProgramResult bench =
       run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +

@@ -43,6 +43,7 @@ TEST_F(DetectCommand, SaysWhyItCannotWrite) {
   const ProgramResult full = run_program(folder.path(), frame + "/dev/full");
   EXPECT_EQ(full.code, 1);
   EXPECT_THAT(full.err, HasSubstr("/dev/full cannot be written (No space left on device): check"));
+  EXPECT_THAT(run_program(folder.path(), frame + (folder / "frame.png").string()).err, HasSubstr("target-is-source"));
   EXPECT_THAT(run_program(folder.path(), frame + "/no/such/folder/roads.png").err,
               HasSubstr("(No such file or directory): check"));
 }

@@ -42,5 +42,22 @@ TEST(OutputFile, IsLookedAtBeforehandAndLeftAsItIs) {
   EXPECT_EQ(code_of([&] { require_writable({old, "/nowhere/at/all.json"}); }), "result-unwritable");
 }
 
+TEST(OutputFile, IsNeitherWrittenOverWhatIsReadNorOverAnotherResult) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto map = folder.path() / "map.gpkg";
+  write_file(map, "a map");
+  std::filesystem::create_symlink(map, folder.path() / "link");
+  const auto refusal = [&](const std::filesystem::path& a, const std::filesystem::path& b) {
+    return code_of([&] { require_apart({a, b}, {map, ""}); });
+  };
+  const auto json = folder.path() / "out.json";
+  EXPECT_EQ(refusal(json, folder.path() / "out.csv"), "no error");
+  EXPECT_EQ(refusal("", ""), "no error");
+  EXPECT_EQ(refusal("/dev/null", "/dev/null"), "no error");
+  EXPECT_EQ(refusal(json, folder.path() / "none" / ".." / "map.gpkg"), "target-is-source");
+  EXPECT_EQ(refusal(folder.path() / "link", json), "target-is-source");
+  EXPECT_EQ(refusal(json, folder.path() / "." / "out.json"), "target-given-twice");
+}
+
 }  // namespace
 }  // namespace roadfix::cli

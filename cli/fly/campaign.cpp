@@ -1,6 +1,8 @@
 #include "cli/fly/campaign.hpp"
 
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -16,13 +18,27 @@ class Counter {
 
   void step() {
     if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
+    rethrow_failure();
     campaign_.progress(++done_, total_);
   }
 
+  /// Of one flight: it ends the others at their next step, since their figures would not be told.
+  void fail(std::exception_ptr failure) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+  }
+
  private:
+  void rethrow_failure() {
+    const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
   const Campaign& campaign_;
   std::int64_t total_;
   std::atomic<std::int64_t> done_ = 0;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
 };
 
 }  // namespace
@@ -33,7 +49,7 @@ std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
     results.push_back({filter, std::vector<Run>(static_cast<std::size_t>(campaign.flights.number))});
   }
   Counter counter(campaign);
-  parallel_for(campaign.flights.number, campaign.jobs, [&](int flight_number) {
+  const auto fly_one = [&](int flight_number) {
     const auto i = static_cast<std::size_t>(flight_number);
     const std::uint64_t seed = campaign.seed + i;
     const Flight flight = campaign.flights.source(flight_number, seed, [&] { counter.step(); });
@@ -43,6 +59,14 @@ std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
                           counter.step();
                           if (i == 0) campaign.watch(result.filter, record, at);
                         })};
+    }
+  };
+  parallel_for(campaign.flights.number, campaign.jobs, [&](int flight_number) {
+    try {
+      fly_one(flight_number);
+    } catch (...) {
+      counter.fail(std::current_exception());
+      throw;
     }
   });
   return results;

@@ -22,6 +22,7 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kAnswerTime{600};  // a first search of a large map takes its time
+constexpr std::chrono::seconds kFarewellTime{2};  // nobody waits for that answer
 
 /// Worth another try: the service is not there, has too much to do, or cannot write just now.
 bool may_pass(const std::optional<Answer>& answer) {
@@ -58,8 +59,8 @@ class Connection {
     constexpr std::chrono::milliseconds kLongestPause{2000};
     for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
       const std::optional<Answer> answer = send(client_);
-      if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
       if (!may_pass(answer)) return content_of(*answer);
+      if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
       if (Clock::now() + pause > began + patience_) {
         throw IoFailure("service-silent", fmt::format("the service at {} did not take a request within {} s ({})",
                                                       base_, patience_.count(), reason_of(answer)));
@@ -150,7 +151,7 @@ std::string as_query(const json& fields) {
 class ServiceLocalizer : public Localizer {
  public:
   ServiceLocalizer(const ServicePlan& plan, const std::string& filter, std::uint64_t seed)
-      : connection_(plan), keeps_(plan.keeps_tracks) {
+      : connection_(plan), base_(plan.base), keeps_(plan.keeps_tracks) {
     const std::string request = track_request(plan, filter, seed).dump();
     // Should the answer be lost, the track that was begun expires without a step.
     const json track =
@@ -159,6 +160,15 @@ class ServiceLocalizer : public Localizer {
       throw InvalidInput("service-answer-unreadable", plan.base + " begins no tracks: is it a Roadfix service?");
     }
     path_ = "/v1/tracks/" + track.at("id").get<std::string>();
+  }
+
+  /// The track of a flight that failed or was stopped would count among its client's until it expires.
+  ~ServiceLocalizer() override {
+    if (keeps_ || finished_) return;
+    try {
+      http::Client(base_, kFarewellTime).remove(path_);
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): what ended the flight is the error to tell of
+    }
   }
 
   TrackEstimate advance(const Report& step) override {
@@ -185,6 +195,7 @@ class ServiceLocalizer : public Localizer {
   double clock_ms() const override { return connection_.waited().count(); }
 
   void finish() override {
+    finished_ = true;
     if (keeps_) return;
     connection_.ask([&](http::Client& client) {
       std::optional<Answer> answer = client.remove(path_);
@@ -196,8 +207,10 @@ class ServiceLocalizer : public Localizer {
 
  private:
   mutable Connection connection_;
-  bool keeps_;
+  const std::string base_;
+  const bool keeps_;
   std::string path_;
+  bool finished_ = false;
 };
 
 }  // namespace

@@ -109,6 +109,29 @@ TEST_F(Vehicles, AreFollowedAndLeaveNoTracksBehind) {
   EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
 }
 
+TEST_F(Vehicles, LeaveNoTracksBehindWhereTheyFailOrAreStopped) {
+  const auto running = service("tracks.sqlite");
+  httplib::Client client = testing::client_of(*running);
+  const auto tracks = [&] { return testing::json_of(client.Get("/v1/tracks"))["tracks"].size(); };
+  plan_.keeps_tracks = false;
+  std::size_t active = 0;
+  const auto code_when = [&](const auto& first_step) {
+    campaign_.watch = [&](const std::string&, const Record&, const Localizer&) {
+      active = tracks();
+      first_step();
+    };
+    return testing::code_of([&] { flown(running->port()); });
+  };
+  EXPECT_EQ(code_when([] { throw IoFailure("picture-unwritable", "of the first vehicle"); }), "picture-unwritable");
+  EXPECT_GT(active, 0U);
+  EXPECT_EQ(tracks(), 0U);
+  std::stop_source stop;
+  campaign_.stop = stop.get_token();
+  plan_.stop = stop.get_token();
+  EXPECT_EQ(code_when([&] { stop.request_stop(); }), "flight-stopped");
+  EXPECT_EQ(tracks(), 0U);
+}
+
 TEST_F(Vehicles, SayWhyTheyCannotBeFollowed) {
   auto running = service("tracks.sqlite");
   flight_plan_.steps = 1;

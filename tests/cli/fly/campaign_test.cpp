@@ -3,10 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 #include "cli/fly/flight_pictures.hpp"
 #include "core/units/error.hpp"
@@ -71,6 +73,24 @@ TEST_F(Campaigns, StopWhenTheyAreAskedTo) {
   campaign.stop = stop.get_token();
   stop.request_stop();
   EXPECT_EQ(code_of([&] { run(campaign, map.zone); }), "flight-stopped");
+}
+
+TEST_F(Campaigns, EndAllFlightsWhereOneFails) {
+  campaign.filters = {"default"};
+  campaign.jobs = 2;
+  std::atomic<int> steps = 0;
+  std::atomic<bool> failed = false;
+  campaign.flights.source = [&](int number, std::uint64_t, const std::function<void()>& seen) -> Flight {
+    if (number == 1) {
+      failed = true;
+      throw InvalidInput("no-place-to-fly", "for one of them");
+    }
+    while (!failed) std::this_thread::yield();
+    while (++steps < 1'000'000) seen();
+    return {};
+  };
+  EXPECT_EQ(code_of([&] { run(campaign, map.zone); }), "no-place-to-fly");
+  EXPECT_LT(steps, 1'000'000);
 }
 
 TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {

@@ -85,7 +85,13 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
 /// Where the whole footprint lies on the map and on what is flown over, whatever the heading.
 GridBox flying_box(const Footprint& footprint, const GridBox& map, const GridBox& ground) {
   const double margin = 0.5 * std::hypot(footprint.width_m, footprint.height_m);
-  const GridBox box = grown(intersection(map, ground), -margin);
+  const GridBox shared = intersection(map, ground);
+  if (shared.empty()) {
+    throw InvalidInput("no-place-to-fly",
+                       "what lies below is no part of the map: take imagery and a map of one place (roadfix info says "
+                       "where the map lies)");
+  }
+  const GridBox box = grown(shared, -margin);
   if (!box.empty()) return box;
   throw InvalidInput("no-place-to-fly",
                      "the footprint does not fit where map and imagery overlap: make it smaller with --footprint-m");
@@ -159,6 +165,10 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
   const bool over_a_map = options.over.empty() || kind == ".gpkg";
   const bool sends_frames = options.send == "frames";
   if (sends_frames) require_sendable_frames(options, !over_a_map);
+  if (options.black_unseen && kind != ".csv") {
+    throw InvalidInput("not-recorded",
+                       "--black-unseen is about recorded flights: name one with --over, or leave it out");
+  }
   Ground ground;
   ground.footprint = {options.footprint_m.front(), options.footprint_m.back()};
   if (over_a_map) {

@@ -127,10 +127,13 @@ void add_output_options(CLI::App& command, FlyOptions& o) {
   add("--csv", o.csv_file, "Truth, estimate and covariance of every step")->type_name("FILE");
   add("--geojson", o.geojson_file, "True paths, estimated paths, ellipses")->type_name("FILE");
   add("--pictures", o.pictures.folder, "Draw steps of the first flight into this folder")->type_name("DIR");
-  add("--picture-steps", o.pictures.steps, "Which steps; default: 0,1,5,20,80 and the last")->delimiter(',');
+  add("--picture-steps", o.pictures.steps, "Which steps; default: 0,1,5,20,80 and the last")
+      ->delimiter(',')
+      ->needs("--pictures");
   add("--film", o.pictures.film, "The first flight as an animated GIF, filters side by side")->type_name("FILE");
   add("--film-rate", o.pictures.frames_per_second, "Steps per second of the film")
       ->capture_default_str()
+      ->needs("--film")
       ->check(CLI::Range(1, 50));
   add("--picture-px", o.pictures.longest_px, "Longer side of a picture")
       ->capture_default_str()
@@ -142,7 +145,9 @@ void add_service_options(CLI::App& command, FlyOptions& o) {
   command.add_option("--server", o.server, "http://HOST:PORT; the vehicles are followed by its tracks")
       ->type_name("URL")
       ->group(kGroup);
-  command.add_option("--map", o.served_map, "The map's name there; default: that of the file")->group(kGroup);
+  command.add_option("--map", o.served_map, "The map's name there; default: that of the file")
+      ->needs("--server")
+      ->group(kGroup);
   command
       .add_option("--send", o.send,
                   "What the vehicles send: features, the roads that they detect themselves; frames, the pictures (as "
@@ -156,9 +161,12 @@ void add_service_options(CLI::App& command, FlyOptions& o) {
       ->group(kGroup);
   command.add_option("--patience", o.patience_s, "Seconds in which a step is sent again when no answer comes")
       ->capture_default_str()
+      ->needs("--server")
       ->check(CLI::Range(0, 86'400))
       ->group(kGroup);
-  command.add_flag("--keep-tracks", o.keep_tracks, "Leave the tracks in the service after the flights")->group(kGroup);
+  command.add_flag("--keep-tracks", o.keep_tracks, "Leave the tracks in the service after the flights")
+      ->needs("--server")
+      ->group(kGroup);
 }
 
 }  // namespace

@@ -100,12 +100,29 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(roadfix(eight_steps + " --kidnap 8,200").err, HasSubstr("kidnapping-too-late"));
   EXPECT_THAT(roadfix(eight_steps + " --outage 5,3").err, HasSubstr("outage-empty"));
   EXPECT_THAT(roadfix(eight_steps + " --outage 8,10").err, HasSubstr("outage-empty"));
+  const std::string elsewhere = file("elsewhere");
+  ASSERT_EQ(roadfix("world " + elsewhere + " --centre 37.9,38.3 --size-km 0.3x0.3 --gsd 1 --frames 0").code, 0);
+  const ProgramResult apart = roadfix("fly " + map() + " --detector tree --over " + elsewhere + "/post.tif");
+  EXPECT_THAT(apart.err, HasSubstr("is no part of the map"));
+  EXPECT_THAT(roadfix(eight_steps + " --black-unseen").err, HasSubstr("not-recorded"));
+  EXPECT_THAT(roadfix(eight_steps + " --csv " + map()).err, HasSubstr("target-is-source"));
   const ProgramResult lost = roadfix("fly " + map() + " --footprint-m 200 --json /no/such/folder/out.json");
   EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
   EXPECT_EQ(lost.out, "") << "said before the flights, not after them";
   const std::string over_service = "fly " + map() + " --footprint-m 200 --steps 1 --vehicles 2 --map town --server ";
   EXPECT_THAT(roadfix(over_service + "127.0.0.1").err, HasSubstr("bad-url"));
   EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));
+}
+
+TEST_F(FlyCommand, RefusesOptionsThatWouldDoNothing) {
+  const std::string flight = "fly " + map() + " --footprint-m 200 --steps 1 ";
+  for (const char* of_a_service : {"--map town", "--patience 5", "--keep-tracks"}) {
+    const ProgramResult flown = roadfix(flight + of_a_service);
+    EXPECT_EQ(flown.code, 2) << of_a_service;
+    EXPECT_THAT(flown.err, HasSubstr("requires --server"));
+  }
+  EXPECT_THAT(roadfix(flight + "--picture-steps 1").err, HasSubstr("requires --pictures"));
+  EXPECT_THAT(roadfix(flight + "--film-rate 5").err, HasSubstr("requires --film"));
 }
 
 TEST_F(FlyCommand, SendsFramesOnlyWhereItHasSomeAndAServiceDetectsTheirRoads) {

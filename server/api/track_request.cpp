@@ -27,6 +27,11 @@ VehicleNoise parse_vehicle(const Fields& fields) {
         Angle::degrees(fields.optional_number("turn_rate_deg_s", kDegrees).value_or(0.0)).radians(),
         Angle::degrees(fields.optional_number("turn_rate_sigma_deg_s", {0.0, 360.0}).value_or(5.0)).radians()};
     noise.planar = planar;
+  } else {
+    for (const char* name : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {
+      if (!fields.has(name)) continue;
+      throw InvalidField("missing-parameter", "speed_m_s", fmt::format("'{}' goes with speed_m_s", name));
+    }
   }
   noise.odometry_share = fields.optional_number("odometry_share", {0.0, 1.0}).value_or(noise.odometry_share);
   noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),

@@ -102,6 +102,9 @@ TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   EXPECT_EQ(refused({{"filter", "best"}}), "400 bad-parameter filter");
   EXPECT_EQ(refused({{"particles", 1'000'000'000}}), "400 parameter-out-of-range particles");
   EXPECT_EQ(refused({{"color", 1}}), "400 unknown-field color");
+  for (const char* without_speed : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {
+    EXPECT_EQ(refused({{without_speed, 1}}), "400 missing-parameter speed_m_s") << without_speed;
+  }
   begin(client);
   EXPECT_EQ(refused(json::object()), "429 too-many-tracks");
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <regex>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/gdal_session.hpp"
@@ -25,6 +26,20 @@ cv::Mat3b read_pixels(const std::string& picture, cv::Rect pixels) {
     throw IoFailure("world-unreadable", fmt::format("{}: cannot be read again ({})", picture, messages.text()));
   }
   return result;
+}
+
+bool is_frame(const std::filesystem::path& file) {
+  static const std::regex kName("frame_[0-9]+\\.png");
+  return std::regex_match(file.filename().string(), kName);
+}
+
+/// Frames of a world that was rendered here before show another place, or none of this table.
+void remove_frames(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (is_frame(entry.path())) old.push_back(entry.path());
+  }
+  for (const auto& file : old) std::filesystem::remove(file);
 }
 
 }  // namespace
@@ -64,6 +79,7 @@ cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, cons
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
                   const Placement& placement, const std::vector<GridPose>& poses) {
   std::filesystem::create_directories(folder);
+  remove_frames(folder);
   std::ofstream table(folder + "/frames.csv");
   table << "file,lat,lon,heading_deg,gsd_m\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -229,6 +229,18 @@ TEST(World, LeavesNoHalfPictureWhenItIsStopped) {
   EXPECT_FALSE(std::filesystem::exists(folder / "post.tif.partial"));
 }
 
+TEST(World, KeepsNoFramesOfTheWorldThatWasRenderedThereBefore) {
+  const TemporaryFolder folder;
+  render(small_settings(), folder.path());
+  std::ofstream(folder / "frames" / "frame_of_mine.png") << "not rendered";
+  WorldSettings settings = small_settings();
+  settings.frames = 1;
+  render(settings, folder.path());
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames" / "frame_01.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames" / "frame_02.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames" / "frame_of_mine.png"));
+}
+
 TEST(World, SaysSoWhenItCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";

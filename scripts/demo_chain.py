@@ -146,13 +146,17 @@ def report(frame, answer):
 
 
 def ask_all(base, frames):
-    errors = []
+    errors, fixes = [], 0
     for i, frame in enumerate(frames):
-        errors.append(report(frame, ask(base, frame, first=i == 0)))
+        answer = ask(base, frame, first=i == 0)
+        fixes += answer["status"] == "fix"
+        errors.append(report(frame, answer))
     known = [error for error in errors if error is not None]
     right = sum(error <= FALSE_FIX_M for error in known)
-    print(f"\n{len(frames)} frames, {len(known)} answered with a fix that can be checked: {right} within {FALSE_FIX_M:g} m, "
-          f"{len(known) - right} wrong", flush=True)
+    checked = f"{right} within {FALSE_FIX_M:g} m, {len(known) - right} wrong"
+    if fixes and not known:
+        checked = "whether rightly is for you to see, since the true places are not known"
+    print(f"\nframes: {len(frames)}, answered with a fix: {fixes}; {checked}", flush=True)
     return right
 
 
@@ -177,6 +181,11 @@ def parse_arguments():
         parser.error("--frame needs --gsd, the size of its pixels in metres")
     if (arguments.frame or arguments.after) and not arguments.images:
         parser.error("--frame and --after need the IMAGE that the map is made from")
+    if arguments.frames < 1:
+        parser.error("--frames: ask for one at least")
+    for file in arguments.frame:
+        if file.is_dir():
+            parser.error(f"{file} is a folder: name each of its frames with a --frame of its own")
     for file in arguments.images + arguments.frame + [arguments.after]:
         if file is not None and not file.exists():
             parser.error(f"there is no file {file}")

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
+#include <fstream>
 #include <mutex>
+#include <string_view>
 
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
@@ -54,6 +57,15 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
       fmt::format("{}: tracks cannot be stored here ({}): start the service with --tracks FILE", file, detail)));
 }
 
+/// By the application id in the header of a SQLite file, which is 0 in ours and "GPKG" in a map.
+bool is_of_another_program(const std::filesystem::path& path) {
+  std::array<char, 72> head{};
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(head.data(), head.size())) return false;
+  const std::string_view text(head.data(), head.size());
+  return text.starts_with("SQLite format 3") && text.substr(68) != std::string_view("\0\0\0\0", 4);
+}
+
 StoredTrack track_of(const sqlite::Statement& row) {
   return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5), row.integer(6), row.text(7)};
 }
@@ -65,6 +77,12 @@ StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.i
 class TrackStore::Impl {
  public:
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
+    if (is_of_another_program(path_)) {  // looked at first, since opening it would change its journal mode
+      throw IoFailure("track-store-unavailable",
+                      fmt::format("{}: holds no tracks but a map or what another program wrote: start the service with "
+                                  "--tracks FILE",
+                                  path_.string()));
+    }
     with([&] {
       connection_.emplace(path_, sqlite::Access::kCreate, store_error);
       // Who holds the file holds it as long as it runs, and others ask in the meantime.

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/map_file.hpp"
 #include "tests/support/sqlite_file.hpp"
+#include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::server {
@@ -129,6 +132,21 @@ TEST(TrackStore, SaysThatItMayNotBeWrittenTo) {
     file.put(3);
   }
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "tracks.sqlite", kPlenty); }), "track-store-read-only");
+}
+
+TEST(TrackStore, LeavesAMapThatIsNamedByMistakeAsItIs) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path map = folder / "town.gpkg";
+  testing::write_map_file(map, testing::street_map(41, {2.0, {300'100, -3'200'050}, 40, 40}), 2.0);
+  const auto bytes = [&] {
+    std::ifstream in(map, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string before = bytes();
+  const auto open = [&] { TrackStore(map, kPlenty); };
+  EXPECT_EQ(code_of(open), "track-store-unavailable");
+  EXPECT_THAT(message_of(open), HasSubstr("holds no tracks but a map"));
+  EXPECT_EQ(bytes(), before);
 }
 
 TEST(TrackStore, SaysWhyItCannotBeOpened) {

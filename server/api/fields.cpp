@@ -179,6 +179,14 @@ const json* Fields::member(const std::string& name) const {
   return value == nullptr || value->from_text ? nullptr : &value->json;
 }
 
+std::string Fields::summary(std::span<const std::string> left_out) const {
+  json kept = json::object();
+  for (const auto& [name, value] : values_) {
+    if (std::ranges::find(left_out, name) == left_out.end()) kept[name] = value.json;
+  }
+  return kept.dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;

@@ -56,6 +56,8 @@ class Fields {
   std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t count) const;
   /// The member of a JSON body as it is; nullptr where it is absent.
   const nlohmann::json* member(const std::string& name) const;
+  /// Names and values of all but `left_out`, to compare requests by: the order in which they came does not count.
+  std::string summary(std::span<const std::string> left_out) const;
 
  private:
   double to_number(const std::string& name, const nlohmann::json& value) const;

@@ -89,6 +89,31 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
   EXPECT_EQ(testing::refusal(send(client, "nobody", steps[0])), "404 track-not-found");
 }
 
+TEST_F(Tracks, KnowARepeatedStepHoweverItIsPacked) {
+  const auto running = service();
+  httplib::Client client = client_of(*running);
+  const std::string path = "/v1/tracks/" + begin(client) + "/steps";
+  const auto posted = [&](const std::string& body, const std::string& type) {
+    return client.Post(path.c_str(), body, type.c_str());
+  };
+  const auto form = [&](const std::string& boundary) {
+    const auto part = [&](const std::string& name, const std::string& value) {
+      return "--" + boundary + "\r\nContent-Disposition: form-data; name=\"" + name + "\"\r\n\r\n" + value + "\r\n";
+    };
+    const std::string picture = flight(1).front().picture;
+    return posted(part("sequence", "0") + part("time_us", "1000000") + part("cell_m", "2") + part("image", picture) +
+                      "--" + boundary + "--\r\n",
+                  "multipart/form-data; boundary=" + boundary);
+  };
+  const std::string first = form("one")->body;
+  EXPECT_EQ(form("another")->body, first);
+  EXPECT_EQ(posted(R"({"sequence": 1, "time_us": 2000000, "format": "nmea"})", "application/json")->status, 200);
+  const auto again = posted(R"({"time_us": 2000000, "sequence": 1, "format": "mavproxy"})", "application/json");
+  EXPECT_EQ(testing::json_of(again)["fix_type"], 1) << again->body;
+  EXPECT_EQ(again->get_header_value("Roadfix-Repeated"), "true");
+  EXPECT_EQ(testing::refusal(posted(R"({"sequence": 1, "time_us": 2000001})", "application/json")), "409 step-differs");
+}
+
 TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   const auto running = service({"--max-client-tracks", "1"});
   httplib::Client client = client_of(*running);

@@ -29,6 +29,18 @@ TEST(Fields, ReadNumbersFromTextAndFromJsonAlike) {
   EXPECT_EQ(fields.optional_number("radius_m", kPositive), std::nullopt);
 }
 
+TEST(Fields, AreSummedUpTheSameInAnyOrder) {
+  const std::vector<std::string> known{"lon", "cols", "format"};
+  const auto summary = [&](const char* body) {
+    Fields fields(http::Parameters{{"lat", "57.7"}});
+    fields.add(json::parse(body), known);
+    return fields.summary(std::vector<std::string>{"format"});
+  };
+  EXPECT_EQ(summary(R"({"lon": 11.97, "cols": 12})"), summary(R"({"cols":12,"format":"nmea","lon":11.97})"));
+  EXPECT_NE(summary(R"({"lon": 11.97, "cols": 12})"), summary(R"({"lon": 11.97, "cols": 13})"));
+  EXPECT_NE(summary(R"({"lon": 11.97, "cols": 12})"), summary(R"({"lon": 11.97})"));
+}
+
 TEST(Fields, RefuseWhatIsNoFiniteNumberInRange) {
   for (const char* text : {"", "abc", "1e999", "nan", "inf", "-inf", "1,5", "1 ", " 1", "0x10", "1e"}) {
     const Fields fields(http::Parameters{{"lat", text}});

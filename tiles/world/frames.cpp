@@ -78,7 +78,6 @@ cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, cons
 
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
                   const Placement& placement, const std::vector<GridPose>& poses) {
-  std::filesystem::create_directories(folder);
   remove_frames(folder);
   std::ofstream table(folder + "/frames.csv");
   table << "file,lat,lon,heading_deg,gsd_m\n";

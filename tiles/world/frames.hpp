@@ -18,7 +18,8 @@ std::vector<GridPose> draw_poses(const WorldSettings& settings, const Placement&
 /// open_dataset throws, and IoFailure "world-unreadable".
 cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, const GridPose& pose, double footprint_m);
 
-/// FOLDER/frame_1.png ... and FOLDER/frames.csv: file, lat, lon, heading_deg (from true north), gsd_m.
+/// FOLDER/frame_01.png ... and FOLDER/frames.csv: file, lat, lon, heading_deg (from true north), gsd_m. The folder is
+/// there; frames of an earlier world go.
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
                   const Placement& placement, const std::vector<GridPose>& poses);
 

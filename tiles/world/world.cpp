@@ -166,7 +166,7 @@ WorldReport render_world(const WorldSettings& settings, const std::filesystem::p
   const Placement placement = place(settings, centre_of(settings));
   const auto [before, after] = plans_of(settings, placement);
 
-  make_folder(folder);
+  make_folder(folder / "frames");
   Photographer photographer(placement, settings.seed, progress, std::move(stop));
   Random days(settings.seed, kDays);
   const Conditions day_before = settings.varied ? any_day(days, 1) : summer_before();

@@ -245,6 +245,8 @@ TEST(World, SaysSoWhenItCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
   EXPECT_EQ(failure(small_settings(), folder / "file"), "world-unwritable");
+  std::ofstream(folder / "frames") << "in the way of the frames";
+  EXPECT_EQ(failure(small_settings(), folder.path()), "world-unwritable");
 }
 
 TEST(World, HasBlocksBuildingsAndTreesEvenWhenSmall) {

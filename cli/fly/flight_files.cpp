@@ -23,11 +23,10 @@ Angle axis_of(const Record& record, const UtmZone& zone) {
   return zone.grid_from_true(record.estimate.clusters.front().ellipse_heading, record.best.position);
 }
 
-Covariance covariance_of(const Record& record, const UtmZone& zone) {
-  const auto& sigma = record.estimate.clusters.front().sigma_m;
-  const Angle axis = axis_of(record, zone);
-  const double s = sin(axis);
-  const double c = cos(axis);
+Covariance covariance_of(const TrackCluster& cluster) {
+  const auto& sigma = cluster.sigma_m;
+  const double s = sin(cluster.ellipse_heading);
+  const double c = cos(cluster.ellipse_heading);
   const double along = sigma[0] * sigma[0];
   const double across = sigma[1] * sigma[1];
   return {along * s * s + across * c * c, (along - across) * s * c, along * c * c + across * s * s};
@@ -77,7 +76,7 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
   for (const Record& r : run.records) {
     const TrackCluster& best = r.estimate.clusters.front();
     const LatLon truth = zone.unproject(r.truth.position);
-    const Covariance covariance = covariance_of(r, zone);
+    const Covariance covariance = covariance_of(best);
     lines += fmt::format(
         "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{:.3f},{:.3f},{:.2f},{:.3f},"
         "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",

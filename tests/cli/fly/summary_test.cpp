@@ -91,5 +91,13 @@ TEST(FlightFiles, GiveALineForEachStepAndTheEllipseOfEachClaim) {
   EXPECT_EQ(features[3]["geometry"]["coordinates"].size(), 2u);
 }
 
+TEST(FlightFiles, GiveTheCovarianceToTrueEastAndNorthAsTheEllipse) {
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  fly::Run run = run_with({-5.0});
+  // Grid north is 1.4 degrees off true north here.
+  run.records[0].truth = run.records[0].best = {{600'000.0, 6'400'000.0}, {}};
+  EXPECT_THAT(csv_lines("default", run, zone), HasSubstr(",4.000,2.000,0.00,0.000,4.0000,0.0000,16.0000,"));
+}
+
 }  // namespace
 }  // namespace roadfix::fly

@@ -11,8 +11,8 @@
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/names_once.hpp"
 #include "core/units/text.hpp"
-#include "server/api/names_once.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -212,10 +212,12 @@ json parse_text(std::string_view text) {
                        fmt::format("bench manifest: '{}' is given twice in one object: remove one of them", name));
   };
   try {
-    return json::parse(text, api::NamesOnce(refuse_second));
+    return json::parse(text, NamesOnce(refuse_second));
   } catch (const json::parse_error& error) {
     throw InvalidInput("manifest-json",
                        fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));
+  } catch (const json::out_of_range& error) {
+    throw InvalidInput("manifest-json", fmt::format("bench manifest: {}", error.what()));
   }
 }
 

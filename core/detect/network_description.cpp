@@ -7,6 +7,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/names_once.hpp"
 
 namespace roadfix {
 namespace {
@@ -77,7 +78,8 @@ void check_tiles(const NetworkDescription& network) {
 }  // namespace
 
 NetworkDescription parse_network_description(std::string_view text) {
-  const json object = json::parse(text, nullptr, false);
+  const NamesOnce names_once([](const std::string& name) { refuse(fmt::format("\"{}\" is given twice", name)); });
+  const json object = json::parse(text, names_once, false);
   if (!object.is_object()) refuse("it is not a JSON object");
   NetworkDescription network;
   network.name = text_of(object, "name");

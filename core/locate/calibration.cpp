@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "core/units/names_once.hpp"
 #include "schema/schema.hpp"
 
 namespace roadfix {
@@ -38,11 +39,15 @@ Calibration::Term term(const json& terms, const std::string& name) {
 
 json parsed(std::string_view text) {
   try {
-    return json::parse(text);
+    return json::parse(text, NamesOnce([](const std::string& name) { refuse(name, "is given twice"); }));
   } catch (const json::parse_error& error) {
     throw InvalidInput("calibration-json", fmt::format("calibration file: byte {} is no JSON; write a new one with "
                                                        "roadfix bench --calibrate",
                                                        error.byte));
+  } catch (const json::out_of_range& error) {
+    throw InvalidInput("calibration-json", fmt::format("calibration file: {}; write a new one with roadfix bench "
+                                                       "--calibrate",
+                                                       error.what()));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
-#include "server/api/names_once.hpp"
+#include "core/units/names_once.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {

@@ -91,6 +91,7 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("}]}],\n", R"(}]}, {"name": "town", "sources": [{"path": "b.tif", "as": "imagery"}]}],)"),
                    "maps[1].name is 'town'");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
+  expect_complaint(with("\"count\": 7", "\"count\": 7e999"), "number overflow");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");
 }
 

@@ -17,15 +17,17 @@ json example() {
     "calibration": { "scale": 0.9, "bias": -0.5 }, "fnv1a64": "af63dc4c8601ec8c" })");
 }
 
-std::string refusal(const json& description) {
+std::string refusal_of_text(const std::string& text) {
   try {
-    parse_network_description(description.dump());
+    parse_network_description(text);
   } catch (const InvalidInput& error) {
     EXPECT_EQ(error.code(), "model-description");
     return error.what();
   }
   return "accepted";
 }
+
+std::string refusal(const json& description) { return refusal_of_text(description.dump()); }
 
 TEST(NetworkDescription, ReadsEachField) {
   const auto network = parse_network_description(example().dump());
@@ -76,6 +78,15 @@ TEST(NetworkDescription, LocalContrastIsOptionalAndItsWindowOdd) {
   EXPECT_NE(refusal(local).find("odd"), std::string::npos);
   local["local_contrast"] = true;
   EXPECT_NE(refusal(local).find("object"), std::string::npos);
+}
+
+TEST(NetworkDescription, GivesNoNameTwice) {
+  const std::string text = example().dump();
+  for (const std::string field : {R"("bias":-0.5)", R"("gsd_m":1.5)"}) {
+    std::string doubled = text;
+    doubled.insert(text.find(field), field + ",");
+    EXPECT_NE(refusal_of_text(doubled).find("is given twice"), std::string::npos) << doubled;
+  }
 }
 
 TEST(NetworkDescription, RefusesTextThatIsNotAnObject) {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace roadfix::api {
+namespace roadfix {
 
 /// Given to nlohmann::json::parse; calls `refuse`, which throws, with the name.
 template <typename Refuse>
@@ -31,4 +31,4 @@ class NamesOnce {
   std::vector<std::set<std::string>> seen_;  ///< of the objects that are open, outermost first
 };
 
-}  // namespace roadfix::api
+}  // namespace roadfix

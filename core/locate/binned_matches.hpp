@@ -15,14 +15,14 @@
 namespace roadfix {
 
 struct BinnedPose {
-  LatticeIndex cell;  ///< of the nadir, in cells of the feature map's size
-  int bin = 0;        ///< of the heading, wrapped
-  std::size_t index = 0;
+  LatticeIndex cell;      ///< the cell below the vehicle, on the lattice of the feature map's cell size
+  int bin = 0;            ///< the heading, as one of the bins from 0 to HeadingBins::count() - 1
+  std::size_t index = 0;  ///< where the sums of this pose go
 };
 
-/// sums[pose.index] of each pose (its bin within 0 to bins.count() - 1, a multiple of four: in_quarters()); the others
-/// are left as they are. `features` are in cells of the map or of an overview (see in_cells_of()). Throws Interrupted
-/// when asked to stop.
+/// Writes the sums of each pose to sums[pose.index] and leaves all other elements as they are. The number of bins must
+/// be a multiple of four (see in_quarters()). `features` are in cells of the map or of an overview (see in_cells_of()).
+/// Throws Interrupted when asked to stop.
 void match_binned(const MapView& map, const FeatureMap& features, const HeadingBins& bins,
                   std::vector<BinnedPose> poses, int threads, const std::stop_token& stop, std::span<MatchSums> sums);
 

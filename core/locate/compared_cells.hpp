@@ -13,9 +13,11 @@
 
 namespace roadfix {
 
-/// For a search in cells of `finest_cell_m`. `map` outlives the reader; coarser cells are kept in MapView::searches,
-/// and every search that shares it has to read through such a reader.
+/// Reads half the log odds of `map` for a search whose finest cells are `finest_cell_m` wide. `map` must outlive the
+/// reader. Coarser cells are kept in MapView::searches, so every search that shares it has to read through such a
+/// reader.
 GridReader compared_cells(const MapView& map, double finest_cell_m);
+/// The feature map as half its log odds.
 FeatureMap compared_cells(FeatureMap features);
 
 }  // namespace roadfix

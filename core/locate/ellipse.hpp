@@ -8,15 +8,17 @@
 
 namespace roadfix {
 
-/// So many sigmas along each axis hold 95 % of the positions: the square root of chi^2 with two degrees of freedom.
+/// The ellipse of 95 % has axes of this many sigmas: the square root of the 0.95 quantile of chi^2 with two degrees of
+/// freedom.
 inline constexpr double kSigmasOf95 = 2.4477;
 
 struct Ellipse {
-  std::array<double, 2> sigma_m;  ///< along the major and minor axis
-  Angle heading;                  ///< of the major axis, clockwise from true north, within [0, 180) degrees
+  std::array<double, 2> sigma_m;  ///< 1 sigma along the major and the minor axis
+  Angle heading;                  ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
 };
 
-/// `covariance` is that of the match alone at `at`. The registration error of the map's sources is added to both axes.
+/// `at` is where the match placed the vehicle, `covariance` (m^2, rad^2) how uncertain the match alone leaves that. The
+/// registration error of the map's sources is added to both axes.
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance);
 
 }  // namespace roadfix

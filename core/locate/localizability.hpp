@@ -9,7 +9,7 @@ namespace roadfix {
 struct LocalizabilityQuery {
   LatLon position;
   double footprint_m = 400.0;  ///< side of the square of ground that a frame shows
-  double radius_m = 1500.0;    ///< of the prior circle that the place must be told from
+  double radius_m = 1500.0;    ///< radius of the prior: the place must be told from all others in this circle
   /// What the detector is assumed to do: about as well as over a damaged town.
   FeatureQuality quality{.erase = 0.25, .invent = 0.25};
   FixOptions fix;
@@ -19,8 +19,8 @@ struct Localizability {
   FixStatus status = FixStatus::kNoFix;  ///< what the frame would give; `fix` only at the place itself
   std::string reason;                    ///< as of a Fix, or "wrong-place" where the best place is another one
   double probability = 0.0;     ///< that the frame would be placed rightly; 0 where the best place is another one
-  double road_share = 0.0;      ///< of the observed ground of the footprint
-  double observed_share = 0.0;  ///< of the footprint
+  double road_share = 0.0;      ///< how much of the observed part of the footprint is road, 0 to 1
+  double observed_share = 0.0;  ///< how much of the footprint the map has observed, 0 to 1
   std::vector<FixMode> alike;   ///< other places that fit, best first
 };
 

@@ -22,22 +22,23 @@ enum class LikelihoodKind {
 /// Assumed values, not learned from data: they set how soon the filter commits, not which place it prefers.
 struct MeasurementModel {
   LikelihoodKind kind = LikelihoodKind::kCorrelation;
-  double expected_correlation = 0.25;  ///< at the true pose
-  double detection_rate = 0.6;         ///< a
-  double false_rate = 0.1;             ///< b
-  /// Ground that counts as one sample, since errors of near cells go together: four times the kSampleM2 of a search,
-  /// for a sample that is counted twice makes a track sure too early.
+  double expected_correlation = 0.25;  ///< mean correlation at the true pose, 0 to 1
+  double detection_rate = 0.6;         ///< a: probability that a road of the map is seen
+  double false_rate = 0.1;             ///< b: probability that road is seen where the map has none
+  /// Square metres of ground that count as one independent sample, since errors of near cells go together. Four times
+  /// the kSampleM2 of a search: a sample that is counted twice makes a track sure too early.
   double independent_m2 = 900.0;
-  double temper = 0.5;         ///< exponent, since consecutive frames see the same ground
-  double useless_share = 0.1;  ///< of frames that say nothing even at the true pose
+  double temper = 0.5;         ///< exponent of each likelihood, below 1 since consecutive frames see the same ground
+  double useless_share = 0.1;  ///< how many of all frames say nothing even at the true pose, 0 to 1
 
-  /// Log of the likelihood ratio to chance (of P for equation 7; -inf where it is 0).
+  /// Natural logarithm of how much likelier the measurement is at this pose than by chance; for equation (7) the
+  /// logarithm of P itself, -infinity where P is 0.
   ///
-  /// `frame_cells` is how many cells the feature map observes. Those that the map does not are taken to agree as by
-  /// chance: by saying nothing of them, a pose mostly outside the map would beat all that have something against them.
-  /// Equation (7) is as it stands and speaks of the cells observed in both, however few.
+  /// `frame_cells` is how many cells the feature map observes. Those of them that the map does not observe are taken to
+  /// agree as by chance. Were they left out, a pose mostly outside the map, where little can disagree, would beat the
+  /// true one. Equation (7) is as it stands and counts the cells observed in both, however few.
   double log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const;
-  /// Whether a measurement with this mean likelihood supports the belief.
+  /// Whether a measurement whose mean likelihood under the belief is this supports the belief.
   bool supports(double mean_likelihood) const;
 };
 

@@ -13,7 +13,7 @@ namespace roadfix {
 
 struct ParticleMatches {
   std::vector<MatchSums> sums;  ///< one for each particle, in their order; n = 0 for those without weight
-  /// Factor on the feature map's size at which each was matched.
+  /// By how many times larger than told the feature map was taken to be for each particle.
   std::vector<double> scales;
 };
 

@@ -6,7 +6,7 @@
 
 namespace roadfix {
 
-/// Cells of the map or one of its overviews, the coarsest that still holds what the feature map shows.
+/// The feature map in cells of the map or of one of its overviews: the coarsest that still hold what it shows.
 /// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 

@@ -13,23 +13,23 @@
 
 namespace roadfix {
 
-/// All in cells of one size.
+/// All frames have cells of one size.
 class RecentFrames {
  public:
   static constexpr std::size_t kMaxFrames = 8;
-  static constexpr int kMaxAcross = 512;                           ///< cells; a larger frame stands for itself
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 19U;  ///< of all frames, observed or not
+  static constexpr int kMaxAcross = 512;                           ///< cells per side; a larger frame is not kept
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 19U;  ///< in all kept frames together, observed or not
   /// A frame closer to a kept one than this share of its shorter side shows nothing new.
   static constexpr double kApartShare = 0.25;
-  /// 1 sigma by which the odometry may have lost a frame at its rim.
+  /// A frame is kept until the odometry may have misplaced its rim by this much, 1 sigma.
   static constexpr double kMaxSlipM = 20.0;
-  static constexpr double kMaxSides = 1.5;  ///< of a frame, from it to the vehicle
+  /// A frame is kept until the vehicle is this many of its longer sides away.
+  static constexpr double kMaxSides = 1.5;
 
   struct Frame {
-    PlacedFeatures placed;  ///< from the vehicle now
-    // Variances of that, per axis.
-    double position_m2 = 0.0;
-    double turn_rad2 = 0.0;
+    PlacedFeatures placed;     ///< where the frame was taken, seen from where the vehicle is now
+    double position_m2 = 0.0;  ///< variance of that position, per axis
+    double turn_rad2 = 0.0;    ///< variance of its heading
 
     friend bool operator==(const Frame&, const Frame&) = default;
   };
@@ -42,9 +42,10 @@ class RecentFrames {
   /// The vehicle has moved on; lets go of the frames that are then too far off. `odometry` and `covariance` as
   /// OdometryMotion takes them.
   void move(const Odometry& odometry, const OdometryCovariance& covariance);
-  /// `features` are of where the vehicle is now.
+  /// Keeps what is seen where the vehicle is now, if that is new ground and not too large.
   void keep(const FeatureMap& features);
-  /// `features` with the kept frames around them, its nadir theirs.
+  /// `features`, seen where the vehicle is now, with the kept frames laid around them. The nadir of the result is that
+  /// of `features`.
   FeatureMap laid_around(const FeatureMap& features) const;
   void clear() { frames_.clear(); }
 

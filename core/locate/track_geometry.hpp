@@ -10,17 +10,17 @@
 
 namespace roadfix {
 
-/// So near that a search and the particles mean one place.
+/// Whether two poses are so near that a search and the particles mean one place.
 bool is_same_place(const GridPose& a, const GridPose& b);
 
-/// A circle around all that the particles hold for possible; nullopt where that is beyond the map.
+/// A circle around all places that the particles hold for possible; nullopt where it lies beyond the map.
 std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 
-/// All within that distance and heading of a pose; nullopt where that is beyond the map.
+/// All poses within this distance and turn of a pose; nullopt where they lie beyond the map.
 std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double radius_m, Angle heading_half_width);
 
-/// Modes of a search for the feature map as places to draw from; wider than they say, since particles move on before
-/// they are weighted.
+/// The modes of a search for `features` as places to draw particles around. Their covariances are wider than those of
+/// the modes, since particles move on before they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);
 
 /// The ellipse and the radius hold the registration error of the map and that of the nadir (see VehicleNoise).

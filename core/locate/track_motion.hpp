@@ -8,10 +8,12 @@
 
 namespace roadfix {
 
-/// A share of what was travelled, and at least a little.
+/// Covariance of (forward m, right m, turn rad): sigmas are a share of what was travelled, and at least a little, as
+/// `noise` says.
 OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise);
 
-/// The steps that were lost are taken to have been like this one, give or take half of it.
+/// The odometry of a step and of `lost` steps before it, of which nothing is known: they are taken to have been like
+/// this one, give or take half of it (1 sigma).
 std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry, OdometryCovariance covariance,
                                                         double lost);
 

@@ -26,8 +26,8 @@ namespace roadfix {
 
 /// The motion of the air over the ground, where odometry or the planar speed is relative to the air.
 struct Wind {
-  double sigma_m_s = 0.0;  ///< per axis, at first
-  double walk = 0.0;       ///< growth of that, m/s per square root of a second
+  double sigma_m_s = 0.0;  ///< 1 sigma of the first wind, per axis
+  double walk = 0.0;       ///< growth of that sigma, m/s per square root of a second
 
   /// One that is not given follows from the other: a wind changes by its own size in 40 minutes. A filter that takes it
   /// for constant, or for nothing at first, comes to be sure of a wrong one.
@@ -59,7 +59,7 @@ struct VehicleNoise {
 enum class TrackStart { kSearch, kUniform };
 
 struct TrackSettings {
-  Prior prior;  ///< of the place at the first step
+  Prior prior;  ///< where the vehicle may be at the first step
   TrackStart start = TrackStart::kSearch;
   /// Spreads and searches anew when the measurements speak against the belief, and searches before the first claim
   /// where no search has told it from other places (see TrackClaim). Without it a track converges by its particles
@@ -78,7 +78,7 @@ struct TrackSettings {
   double beyond_map_m = 1000.0;
   double max_search_km2 = 2000.0;         ///< larger priors start uniformly; recovery looks around the last place
   std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
-  std::shared_ptr<const Calibration> calibration;  ///< of its searches; nullptr = the one that is shipped
+  std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
 
   /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.
   static TrackSettings paper(int particles);
@@ -88,11 +88,11 @@ struct TrackSettings {
 inline constexpr double kStaleAfterS = 60.0;
 
 struct StepInput {
-  std::int64_t sequence = 0;         ///< counts up by 1; what is left out counts as lost
-  std::int64_t time_us = 0;          ///< of capture, any epoch
-  std::optional<Odometry> odometry;  ///< since the step before
-  std::optional<OdometryCovariance> covariance;
-  std::optional<FeatureMap> features;
+  std::int64_t sequence = 0;                     ///< counts up by 1; numbers left out count as lost steps
+  std::int64_t time_us = 0;                      ///< when the frame was taken, microseconds since any epoch
+  std::optional<Odometry> odometry;              ///< since the step before
+  std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
+  std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
 };
 
 struct TrackerState {
@@ -104,24 +104,24 @@ struct TrackerState {
   std::int64_t measured = 0;     ///< feature maps so far
   std::int64_t last_search = 0;  ///< `measured` at the last search
   TrackClaim claim;
-  std::optional<std::int64_t> accepted_time_us;
+  std::optional<std::int64_t> accepted_time_us;  ///< time of the last accepted measurement
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
   /// before a kidnapping is not laid with what is seen after it.
   RecentFrames recent;
-  std::optional<std::int64_t> looked_time_us;  ///< of the last search around the claimed place
-  bool drifts = false;                         ///< one found it elsewhere: a wind is learned though none was told
+  std::optional<std::int64_t> looked_time_us;  ///< time of the last search around the claimed place
+  bool drifts = false;  ///< such a search found the vehicle beside it: a wind is learned though none was told
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };
 
 struct TrackCluster {
   GeoPose pose;
-  double weight = 0.0;
+  double weight = 0.0;              ///< share of all particles' weight, 0 to 1
   std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
-  Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
-  Angle heading_sigma;
-  double radius95_m = 0.0;  ///< holds the vehicle with 95 %, if it is in the cluster at all
-  double scale = 1.0;       ///< of the feature maps' size, within the scale range
-  double scale_sigma = 0.0;
+  Angle ellipse_heading;            ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
+  Angle heading_sigma;              ///< 1 sigma
+  double radius95_m = 0.0;          ///< holds the vehicle with 95 %, if it is in the cluster at all
+  double scale = 1.0;        ///< how many times larger the ground is than the feature maps say, within the scale range
+  double scale_sigma = 0.0;  ///< 1 sigma
 };
 
 /// What became of a step's feature map.
@@ -134,15 +134,16 @@ struct TrackEstimate {
   std::int64_t time_us = 0;
   bool converged = false;              ///< only then the first cluster is a position to fly on
   std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMaxClusters of them
-  std::size_t cluster_count = 0;
-  std::size_t particles = 0;
-  std::uint64_t resets = 0;
+  std::size_t cluster_count = 0;       ///< of all, also those that are not among `clusters`
+  std::size_t particles = 0;           ///< number of them
+  std::uint64_t resets = 0;            ///< times that the belief was thrown away
   Measurement measurement = Measurement::kNone;
-  double mean_likelihood = 0.0;  ///< of the measurement under the belief before it
-  double doubt = 0.0;
-  std::optional<double> since_accepted_s;
-  bool drifts = false;            ///< the odometry was found wrong, and a drift of it is learned
-  std::int64_t missed_steps = 0;  ///< sequence numbers left out before this step
+  /// How many times likelier the measurement was under the belief before it than by chance, on average.
+  double mean_likelihood = 0.0;
+  double doubt = 0.0;                      ///< how much worse late measurements fit than earlier ones, 0 to 1
+  std::optional<double> since_accepted_s;  ///< nullopt = no measurement was accepted yet
+  bool drifts = false;                     ///< the odometry was found wrong, and a drift of it is learned
+  std::int64_t missed_steps = 0;           ///< sequence numbers left out before this step
   static constexpr std::size_t kMaxClusters = 8;
 };
 
@@ -153,7 +154,7 @@ struct StepResult {
 
 struct StepLimits {
   int threads = 1;
-  std::chrono::milliseconds search_time{0};  ///< of one search; a step has two at most; 0 = unlimited
+  std::chrono::milliseconds search_time{0};  ///< limit of one search; a step has two at most; 0 = unlimited
   std::stop_token stop;
 };
 
@@ -175,8 +176,8 @@ class Tracker {
   class Step;
   MapView map_;
   TrackSettings settings_;
-  PoseRegion start_;         ///< the prior
-  AcceptanceRegion region_;  ///< of the flight: the map
+  PoseRegion start_;         ///< what the prior allows at the first step
+  AcceptanceRegion region_;  ///< where particles may live in flight: the map and what lies around it
 };
 
 }  // namespace roadfix

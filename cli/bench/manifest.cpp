@@ -168,6 +168,20 @@ void parse_prior(const Field& field, QuerySet& set) {
   if (field.has("beyond_m")) set.prior_beyond_m = field.at("beyond_m").number(0.0, 1e6);
 }
 
+/// A field that would do nothing is a mistake about what the queries are.
+void refuse_without_effect(const Field& field, QuerySet::Kind kind) {
+  const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
+    for (const char* key : keys) {
+      if (field.has(key)) field.at(key).refuse(why);
+    }
+  };
+  if (kind != QuerySet::Kind::kSimulated) refuse({"from", "noise"}, "needs \"image\": null");
+  if (kind != QuerySet::Kind::kFrames) refuse({"together", "unobserved"}, "needs 'frames'");
+  if (kind == QuerySet::Kind::kFrames) {
+    refuse({"count", "footprint_m", "exclude"}, "does nothing beside 'frames', which are all taken as they are");
+  }
+}
+
 QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
   field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved", "from",
                     "elsewhere", "together"});
@@ -191,17 +205,14 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
     if (set.kind == QuerySet::Kind::kImage) set.path = directory / field.at("image").text();
     parse_footprint_and_count(field, set);
   }
-  if (field.has("from") && set.kind != QuerySet::Kind::kSimulated) field.at("from").refuse("needs \"image\": null");
+  refuse_without_effect(field, set.kind);
   if (set.elsewhere && set.kind == QuerySet::Kind::kSimulated && set.from == set.map) {
     field.at("elsewhere").refuse("needs \"from\": another map, since the ground of the map itself is on it");
   }
   if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
   if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
   if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
-  if (field.has("together")) {
-    if (set.kind != QuerySet::Kind::kFrames) field.at("together").refuse("needs 'frames'");
-    set.together = static_cast<int>(field.at("together").whole_number(1.0, 64.0));
-  }
+  if (field.has("together")) set.together = static_cast<int>(field.at("together").whole_number(1.0, 64.0));
   if (field.has("prior")) parse_prior(field.at("prior"), set);
   return set;
 }

@@ -86,6 +86,9 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("\"erase\": 0.2", "\"erase\": [0.5, 0.2]"), "queries[2].noise.erase[1]");
   expect_complaint(with("\"count\": 7", "\"from\": \"city\", \"count\": 7"), "queries[2].from");
   expect_complaint(with("\"count\": 5", "\"from\": \"town\", \"count\": 5"), "queries[0].from");
+  expect_complaint(with("\"prior\": \"map\"", R"("noise": {"erase": 0.2})"), "queries[0].noise needs \"image\": null");
+  expect_complaint(with("\"prior\": \"map\"", R"("unobserved": "black")"), "queries[0].unobserved needs 'frames'");
+  expect_complaint(with("\"unobserved\": \"black\"", "\"count\": 5"), "queries[1].count does nothing");
   expect_complaint(with("\"count\": 7", "\"elsewhere\": 1, \"count\": 7"), "queries[2].elsewhere");
   expect_complaint(with("\"count\": 7", "\"elsewhere\": true, \"count\": 7"), "queries[2].elsewhere needs \"from\"");
   expect_complaint(with("}]}],\n", R"(}]}, {"name": "town", "sources": [{"path": "b.tif", "as": "imagery"}]}],)"),

@@ -163,19 +163,35 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
   return queries;
 }
 
-/// ", 60 % erased, 4 m shifted"; empty where nothing is wrong.
-std::string errors_of(const FeatureQuality& quality) {
+/// ", 60 % erased, 0 to 4 m shifted"; empty where nothing is wrong.
+std::string errors_of(const QualityRange& noise) {
   std::string words;
-  const auto add = [&](double value, const char* what) {
-    if (value > 0.0) words += fmt::format(", {:g} {}", value, what);
+  const auto add = [&](double FeatureQuality::*property, double unit, const char* what) {
+    const double low = unit * noise.low.*property;
+    const double high = unit * noise.high.*property;
+    if (high <= 0.0) return;
+    words += low == high ? fmt::format(", {:g} {}", low, what) : fmt::format(", {:g} to {:g} {}", low, high, what);
   };
-  add(100.0 * quality.erase, "% erased");
-  add(100.0 * quality.invent, "% invented");
-  add(100.0 * quality.block, "% blocked");
-  add(quality.shift_m, "m shifted");
-  add(100.0 * quality.scale, "% scaled");
-  add(quality.tilt_deg, "deg tilted");
+  constexpr double kPercent = 100.0;
+  add(&FeatureQuality::erase, kPercent, "% erased");
+  add(&FeatureQuality::invent, kPercent, "% invented");
+  add(&FeatureQuality::block, kPercent, "% blocked");
+  add(&FeatureQuality::shift_m, 1.0, "m shifted");
+  add(&FeatureQuality::scale, kPercent, "% scaled");
+  add(&FeatureQuality::tilt_deg, 1.0, "deg tilted");
   return words;
+}
+
+/// ", prior 500 m", ", prior 500 m wrong by 30 m"; empty where nothing is known.
+std::string prior_words(const QuerySet& set) {
+  if (!set.prior_radius_m) return "";
+  const std::string wrong = set.prior_beyond_m ? fmt::format(" wrong by {} m", *set.prior_beyond_m) : "";
+  return fmt::format(", prior {} m{}", *set.prior_radius_m, wrong);
+}
+
+std::string ground_words(const QuerySet& set) {
+  if (set.kind != QuerySet::Kind::kSimulated) return set.path.filename().string();
+  return set.from == set.map ? "simulated" : fmt::format("simulated from {}", set.from);
 }
 
 }  // namespace
@@ -199,13 +215,13 @@ std::optional<FeatureQuality> common_quality(const QuerySet& set) {
 }
 
 std::string describe(const QuerySet& set) {
-  if (set.kind == QuerySet::Kind::kFrames) {
-    const std::string name = set.path.filename().string();
-    return set.together > 1 ? fmt::format("{} {} together", name, set.together) : name;
+  std::string words = ground_words(set);
+  if (set.elsewhere) words += " elsewhere";
+  if (set.kind != QuerySet::Kind::kFrames) {
+    words += fmt::format(" {}x{} m", set.footprint.width_m, set.footprint.height_m);
   }
-  const std::string what = set.kind == QuerySet::Kind::kSimulated ? "simulated" : set.path.filename().string();
-  return fmt::format("{}{} {}x{} m{}", what, set.elsewhere ? " elsewhere" : "", set.footprint.width_m,
-                     set.footprint.height_m, errors_of(common_quality(set).value_or(FeatureQuality{})));
+  if (set.together > 1) words += fmt::format(" {} together", set.together);
+  return words + errors_of(set.noise) + prior_words(set);
 }
 
 }  // namespace roadfix::bench

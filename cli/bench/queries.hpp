@@ -26,7 +26,8 @@ std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const M
 /// Of simulated feature maps that are all equally bad; otherwise nullopt.
 std::optional<FeatureQuality> common_quality(const QuerySet& set);
 
-/// "post.jpg 400x400 m", "frames.csv", "simulated 400x400 m, 60 % erased".
+/// In a few words what tells the set from others over the same map: "post.jpg 400x400 m", "frames.csv, prior 500 m",
+/// "simulated 400x400 m, 0 to 60 % erased".
 std::string describe(const QuerySet& set);
 
 }  // namespace roadfix::bench

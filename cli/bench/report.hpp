@@ -53,7 +53,7 @@ std::optional<double> quantile(std::vector<double> values, double p);
 struct SetResult {
   std::string method;
   std::string map;
-  std::string query_set;  ///< file name of the imagery or frames, or "simulated", and the footprint
+  std::string query_set;  ///< as describe() names it
   std::vector<Outcome> outcomes;
   double footprint_m = 0.0;                    ///< shorter side, 0 for real frames
   bool elsewhere = false;                      ///< no query shows ground of the map

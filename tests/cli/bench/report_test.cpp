@@ -65,7 +65,7 @@ TEST(Table, KeepsItsColumnsApartForLongNames) {
   EXPECT_NE(table.find("town                  post.jpg 300x300 m"), std::string::npos) << table;
 }
 
-TEST(QuerySet, IsDescribedWithTheErrorsThatAllItsFeatureMapsHave) {
+TEST(QuerySet, IsDescribedWithTheErrorsOfItsFeatureMaps) {
   QuerySet set;
   set.kind = QuerySet::Kind::kSimulated;
   set.footprint = {300.0, 200.0};
@@ -73,7 +73,27 @@ TEST(QuerySet, IsDescribedWithTheErrorsThatAllItsFeatureMapsHave) {
   set.noise.low = set.noise.high = {.erase = 0.6, .shift_m = 4.0};
   EXPECT_EQ(describe(set), "simulated 300x200 m, 60 % erased, 4 m shifted");
   set.noise.low.erase = 0.0;
-  EXPECT_EQ(describe(set), "simulated 300x200 m");
+  EXPECT_EQ(describe(set), "simulated 300x200 m, 0 to 60 % erased, 4 m shifted");
+}
+
+TEST(QuerySet, IsDescribedWithAllThatTellsItFromOthersOverItsMap) {
+  QuerySet set;
+  set.map = set.from = "town";
+  set.path = "after/post.jpg";
+  set.footprint = {300.0, 200.0};
+  set.prior_radius_m = 500.0;
+  EXPECT_EQ(describe(set), "post.jpg 300x200 m, prior 500 m");
+  set.prior_beyond_m = 30.0;
+  EXPECT_EQ(describe(set), "post.jpg 300x200 m, prior 500 m wrong by 30 m");
+  set.kind = QuerySet::Kind::kFrames;
+  set.prior_beyond_m.reset();
+  set.elsewhere = true;
+  set.together = 3;
+  EXPECT_EQ(describe(set), "post.jpg elsewhere 3 together, prior 500 m");
+  set.kind = QuerySet::Kind::kSimulated;
+  set.together = 1;
+  set.from = "newer";
+  EXPECT_EQ(describe(set), "simulated from newer elsewhere 300x200 m, prior 500 m");
 }
 
 TEST(Quantile, LiesBetweenTheOrderStatistics) {

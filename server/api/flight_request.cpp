@@ -41,6 +41,21 @@ BodyOffset offset_of(const json& frame, const std::string& place) {
           Angle::degrees(number_of(frame, "turn_deg", place, 360.0))};
 }
 
+/// Complaints that the picture of an earlier frame causes say which one it is.
+template <typename Read>
+Features named(const std::string& place, Read read) {
+  const auto text = [&](const Error& error) { return fmt::format("{}.image: {}", place, error.what()); };
+  try {
+    return read();
+  } catch (const InvalidField&) {
+    throw;  // of a field that all frames share
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.code(), text(error));
+  } catch (const LimitExceeded& error) {
+    throw LimitExceeded(error.code(), text(error));
+  }
+}
+
 const json& others_of(const Content& content, const Limits& limits) {
   const json* others = content.fields.member("also");
   if (others == nullptr || !others->is_array()) {
@@ -72,7 +87,7 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
     }
     const BodyOffset offset = offset_of(frame, place);
     const Content other{content.fields, picture_of(frame, place)};
-    Features features = features_of(other, detector, default_cell_m, limits, stop);
+    Features features = named(place, [&] { return features_of(other, detector, default_cell_m, limits, stop); });
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();
   }

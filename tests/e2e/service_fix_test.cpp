@@ -103,6 +103,11 @@ TEST_F(ServiceFix, LaysFramesOfAFlightTogether) {
   bent = frame;
   bent["image"] = "!";
   EXPECT_EQ(refusal(json::array({bent})), "400 bad-base64 also[0].image");
+  bent["image"] = base64("no picture");
+  request["also"] = json::array({frame, bent});
+  const json problem = testing::json_of(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
+  EXPECT_EQ(problem["code"], "image-format");
+  EXPECT_EQ(problem["detail"].get<std::string>().substr(0, 14), "also[1].image:") << problem;
   bent = frame;
   bent["right_m"] = bent["forward_m"] = 9e4;
   EXPECT_EQ(refusal(json::array({bent})), "422 frames-too-far-apart");

@@ -19,9 +19,9 @@ std::vector<std::string> fix_fields() {
 }
 
 /// The frame was captured at time_us, or when the request came.
-api::PositionTime time_of(const http::Request& request, std::optional<double> time_us) {
+api::PositionTime time_of(const http::Request& request, std::optional<std::int64_t> time_us) {
   const auto spent = time_spent(request);
-  if (time_us) return {static_cast<std::int64_t>(*time_us), spent};
+  if (time_us) return {*time_us, spent};
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return {std::chrono::duration_cast<std::chrono::microseconds>(now - spent).count(), spent};
 }
@@ -30,7 +30,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content = api::read_content(request, joined(fix_fields(), api::flight_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
-  const std::optional<double> time_us = content.fields.optional_number("time_us", {0.0, api::kMaxExactInteger});
+  const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::TimeLimit limit(request.deadline, request.abandoned);

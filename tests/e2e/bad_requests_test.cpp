@@ -107,6 +107,7 @@ TEST_F(BadRequests, WithNumbersBeyondAllSenseNameThem) {
                   png, "image/png")),
               "400 parameter-out-of-range " + field);
   }
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&time_us=1.5", png, "image/png")), "400 bad-parameter time_us");
 }
 
 TEST_F(BadRequests, WithAConstantOrUnobservedFeatureMapGetNoFix) {

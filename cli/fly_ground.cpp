@@ -144,7 +144,12 @@ fly::StepRange outage_of(const FlyOptions& options, int steps) {
 }
 
 fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
-  const fly::Kidnapping kidnapping{static_cast<int>(options.kidnap[0]), options.kidnap[1]};
+  const double step = options.kidnap[0];
+  if (step != std::floor(step)) {
+    throw InvalidInput("kidnapping-between-steps",
+                       fmt::format("--kidnap at step {} lies between two steps: give a whole number", step));
+  }
+  const fly::Kidnapping kidnapping{static_cast<int>(step), options.kidnap[1]};
   if (kidnapping.step < steps) return kidnapping;
   throw InvalidInput("kidnapping-too-late",
                      fmt::format("--kidnap at step {} comes after the flight, whose {} steps count from 0: give more "

@@ -98,6 +98,7 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_EQ(roadfix("fly " + map() + " --erase 20").code, 2);
   const std::string eight_steps = "fly " + map() + " --footprint-m 200 --steps 8";
   EXPECT_THAT(roadfix(eight_steps + " --kidnap 8,200").err, HasSubstr("kidnapping-too-late"));
+  EXPECT_THAT(roadfix(eight_steps + " --kidnap 2.5,200").err, HasSubstr("kidnapping-between-steps"));
   EXPECT_THAT(roadfix(eight_steps + " --outage 5,3").err, HasSubstr("outage-empty"));
   EXPECT_THAT(roadfix(eight_steps + " --outage 8,10").err, HasSubstr("outage-empty"));
   const std::string elsewhere = file("elsewhere");

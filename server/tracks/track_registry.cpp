@@ -148,9 +148,9 @@ std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t
   return live(id)->particles(count);
 }
 
-std::shared_ptr<LiveTrack> TrackRegistry::loaded(const StoredTrack& track) const {
-  const auto map = maps_.find(track.map);
-  return std::make_shared<LiveTrack>(map, calibrated(stored_settings(track, request_limits_)), stored_state(track.id));
+std::shared_ptr<LiveTrack> TrackRegistry::loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const {
+  return std::make_shared<LiveTrack>(std::move(map), calibrated(stored_settings(track, request_limits_)),
+                                     stored_state(track.id));
 }
 
 TrackerState TrackRegistry::stored_state(const std::string& id) const {
@@ -163,9 +163,9 @@ TrackerState TrackRegistry::stored_state(const std::string& id) const {
 
 std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   const StoredTrack track = find(id);
-  const bool same_map = maps_.find(track.map)->view.version == track.map_version;
+  const auto map = maps_.find(track.map);
   const std::lock_guard lock(mutex_);
-  if (!same_map) {
+  if (map->view.version != track.map_version) {
     live_.erase(id);  // and lets go of the old map
     throw InvalidInput("map-replaced", fmt::format("the map {} was replaced since the track began: begin a new track "
                                                    "from the last pose",
@@ -173,7 +173,9 @@ std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   }
   const auto known = live_.find(id);
   if (known != live_.end()) return known->second;
-  return live_.emplace(id, loaded(track)).first->second;
+  // It may have ended since it was found; while `mutex_` is held, none does.
+  if (const auto now = store().find(id); !now || !now->ended.empty()) throw track_ended(id, now ? now->ended : "");
+  return live_.emplace(id, loaded(track, map)).first->second;
 }
 
 void TrackRegistry::end(const std::string& id, const std::string& how) {

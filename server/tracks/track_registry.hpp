@@ -80,7 +80,7 @@ class TrackRegistry {
   TrackStore& store() const;
   TrackSettings calibrated(TrackSettings settings) const;
   std::shared_ptr<LiveTrack> live(const std::string& id);
-  std::shared_ptr<LiveTrack> loaded(const StoredTrack& track) const;
+  std::shared_ptr<LiveTrack> loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const;
   TrackerState stored_state(const std::string& id) const;
   std::string ended(const StoredTrack& track) const;
   void end(const std::string& id, const std::string& how);

@@ -76,6 +76,21 @@ TEST_F(TrackRegistryTest, GoesOnAfterARestartAsWithoutOne) {
   EXPECT_EQ(registry()->steps_after(id, -1, 100).size(), 6U);
 }
 
+TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
+  const auto tracks = registry();
+  const long unused = maps_.find("town").use_count();
+  for (int i = 0; i < 50; ++i) {
+    const std::string id = begin(*tracks);
+    std::atomic<int> asked = 0;
+    const std::jthread asks([&] {
+      while (code_of([&] { tracks->particles(id, 10); }) == "no error") ++asked;
+    });
+    while (asked < 10) std::this_thread::yield();
+    tracks->finish(id);
+  }
+  EXPECT_EQ(maps_.find("town").use_count(), unused);
+}
+
 TEST_F(TrackRegistryTest, IsAsItWasAfterAStepThatTheFullStoreRefused) {
   const std::vector<std::string> expected = undisturbed(100);
   TrackLimits limits;

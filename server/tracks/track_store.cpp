@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <string_view>
 
@@ -30,7 +28,7 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
     case Failure::kFull:
       return make_exception_ptr(IoFailure(
           "track-store-full",
-          fmt::format("{}: no space left for the tracks: the step was not taken; send it again later", file)));
+          fmt::format("{}: no space left for the tracks: nothing was changed; send the request again later", file)));
     case Failure::kNotWritable:
       return make_exception_ptr(IoFailure(
           "track-store-read-only",
@@ -57,13 +55,19 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
       fmt::format("{}: tracks cannot be stored here ({}): start the service with --tracks FILE", file, detail)));
 }
 
-/// By the application id in the header of a SQLite file, which is 0 in ours and "GPKG" in a map.
-bool is_of_another_program(const std::filesystem::path& path) {
-  std::array<char, 72> head{};
-  std::ifstream in(path, std::ios::binary);
-  if (!in.read(head.data(), head.size())) return false;
-  const std::string_view text(head.data(), head.size());
-  return text.starts_with("SQLite format 3") && text.substr(68) != std::string_view("\0\0\0\0", 4);
+/// What a query answers that asks for one number.
+std::int64_t number(sqlite::Connection& connection, std::string_view query) {
+  sqlite::Statement row(connection, query);
+  row.step();
+  return row.integer(0);
+}
+
+/// Whether the file holds tables, but not those that any version of this store begins with.
+bool is_of_another_program(sqlite::Connection& connection, std::int64_t version) {
+  if (number(connection, "SELECT count(*) FROM sqlite_master") == 0) return false;
+  return version == 0 || number(connection,
+                                "SELECT count(*) FROM pragma_table_info('tracks') WHERE name IN ('id', 'client', "
+                                "'request', 'map', 'counters', 'particles')") != 6;
 }
 
 StoredTrack track_of(const sqlite::Statement& row) {
@@ -77,32 +81,28 @@ StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.i
 class TrackStore::Impl {
  public:
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
-    if (is_of_another_program(path_)) {  // looked at first, since opening it would change its journal mode
+    const std::int64_t version = with([&] {
+      connection_.emplace(path_, sqlite::Access::kCreate, store_error);
+      // Who holds the file holds it as long as it runs, and others ask in the meantime.
+      connection_->execute("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE");
+      return number(*connection_, "PRAGMA user_version");
+    });
+    if (with([&] { return is_of_another_program(*connection_, version); })) {
       throw IoFailure("track-store-unavailable",
                       fmt::format("{}: holds no tracks but a map or what another program wrote: start the service with "
                                   "--tracks FILE",
                                   path_.string()));
     }
-    with([&] {
-      connection_.emplace(path_, sqlite::Access::kCreate, store_error);
-      // Who holds the file holds it as long as it runs, and others ask in the meantime.
-      connection_->execute(fmt::format("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE; PRAGMA page_size = "
-                                       "{}; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA "
-                                       "max_page_count = {}",
-                                       kPageBytes, std::max<std::int64_t>(1, max_bytes / kPageBytes))
-                               .c_str());
-    });
-    const std::int64_t version = with([&] {
-      sqlite::Statement row(*connection_, "PRAGMA user_version");
-      row.step();
-      return row.integer(0);
-    });
     if (version > kVersion) {
       throw IoFailure("track-store-unavailable",
                       fmt::format("{}: written by a newer version of roadfix: start the service with --tracks FILE",
                                   path_.string()));
     }
     with([&] {
+      connection_->execute(fmt::format("PRAGMA page_size = {}; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
+                                       "PRAGMA max_page_count = {}",
+                                       kPageBytes, std::max<std::int64_t>(1, max_bytes / kPageBytes))
+                               .c_str());
       sqlite::Transaction transaction(*connection_, sqlite::Transaction::Kind::kWrite);
       connection_->execute(std::string(schema::tracks_sql()).c_str());
       if (version == 1) connection_->execute("ALTER TABLE tracks ADD COLUMN frames BLOB");

@@ -103,7 +103,9 @@ TEST(TrackStore, IsAsBeforeWhenItIsFullAndGoesOnWhenThereIsRoom) {
   store.add(track("b"));
   ASSERT_TRUE(store.add_step("a", 5, state(40'000), {0, 0, "first"}));
   ASSERT_TRUE(store.add_step("b", 5, state(40'000), {0, 0, "first"}));
-  EXPECT_EQ(code_of([&] { (void)store.add_step("a", 6, state(80'000), {1, 0, "second"}); }), "track-store-full");
+  const auto step = [&] { (void)store.add_step("a", 6, state(80'000), {1, 0, "second"}); };
+  EXPECT_EQ(code_of(step), "track-store-full");
+  EXPECT_THAT(message_of(step), HasSubstr("nothing was changed"));
   EXPECT_EQ(store.last_step("a")->answer, "first");
   EXPECT_EQ(store.state("a").particles.size(), 40'000U);
   EXPECT_EQ(store.find("a")->touched_us, 5);
@@ -134,19 +136,34 @@ TEST(TrackStore, SaysThatItMayNotBeWrittenTo) {
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "tracks.sqlite", kPlenty); }), "track-store-read-only");
 }
 
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 TEST(TrackStore, LeavesAMapThatIsNamedByMistakeAsItIs) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path map = folder / "town.gpkg";
   testing::write_map_file(map, testing::street_map(41, {2.0, {300'100, -3'200'050}, 40, 40}), 2.0);
-  const auto bytes = [&] {
-    std::ifstream in(map, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  };
-  const std::string before = bytes();
+  const std::string before = bytes_of(map);
   const auto open = [&] { TrackStore(map, kPlenty); };
   EXPECT_EQ(code_of(open), "track-store-unavailable");
   EXPECT_THAT(message_of(open), HasSubstr("holds no tracks but a map"));
-  EXPECT_EQ(bytes(), before);
+  EXPECT_EQ(bytes_of(map), before);
+}
+
+TEST(TrackStore, LeavesTheFileOfAnotherProgramAsItIs) {
+  const testing::TemporaryFolder folder;
+  for (const char* tables :
+       {"CREATE TABLE photos (taken)", "PRAGMA user_version = 2; CREATE TABLE photos (taken)",
+        "CREATE TABLE tracks (title, album)", "PRAGMA user_version = 3; CREATE TABLE tracks (id, title, album)"}) {
+    const std::filesystem::path path = folder / "library.sqlite";
+    std::filesystem::remove(path);
+    testing::open_sqlite(path, sqlite::Access::kCreate).execute(tables);
+    const std::string before = bytes_of(path);
+    EXPECT_THAT(message_of([&] { TrackStore(path, kPlenty); }), HasSubstr("holds no tracks")) << tables;
+    EXPECT_TRUE(bytes_of(path) == before) << tables;
+  }
 }
 
 TEST(TrackStore, SaysWhyItCannotBeOpened) {

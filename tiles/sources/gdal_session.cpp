@@ -122,8 +122,8 @@ void require_known_datum(const OGRSpatialReference& from, const OGRSpatialRefere
   throw InvalidInput(
       "datum-unknown",
       fmt::format("{}: its reference system {} does not relate its ellipsoid ({}) to WGS 84, so the roads could be "
-                  "hundreds of metres off. Name the right one with --crs, for example --crs EPSG:23037 (ED50, zone 37)",
-                  path, crs_name(from), ellipsoid != nullptr ? ellipsoid : "unnamed"));
+                  "hundreds of metres off: {}, for example EPSG:23037 (ED50, zone 37)",
+                  path, crs_name(from), ellipsoid != nullptr ? ellipsoid : "unnamed", kGiveRightCrs));
 }
 
 TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
@@ -132,9 +132,8 @@ TransformationPtr transformation(const OGRSpatialReference& from, const OGRSpati
   TransformationPtr result(OGRCreateCoordinateTransformation(&from, &to));
   if (!result) {
     throw InvalidInput("crs-not-transformable",
-                       fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, give the right "
-                                   "one with --crs",
-                                   path, crs_name(from), crs_name(to), messages.text()));
+                       fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", path,
+                                   crs_name(from), crs_name(to), messages.text(), kGiveRightCrs));
   }
   require_known_datum(from, to, path);
   return result;

@@ -49,6 +49,9 @@ OGRSpatialReference wgs84_reference();
 /// "EPSG:26986", WKT, PROJ text. Throws InvalidInput "crs-unknown".
 OGRSpatialReference parse_crs(const std::string& text);
 std::string crs_name(const OGRSpatialReference& reference);
+/// What to do about a wrong reference system. Commands that only look at imagery read it with the same functions as
+/// `ingest`, and have no --crs.
+inline constexpr std::string_view kGiveRightCrs = "give the right one with --crs of ingest, or write it into the file";
 
 struct DestroyTransformation {
   void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }

@@ -35,10 +35,10 @@ void* create_transformer(const RasterFile& file, const OGRSpatialReference& targ
   if (height != nullptr) options.SetNameValue("RPC_HEIGHT", height);
   void* transformer = GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List());
   if (transformer == nullptr) {
-    throw InvalidInput("crs-not-transformable",
-                       fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, give the right "
-                                   "one with --crs",
-                                   file.path(), crs_name(file.crs()), crs_name(target), messages.text()));
+    throw InvalidInput(
+        "crs-not-transformable",
+        fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", file.path(),
+                    crs_name(file.crs()), crs_name(target), messages.text(), kGiveRightCrs));
   }
   return transformer;
 }
@@ -64,11 +64,9 @@ void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_sour
 }
 
 [[noreturn]] void nowhere(const RasterFile& file, const std::string& target) {
-  throw InvalidInput(
-      "crs-not-transformable",
-      fmt::format("{}: its coordinates in {} have no place in {}; if the reference system is wrong, give the "
-                  "right one with --crs",
-                  file.path(), crs_name(file.crs()), target));
+  throw InvalidInput("crs-not-transformable",
+                     fmt::format("{}: its coordinates in {} have no place in {}; if the reference system is wrong, {}",
+                                 file.path(), crs_name(file.crs()), target, kGiveRightCrs));
 }
 
 /// Throws where a point of the ground leads back to elsewhere in the raster: what was seen beyond the 180th meridian

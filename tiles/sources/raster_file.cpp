@@ -137,9 +137,10 @@ void RasterFile::find_reference(const RasterOptions& options) {
   if (!has_transform(*dataset_)) {
     throw InvalidInput(
         "image-without-georeference",
-        fmt::format("{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
-                    "(.jgw, .pgw, .tfw), and a .prj file or --crs EPSG:... that names its reference system",
-                    path_));
+        fmt::format(
+            "{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
+            "(.jgw, .pgw, .tfw), and a .prj file that names its reference system (ingest also takes --crs EPSG:...)",
+            path_));
   }
   if (!options.crs.empty()) {
     crs_ = parse_crs(options.crs);
@@ -156,8 +157,8 @@ void RasterFile::find_reference(const RasterOptions& options) {
     crs_ = *beside;
   } else {
     throw InvalidInput("image-without-georeference",
-                       fmt::format("{}: has coordinates but no reference system; name it with --crs, for example --crs "
-                                   "EPSG:32637, or in a .prj file beside it",
+                       fmt::format("{}: has coordinates but no reference system; name it in a .prj file beside it, or "
+                                   "with --crs of ingest, for example --crs EPSG:32637",
                                    path_));
   }
 }

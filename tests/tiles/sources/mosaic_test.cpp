@@ -153,7 +153,7 @@ TEST_F(MosaicTest, CoordinatesWithoutAPlaceInTheZoneAreRefused) {
     FAIL() << "extent " << mosaic.extent().min.east_m;
   } catch (const InvalidInput& error) {
     EXPECT_EQ(error.code(), "crs-not-transformable");
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("--crs"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("--crs of ingest"));
   }
 }
 

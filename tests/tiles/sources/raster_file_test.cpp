@@ -130,6 +130,8 @@ TEST_F(RasterFileTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  EXPECT_THAT(testing::message_of([&] { RasterFile(path, {}); }), ::testing::HasSubstr("--crs of ingest"))
+      << "other commands, which have no such option, read rasters too";
   EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32637", .collar = {}}).crs()), "EPSG:32637");
   EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
 }

@@ -58,4 +58,16 @@ class Metrics {
   std::vector<Gauge> gauges_;
 };
 
+/// Counts up for as long as it lives.
+class Counted {
+ public:
+  explicit Counted(std::atomic<int>& counter) : counter_(counter) { ++counter_; }
+  ~Counted() { --counter_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+
+ private:
+  std::atomic<int>& counter_;
+};
+
 }  // namespace roadfix::http

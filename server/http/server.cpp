@@ -31,18 +31,6 @@ constexpr auto kFirstByteGrace = 1s;
 /// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
 thread_local Exchange* t_exchange = nullptr;
 
-/// Counts up for as long as it lives.
-class Counted {
- public:
-  explicit Counted(std::atomic<int>& counter) : counter_(counter) { ++counter_; }
-  ~Counted() { --counter_; }
-  Counted(const Counted&) = delete;
-  Counted& operator=(const Counted&) = delete;
-
- private:
-  std::atomic<int>& counter_;
-};
-
 }  // namespace
 
 class Server::Impl : public httplib::Server {

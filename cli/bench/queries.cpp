@@ -35,14 +35,25 @@ GridPoint anywhere_on(const MapView& map, Random& random) {
           uniform(random, map.extent.min.north_m, map.extent.max.north_m)};
 }
 
-Prior prior_around(const GridPoint& truth, const QuerySet& set, const UtmZone& zone, Random& random) {
-  if (!set.prior_radius_m) return {};
-  // Uniform over the disc, so that the truth is anywhere in the circle that is told; or outside of it.
+/// Uniform over the disc, so that the truth is anywhere in the circle that is told; or outside of it.
+GridPoint centre_of_prior(const GridPoint& truth, const QuerySet& set, Random& random) {
   const double within = *set.prior_radius_m * std::sqrt(uniform(random, 0.0, 1.0));
   const double radius = set.prior_beyond_m ? *set.prior_radius_m + *set.prior_beyond_m : within;
   const double direction = uniform(random, 0.0, 2.0 * std::numbers::pi);
-  const GridPoint centre{truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
-  return {.circle = GeoCircle{zone.unproject(centre), *set.prior_radius_m}, .box = {}, .heading = {}};
+  return {truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
+}
+
+Prior prior_around(const GridPoint& truth, const QuerySet& set, const MapView& map, Random& random) {
+  if (!set.prior_radius_m) return {};
+  constexpr int kTries = 100;
+  for (int i = 0; i < kTries; ++i) {
+    const GridPoint centre = centre_of_prior(truth, set, random);
+    if (!contains({centre, *set.prior_radius_m}, nearest(map.extent, centre))) continue;
+    return {.circle = GeoCircle{map.zone.unproject(centre), *set.prior_radius_m}, .box = {}, .heading = {}};
+  }
+  throw InvalidInput("prior-outside-map",
+                     fmt::format("{}: no circle of {} m around a place {} m from its rim meets the map '{}'",
+                                 describe(set), *set.prior_radius_m, set.prior_beyond_m.value_or(0.0), map.name));
 }
 
 GeoPose geo(const GridPose& pose, const UtmZone& zone) {
@@ -94,7 +105,7 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
     const GridPose pose = draw(sampling, set, random);
     Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
     query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map.zone, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -122,7 +133,7 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
     const FeatureQuality quality = draw(set.noise, random);
     query.features =
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map.zone, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -155,7 +166,7 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
     if (set.elsewhere) query.truth.reset();
     query.picture = picture_of(frame, set);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position), set,
-                               map.zone, random);
+                               map, random);
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
     query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone);
     queries.push_back(std::move(query));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/units/error.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -27,6 +28,22 @@ TEST(Queries, TellACircleThatHoldsTheTruthOrOneThatItLiesSoFarBeyond) {
     EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map.zone), 130.0, 0.01);
     EXPECT_EQ(query.prior.circle->radius_m, 100.0);
   }
+}
+
+TEST(Queries, TellOnlyCirclesThatMeetTheMap) {
+  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
+  QuerySet set;
+  set.kind = QuerySet::Kind::kSimulated;
+  set.count = 20;
+  set.footprint = {200.0, 200.0};
+  set.prior_radius_m = 100.0;
+  set.prior_beyond_m = 400.0;
+  for (const Query& query : make_queries(set, map, map, {})) {
+    EXPECT_NO_THROW(region_of(map, query.prior)) << query.id;
+    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map.zone), 500.0, 0.01);
+  }
+  set.prior_beyond_m = 2000.0;
+  EXPECT_THROW(make_queries(set, map, map, {}), InvalidInput);
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ constexpr double kBeyondChanceDeviations = 12.0;
 // Chance would give a hundredth of a place that fits as well.
 constexpr double kBeyondChance = 4.6;
 
+// Where the best place in the region would be likely, a better one outside of it is worth a word.
+constexpr double kLikely = 0.5;
+
 /// Shares of the posterior of the modes, all places of the region considered.
 std::vector<double> shares(const SearchResult& found) {
   const ScoreBackground& background = found.background;
@@ -98,6 +101,27 @@ std::string shares_one_road(const SearchFigures& figures) {
       figures.roads_across * across_m, kMinRoadsAcross * across_m);
 }
 
+bool is_another_place(const SearchMode& a, const SearchMode& b) {
+  return distance_m(a.pose.position, b.pose.position) >
+         kRegionSigmas * std::sqrt(a.covariance[0][0] + a.covariance[1][1]);
+}
+
+/// Share of the best mode beside the best place around the region, as if that lay in it.
+double share_beside_outside(const SearchResult& found) {
+  const SearchMode& best = found.modes.front();
+  if (!found.outside || !is_another_place(best, *found.outside)) return 1.0;
+  const ScoreBackground& background = found.background;
+  const double ahead = background.log_likelihood(best.score) - background.log_likelihood(found.outside->score);
+  return 1.0 / (1.0 + std::exp(-ahead));
+}
+
+std::string fits_outside(const SearchResult& found) {
+  return fmt::format(
+      "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
+      "prior, or give a wider one",
+      distance_m(found.modes.front().pose.position, found.outside->pose.position));
+}
+
 }  // namespace
 
 Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
@@ -116,7 +140,9 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   const SearchFigures figures = figures_of(found);
   decision.figures = figures;
   const std::vector<double> posterior = shares(found);
-  decision.probability = found.scanned_share * calibration.probability(figures);
+  const double within = found.scanned_share * calibration.probability(figures);
+  const double share = share_beside_outside(found);
+  decision.probability = share * within;
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
     explain(decision, kTimeLimitReason, time_was_over(found));
@@ -124,6 +150,8 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
     explain(decision, kNotAboveChanceReason, shares_one_road(figures));
   } else if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
+  } else if (within >= confidence || (within > kLikely && share < 0.5)) {
+    explain(decision, kBetterOutsideReason, fits_outside(found));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, posterior, calibration, confidence);
   } else {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/grid/resample.hpp"
-#include "core/locate/beyond_prior.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/ellipse.hpp"
@@ -37,9 +36,6 @@ double variance_of(const CellArray& cells) {
 // On less, one place always fits far better than the others, and what tells chance from more than chance no longer
 // holds.
 constexpr double kMinGroundM2 = 16.0 * kSampleM2;
-
-// A probability says the same whatever confidence is asked for: what may lower it is looked at from here on.
-constexpr double kLikely = 0.5;
 
 struct Refusal {
   const char* reason;
@@ -111,32 +107,12 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   result.max_modes = options.max_modes;
   result.scale_range = options.scale_range;
   result.cache = map.searches;
+  if (options.looks_beyond_prior) result.surroundings = map.extent;
   result.threads = options.threads;
   result.stop = options.stop;
   result.proof_time = options.proof_time;
   if (options.time_limit.count() > 0) result.deadline = started + options.time_limit;
   return result;
-}
-
-struct Answer {
-  SearchResult found;
-  Decision decision;
-};
-
-Answer answer_to(const MapView& map, const FeatureMap& compared, const PoseRegion& region, const FixOptions& options,
-                 const Calibration& calibration, std::chrono::steady_clock::time_point started) {
-  SearchOptions how = search_options_of(options, map, started);
-  const GridReader read = compared_cells(map, compared.cell_m);
-  Answer answer{search(read, compared.cell_m, compared, region, how), {}};
-  answer.decision = decide(answer.found, calibration, options.confidence);
-  const bool likely = answer.decision.status == FixStatus::kFix || answer.decision.probability > kLikely;
-  if (!options.looks_beyond_prior || !likely || !answer.found.complete()) return answer;
-  if (const auto near = ground_beyond(region, map.extent, answer.found.modes.front().pose, compared)) {
-    how.proof_time = {};
-    const SearchResult beyond = search(read, compared.cell_m, compared, *near, how);
-    answer.decision = confirmed(std::move(answer.decision), answer.found, region, beyond);
-  }
-  return answer;
 }
 
 }  // namespace
@@ -159,7 +135,9 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
     }
   }
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
-  auto [found, decision] = answer_to(map, compared, region, options, calibration, started);
+  const SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
+                                    search_options_of(options, map, started));
+  Decision decision = decide(found, calibration, options.confidence);
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);
   fix.explanation = std::move(decision.explanation);

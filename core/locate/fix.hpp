@@ -31,7 +31,7 @@ struct FixOptions {
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
-  /// A likely place is compared with what lies just beyond the prior (beyond_prior.hpp).
+  /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
   int threads = 1;
   std::stop_token stop{};                            ///< Interrupted when requested

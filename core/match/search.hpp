@@ -36,6 +36,10 @@ struct SearchOptions {
   double scale_range = 0.0;
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;
+  /// Of the map: within it the ground around the region is searched as well, half a footprint beyond and 4 km^2 in all
+  /// at least, to tell what chance gives and whether another place fits better. nullopt = no farther than it takes to
+  /// tell anything of chance.
+  std::optional<GridBox> surroundings;
   std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
   std::stop_token stop;
   std::optional<std::chrono::steady_clock::time_point> deadline;
@@ -71,7 +75,7 @@ struct SearchMode {
 struct ScoreBackground {
   double sd = 0.0;  ///< of all scanned poses, about 0
   std::int64_t poses = 0;
-  /// Scores of the distinct places beside the best mode, also such around the region where that is small; descending.
+  /// Scores of the best distinct places beside the best mode, also of such around the region; descending.
   std::vector<double> rivals;
   /// Those of them that lie within the region.
   std::vector<double> rivals_within;
@@ -89,6 +93,8 @@ struct ScoreBackground {
 
 struct SearchResult {
   std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
+  /// The best place around the region, at its headings, where surroundings were given.
+  std::optional<SearchMode> outside;
   ScoreBackground background;
   double cell_m = 0.0;               ///< finest cell
   double coarse_cell_m = 0.0;        ///< of the exhaustive scan

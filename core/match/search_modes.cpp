@@ -11,6 +11,8 @@
 namespace roadfix {
 namespace {
 
+constexpr std::size_t kOutside = 4;  // modes around the region, to tell the best of
+
 SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& background) {
   level.bins = level.bins.halved();
   pose.bin *= 2;
@@ -61,45 +63,82 @@ double poses_of(const PoseRegion& region) {
   return region.area_km2() * std::min(1.0, region.heading_half_width.degrees() / 180.0);
 }
 
-}  // namespace
-
-void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
-          const std::vector<LatticePose>& candidates, SearchResult& result) {
-  const Level& finest = levels.finest();
-  bool best_seen = false;
-  std::vector<LatticePose> inside;
+/// The first `count` of the candidates within the cell, best first; flanks of one peak give one mode.
+std::vector<SearchMode> modes_of(const Level& finest, const std::vector<LatticePose>& candidates, std::size_t count,
+                                 const Deadline& deadline, SearchResult& result) {
+  std::vector<SearchMode> modes;
   for (const LatticePose& pose : candidates) {
-    const bool in_region = levels.within_region(finest, pose);
-    if (in_region) inside.push_back(pose);
-    if (in_region && !best_seen) {
-      best_seen = true;
-    } else {
-      result.background.rivals.push_back(pose.score);
-      if (in_region) result.background.rivals_within.push_back(pose.score);
-    }
-  }
-  // The region's own places go deeper than those at other headings: as many count as where none is told.
-  std::vector<double>& rivals = result.background.rivals;
-  if (scanned.area_km2() == levels.region().area_km2()) rivals.resize(std::min(rivals.size(), kSurvivors));
-  const double all = poses_of(scanned);
-  result.background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
-  for (const LatticePose& pose : inside) {
-    if (result.modes.size() >= static_cast<std::size_t>(std::max(1, options.max_modes))) break;
-    if (deadline.over() && !result.modes.empty()) {
+    if (modes.size() >= count) break;
+    if (deadline.over() && !modes.empty()) {
       result.refined = false;
       break;
     }
     const SearchMode mode = mode_at(finest, pose, result.background);
     const auto known =
-        std::ranges::find_if(result.modes, [&](const SearchMode& other) { return on_one_peak(finest, mode, other); });
-    if (known == result.modes.end()) {
-      result.modes.push_back(mode);
+        std::ranges::find_if(modes, [&](const SearchMode& other) { return on_one_peak(finest, mode, other); });
+    if (known == modes.end()) {
+      modes.push_back(mode);
     } else if (mode.score > known->score) {
       *known = mode;
     }
   }
-  std::ranges::stable_sort(result.modes, std::ranges::greater{}, &SearchMode::score);
-  if (!result.modes.empty()) result.modes.front().shared_road_m2 = shared_road_m2(finest, result.modes.front());
+  std::ranges::stable_sort(modes, std::ranges::greater{}, &SearchMode::score);
+  return modes;
+}
+
+/// The first of the modes that is around the region, and not the best one in it seen from across the border.
+std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegion& scanned,
+                                      const std::vector<SearchMode>& modes, const SearchMode& best) {
+  const auto found = std::ranges::find_if(modes, [&](const SearchMode& mode) {
+    const GridPoint at = mode.pose.position;
+    return scanned.contains(at) && !levels.region().contains(at) && !on_one_peak(levels.finest(), mode, best);
+  });
+  return found == modes.end() ? std::nullopt : std::optional(*found);
+}
+
+/// The best `count` places beside the best one tell of chance.
+void set_background(const SearchLevels& levels, const PoseRegion& scanned, const std::vector<LatticePose>& candidates,
+                    std::size_t count, ScoreBackground& background) {
+  bool best_seen = false;
+  for (const LatticePose& pose : candidates) {
+    const bool in_region = levels.within_region(levels.finest(), pose);
+    if (in_region && !best_seen) {
+      best_seen = true;
+      continue;
+    }
+    background.rivals.push_back(pose.score);
+    if (in_region) background.rivals_within.push_back(pose.score);
+  }
+  background.rivals.resize(std::min(background.rivals.size(), count));
+  const double all = poses_of(scanned);
+  background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
+}
+
+}  // namespace
+
+void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
+          const std::vector<LatticePose>& candidates, SearchResult& result) {
+  const Level& finest = levels.finest();
+  // As many as where no other was scanned: those of a region go deeper than those around it. But where it is scanned
+  // beyond its border only because it is tiny, its own are what chance is told by.
+  const bool tiny = !options.surroundings && scanned.area_km2() > levels.region().area_km2();
+  set_background(levels, scanned, candidates, tiny ? 2 * kSurvivors : kSurvivors, result.background);
+  std::vector<LatticePose> inside;
+  std::vector<LatticePose> outside;  // but at headings of the region
+  for (const LatticePose& pose : candidates) {
+    if (levels.within_region(finest, pose)) {
+      inside.push_back(pose);
+    } else if (levels.region().contains(finest.pose_of(pose).heading)) {
+      outside.push_back(pose);
+    }
+  }
+  const auto wanted = static_cast<std::size_t>(std::max(1, options.max_modes));
+  result.modes = modes_of(finest, inside, wanted, deadline, result);
+  if (result.modes.empty()) return;
+  SearchMode& best = result.modes.front();
+  best.shared_road_m2 = shared_road_m2(finest, best);
+  if (!options.surroundings) return;
+  result.outside = best_around(levels, scanned, modes_of(finest, outside, kOutside, deadline, result), best);
 }
 
 }  // namespace roadfix

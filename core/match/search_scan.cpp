@@ -12,6 +12,10 @@ constexpr double kScanTimeShare = 0.75;         // at most, if the time is limit
 constexpr int kRivalsWanted = 1000;             // distinct places that a background is drawn from
 constexpr double kKm2AtAllHeadings = 50.0;      // at least, as far as the region is as large
 
+// Searched around a region that has surroundings: from half a footprint on, a place inside shares few of the streets.
+constexpr double kSidesBeyond = 0.5;
+constexpr double kLeastKm2 = 4.0;
+
 }  // namespace
 
 SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
@@ -29,22 +33,22 @@ PoseRegion SearchScan::at_more_headings() const {
   return result;
 }
 
-/// A small region holds too few places to tell what chance would give: its surroundings are scanned as well.
+/// A small region holds too few places to tell what chance would give, and a wrong one not the true place: its
+/// surroundings are scanned as well.
 PoseRegion SearchScan::enlarged() const {
   const PoseRegion region = at_more_headings();
   const double turns = region.heading_half_width.degrees() / 180.0;
   const double places_per_m2 = levels_.coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
-  const double wanted_m2 = kRivalsWanted / places_per_m2;
-  if (region.area_km2() * 1e6 * std::min(turns, 1.0) >= wanted_m2) return region;
-  const double need = 0.5 * std::sqrt(wanted_m2);
-  PoseRegion result = region;
-  result.circle.reset();
-  const GridPoint centre = region.box.centre();
-  result.box.min.east_m = std::min(region.box.min.east_m, centre.east_m - need);
-  result.box.min.north_m = std::min(region.box.min.north_m, centre.north_m - need);
-  result.box.max.east_m = std::max(region.box.max.east_m, centre.east_m + need);
-  result.box.max.north_m = std::max(region.box.max.north_m, centre.north_m + need);
-  result.heading_half_width = Angle::degrees(180.0);
+  const bool beyond = options_.surroundings.has_value();
+  const double wanted_m2 = std::max(kRivalsWanted / places_per_m2, beyond ? 1e6 * kLeastKm2 : 0.0);
+  PoseRegion result = region.grown(beyond ? kSidesBeyond * levels_.side_m() : 0.0, {});
+  if (result.area_km2() * 1e6 * std::min(turns, 1.0) < wanted_m2) {
+    const GridPoint centre = region.box.centre();
+    result.box = united(result.box, grown({centre, centre}, 0.5 * std::sqrt(wanted_m2)));
+    result.circle.reset();
+    result.heading_half_width = Angle::degrees(180.0);
+  }
+  if (beyond) result.box = united(region.box, intersection(result.box, *options_.surroundings));
   return result;
 }
 

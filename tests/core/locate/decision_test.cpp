@@ -83,6 +83,44 @@ TEST(Decision, APlaceThatRestsOnNoMoreThanOneStraightRoadIsExplainedByChanceHowe
   EXPECT_EQ(decide(result, default_calibration(), 0.99).status, FixStatus::kFix);
 }
 
+class DecisionBesideAnotherPlaceOutside : public ::testing::Test {
+ protected:
+  Decision beside(double score, double east_m) {
+    SearchResult result = found(0.8, 0.35, 0.2);
+    result.modes[0].covariance[0][0] = result.modes[0].covariance[1][1] = 4.0;
+    result.outside = result.modes[0];
+    result.outside->score = score;
+    result.outside->pose.position.east_m += east_m;
+    return decide(result, default_calibration(), 0.99);
+  }
+};
+
+TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsBetterLeavesNoFix) {
+  const Decision decision = beside(0.85, 60.0);
+  EXPECT_EQ(decision.status, FixStatus::kNoFix);
+  EXPECT_EQ(decision.reason, "better-outside-prior");
+  EXPECT_NE(decision.explanation.find("60 m"), std::string::npos) << decision.explanation;
+  EXPECT_LT(decision.probability, 0.01);
+  EXPECT_EQ(decision.weights.front(), decision.probability);
+}
+
+TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsNearlyAsWellLeavesNoFixEither) {
+  const Decision decision = beside(0.799, 60.0);
+  EXPECT_EQ(decision.reason, "better-outside-prior");
+  EXPECT_GT(decision.probability, 0.5);
+  EXPECT_LT(decision.probability, 0.6);
+}
+
+TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsFarLessChangesNothing) {
+  EXPECT_EQ(beside(0.7, 60.0).status, FixStatus::kFix);
+  EXPECT_NEAR(beside(0.7, 60.0).probability, decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99).probability,
+              1e-4);
+}
+
+TEST_F(DecisionBesideAnotherPlaceOutside, TheSamePlaceSeenFromOutsideChangesNothing) {
+  EXPECT_EQ(beside(0.81, 10.0).status, FixStatus::kFix);
+}
+
 TEST(Decision, WeightsAreSharedByTheModes) {
   for (const double second : {0.3, 0.5, 0.7, 0.79, 0.8}) {
     const Decision decision = decide(found(0.8, second, 0.2), default_calibration(), 0.99);

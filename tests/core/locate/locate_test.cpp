@@ -77,7 +77,7 @@ TEST_F(Locate, ALonePieceOfRoadIsNoFixThoughItFitsOnePlaceFarBetterThanAllOthers
   ASSERT_GE(fix.modes.size(), 2U);
   EXPECT_LT(error_m(fix.modes[0].pose, place), 2.0);
   EXPECT_GT(fix.modes[0].rho, 0.95);
-  EXPECT_LT(fix.modes[1].rho, 0.85);
+  for (const FixMode& mode : fix.modes) EXPECT_TRUE(mode.rho < 0.85 || error_m(mode.pose, place) < 2.0) << mode.rho;
   EXPECT_GT(fix.figures->surprise, 4.6);
 }
 

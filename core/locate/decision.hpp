@@ -1,8 +1,9 @@
 // Is the best place the true one? From the scores of a search to a status and a probability.
 //
-// The calibration makes the probability of the best place from the figures of the search. The weights of the other
-// places that fit are in proportion to their posteriors (by the tempered ScoreBackground::log_likelihood()), but sum to
-// no more than the probability leaves.
+// The calibration makes the probability of the best place from the figures of the search, and a place around the region
+// that fits as well takes its share of it: the vehicle may be there. The weights of the other places that fit are in
+// proportion to their posteriors (by the tempered ScoreBackground::log_likelihood()), but sum to no more than the
+// probability leaves.
 #pragma once
 
 #include <optional>
@@ -32,7 +33,7 @@ inline constexpr const char* kTimeLimitReason = "search-time-limit";
 /// Chance explains the best place: the UAV is not over the map, or what it sees looks like everywhere.
 inline constexpr const char* kNotAboveChanceReason = "not-above-chance";
 
-/// A place just outside of the prior fits better.
+/// A place just outside of the prior fits as well or better.
 inline constexpr const char* kBetterOutsideReason = "better-outside-prior";
 
 inline constexpr double kModeShare = 0.01;

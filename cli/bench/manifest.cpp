@@ -163,7 +163,11 @@ void parse_prior(const Field& field, QuerySet& set) {
     field.one_of({"map"});
     return;
   }
-  field.allow_only({"radius_m", "beyond_m"});
+  field.allow_only({"radius_m", "beyond_m", "heading_range_deg"});
+  if (field.has("heading_range_deg")) {
+    set.prior_heading_range = Angle::degrees(field.at("heading_range_deg").number(0.0, 180.0));
+  }
+  if (set.prior_heading_range && !field.has("radius_m") && !field.has("beyond_m")) return;
   set.prior_radius_m = field.at("radius_m").number(1.0, 1e6);
   if (field.has("beyond_m")) set.prior_beyond_m = field.at("beyond_m").number(0.0, 1e6);
 }

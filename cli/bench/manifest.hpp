@@ -10,6 +10,7 @@
 
 #include "core/detect/orthoimage.hpp"
 #include "core/locate/simulate.hpp"
+#include "core/units/angle.hpp"
 
 namespace roadfix::bench {
 
@@ -52,8 +53,9 @@ struct QuerySet {
   bool elsewhere = false;  ///< the queries show ground that is not on the map: every fix is a false one
   bool black_is_unobserved = false;
   int together = 1;  ///< each frame with so many less one of its sequence before it, laid together by their true poses
-  std::optional<double> prior_radius_m;  ///< nullopt = the whole map
-  std::optional<double> prior_beyond_m;  ///< the truth is so far outside of that circle; nullopt = it is inside
+  std::optional<double> prior_radius_m;      ///< nullopt = the whole map
+  std::optional<double> prior_beyond_m;      ///< the truth is so far outside of that circle; nullopt = it is inside
+  std::optional<Angle> prior_heading_range;  ///< on both sides of a heading that is told, and holds the true one
 };
 
 struct Manifest {

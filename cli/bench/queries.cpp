@@ -43,17 +43,27 @@ GridPoint centre_of_prior(const GridPoint& truth, const QuerySet& set, Random& r
   return {truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
 }
 
-Prior prior_around(const GridPoint& truth, const QuerySet& set, const MapView& map, Random& random) {
-  if (!set.prior_radius_m) return {};
+GeoCircle circle_around(const GridPoint& truth, const QuerySet& set, const MapView& map, Random& random) {
   constexpr int kTries = 100;
   for (int i = 0; i < kTries; ++i) {
     const GridPoint centre = centre_of_prior(truth, set, random);
     if (!contains({centre, *set.prior_radius_m}, nearest(map.extent, centre))) continue;
-    return {.circle = GeoCircle{map.zone.unproject(centre), *set.prior_radius_m}, .box = {}, .heading = {}};
+    return {map.zone.unproject(centre), *set.prior_radius_m};
   }
   throw InvalidInput("prior-outside-map",
                      fmt::format("{}: no circle of {} m around a place {} m from its rim meets the map '{}'",
                                  describe(set), *set.prior_radius_m, set.prior_beyond_m.value_or(0.0), map.name));
+}
+
+/// `truth` is any place of the map where the query does not lie on it.
+Prior prior_around(const GridPoint& truth, Angle true_heading, const QuerySet& set, const MapView& map,
+                   Random& random) {
+  Prior prior;
+  if (set.prior_radius_m) prior.circle = circle_around(truth, set, map, random);
+  if (const auto range = set.prior_heading_range) {
+    prior.heading = HeadingRange{(true_heading + uniform(random, -1.0, 1.0) * *range).wrapped(), *range};
+  }
+  return prior;
 }
 
 GeoPose geo(const GridPose& pose, const UtmZone& zone) {
@@ -105,7 +115,8 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
     const GridPose pose = draw(sampling, set, random);
     Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
     query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, zone).heading, set,
+                               map, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -133,7 +144,8 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
     const FeatureQuality quality = draw(set.noise, random);
     query.features =
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, set, map, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, from.zone).heading,
+                               set, map, random);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -165,8 +177,8 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Qu
     Query query{frame.file.string(), {}, {}, frame.pose, {}, {}};
     if (set.elsewhere) query.truth.reset();
     query.picture = picture_of(frame, set);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position), set,
-                               map, random);
+    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
+                               frame.pose.heading, set, map, random);
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
     query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone);
     queries.push_back(std::move(query));

@@ -72,6 +72,17 @@ TEST(Manifest, ReadsThatAPriorIsWrong) {
   EXPECT_EQ(manifest.queries[2].prior_beyond_m, 30);
 }
 
+TEST(Manifest, ReadsThatAHeadingIsToldWithACircleOrAlone) {
+  const auto prior = [](const char* text) {
+    return parse_manifest(with(R"({"radius_m": 500})", text), ".").queries[2];
+  };
+  EXPECT_EQ(prior(R"({"radius_m": 500, "heading_range_deg": 20})").prior_heading_range, Angle::degrees(20.0));
+  EXPECT_EQ(prior(R"({"radius_m": 500, "heading_range_deg": 20})").prior_radius_m, 500);
+  EXPECT_EQ(prior(R"({"heading_range_deg": 20})").prior_heading_range, Angle::degrees(20.0));
+  EXPECT_FALSE(prior(R"({"heading_range_deg": 20})").prior_radius_m);
+  EXPECT_FALSE(prior(R"({"radius_m": 500})").prior_heading_range);
+}
+
 void expect_complaint(const std::string& text, const std::string& part) {
   EXPECT_THAT([&] { parse_manifest(text, "."); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;
 }
@@ -93,6 +104,8 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with("\"count\": 7", "\"elsewhere\": true, \"count\": 7"), "queries[2].elsewhere needs \"from\"");
   expect_complaint(with("}]}],\n", R"(}]}, {"name": "town", "sources": [{"path": "b.tif", "as": "imagery"}]}],)"),
                    "maps[1].name is 'town'");
+  expect_complaint(with(R"({"radius_m": 500})", R"({"heading_range_deg": 181})"), "queries[2].prior.heading_range_deg");
+  expect_complaint(with(R"({"radius_m": 500})", R"({"heading_range_deg": 9, "beyond_m": 5})"), "radius_m");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
   expect_complaint(with("\"count\": 7", "\"count\": 7e999"), "number overflow");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");

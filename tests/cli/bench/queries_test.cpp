@@ -30,6 +30,24 @@ TEST(Queries, TellACircleThatHoldsTheTruthOrOneThatItLiesSoFarBeyond) {
   }
 }
 
+TEST(Queries, TellAHeadingWithinARangeOfTheTrueOne) {
+  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
+  QuerySet set;
+  set.kind = QuerySet::Kind::kSimulated;
+  set.count = 20;
+  set.footprint = {200.0, 200.0};
+  set.prior_heading_range = Angle::degrees(20.0);
+  double farthest_deg = 0.0;
+  for (const Query& query : make_queries(set, map, map, {})) {
+    EXPECT_FALSE(query.prior.circle);
+    EXPECT_EQ(query.prior.heading.value().half_width, Angle::degrees(20.0));
+    farthest_deg =
+        std::max(farthest_deg, angular_distance(query.prior.heading->centre, query.truth.value().heading).degrees());
+  }
+  EXPECT_LE(farthest_deg, 20.0);
+  EXPECT_GT(farthest_deg, 10.0) << "it is not the true one";
+}
+
 TEST(Queries, TellOnlyCirclesThatMeetTheMap) {
   const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
   QuerySet set;

@@ -58,7 +58,7 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   const Decision decision = decide(result, default_calibration(), 0.9999);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "below-confidence");
-  EXPECT_NE(decision.explanation.find("vouches for no more than 0.9959"), std::string::npos) << decision.explanation;
+  EXPECT_NE(decision.explanation.find("vouches for no more than 0.9965"), std::string::npos) << decision.explanation;
   Calibration doubtful = default_calibration();
   doubtful.bias -= 20.0;
   const Decision doubted = decide(result, doubtful, 0.9999);

@@ -205,11 +205,13 @@ std::string errors_of(const QualityRange& noise) {
   return words;
 }
 
-/// ", prior 500 m", ", prior 500 m wrong by 30 m"; empty where nothing is known.
+/// ", prior 500 m", ", prior 500 m wrong by 30 m, heading within 20 deg"; empty where nothing is known.
 std::string prior_words(const QuerySet& set) {
-  if (!set.prior_radius_m) return "";
-  const std::string wrong = set.prior_beyond_m ? fmt::format(" wrong by {} m", *set.prior_beyond_m) : "";
-  return fmt::format(", prior {} m{}", *set.prior_radius_m, wrong);
+  std::string words;
+  if (set.prior_radius_m) words += fmt::format(", prior {} m", *set.prior_radius_m);
+  if (set.prior_beyond_m) words += fmt::format(" wrong by {} m", *set.prior_beyond_m);
+  if (set.prior_heading_range) words += fmt::format(", heading within {:.4g} deg", set.prior_heading_range->degrees());
+  return words;
 }
 
 std::string ground_words(const QuerySet& set) {

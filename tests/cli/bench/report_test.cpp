@@ -85,6 +85,9 @@ TEST(QuerySet, IsDescribedWithAllThatTellsItFromOthersOverItsMap) {
   EXPECT_EQ(describe(set), "post.jpg 300x200 m, prior 500 m");
   set.prior_beyond_m = 30.0;
   EXPECT_EQ(describe(set), "post.jpg 300x200 m, prior 500 m wrong by 30 m");
+  set.prior_heading_range = Angle::degrees(20.0);
+  EXPECT_EQ(describe(set), "post.jpg 300x200 m, prior 500 m wrong by 30 m, heading within 20 deg");
+  set.prior_heading_range.reset();
   set.kind = QuerySet::Kind::kFrames;
   set.prior_beyond_m.reset();
   set.elsewhere = true;

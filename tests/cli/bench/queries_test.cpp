@@ -13,32 +13,37 @@ double from_the_centre_of_the_prior_m(const Query& query, const UtmZone& zone) {
   return distance_m(zone.project(query.prior.circle.value().centre), zone.project(query.truth.value().position));
 }
 
-TEST(Queries, TellACircleThatHoldsTheTruthOrOneThatItLiesSoFarBeyond) {
-  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
-  QuerySet set;
-  set.kind = QuerySet::Kind::kSimulated;
-  set.count = 20;
-  set.footprint = {200.0, 200.0};
-  set.prior_radius_m = 100.0;
-  for (const Query& query : make_queries(set, map, map, {})) {
-    EXPECT_LE(from_the_centre_of_the_prior_m(query, map.zone), 100.0);
+/// Queries of a small town, which a test gives a prior.
+class Queries : public ::testing::Test {
+ protected:
+  Queries() {
+    set_.kind = QuerySet::Kind::kSimulated;
+    set_.count = 20;
+    set_.footprint = {200.0, 200.0};
   }
-  set.prior_beyond_m = 30.0;
-  for (const Query& query : make_queries(set, map, map, {})) {
-    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map.zone), 130.0, 0.01);
+
+  std::vector<Query> drawn() const { return make_queries(set_, map_, map_, {}); }
+
+  const MapView map_ = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
+  QuerySet set_;
+};
+
+TEST_F(Queries, TellACircleThatHoldsTheTruthOrOneThatItLiesSoFarBeyond) {
+  set_.prior_radius_m = 100.0;
+  for (const Query& query : drawn()) {
+    EXPECT_LE(from_the_centre_of_the_prior_m(query, map_.zone), 100.0);
+  }
+  set_.prior_beyond_m = 30.0;
+  for (const Query& query : drawn()) {
+    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map_.zone), 130.0, 0.01);
     EXPECT_EQ(query.prior.circle->radius_m, 100.0);
   }
 }
 
-TEST(Queries, TellAHeadingWithinARangeOfTheTrueOne) {
-  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
-  QuerySet set;
-  set.kind = QuerySet::Kind::kSimulated;
-  set.count = 20;
-  set.footprint = {200.0, 200.0};
-  set.prior_heading_range = Angle::degrees(20.0);
+TEST_F(Queries, TellAHeadingWithinARangeOfTheTrueOne) {
+  set_.prior_heading_range = Angle::degrees(20.0);
   double farthest_deg = 0.0;
-  for (const Query& query : make_queries(set, map, map, {})) {
+  for (const Query& query : drawn()) {
     EXPECT_FALSE(query.prior.circle);
     EXPECT_EQ(query.prior.heading.value().half_width, Angle::degrees(20.0));
     farthest_deg =
@@ -48,20 +53,15 @@ TEST(Queries, TellAHeadingWithinARangeOfTheTrueOne) {
   EXPECT_GT(farthest_deg, 10.0) << "it is not the true one";
 }
 
-TEST(Queries, TellOnlyCirclesThatMeetTheMap) {
-  const MapView map = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
-  QuerySet set;
-  set.kind = QuerySet::Kind::kSimulated;
-  set.count = 20;
-  set.footprint = {200.0, 200.0};
-  set.prior_radius_m = 100.0;
-  set.prior_beyond_m = 400.0;
-  for (const Query& query : make_queries(set, map, map, {})) {
-    EXPECT_NO_THROW(region_of(map, query.prior)) << query.id;
-    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map.zone), 500.0, 0.01);
+TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
+  set_.prior_radius_m = 100.0;
+  set_.prior_beyond_m = 400.0;
+  for (const Query& query : drawn()) {
+    EXPECT_NO_THROW(region_of(map_, query.prior)) << query.id;
+    EXPECT_NEAR(from_the_centre_of_the_prior_m(query, map_.zone), 500.0, 0.01);
   }
-  set.prior_beyond_m = 2000.0;
-  EXPECT_THROW(make_queries(set, map, map, {}), InvalidInput);
+  set_.prior_beyond_m = 2000.0;
+  EXPECT_THROW(drawn(), InvalidInput);
 }
 
 }  // namespace

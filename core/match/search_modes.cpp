@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "core/grid/resample.hpp"
 #include "core/match/peak.hpp"
@@ -96,22 +98,19 @@ std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegi
   return found == modes.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The best `count` places beside the best one tell of chance.
-void set_background(const SearchLevels& levels, const PoseRegion& scanned, const std::vector<LatticePose>& candidates,
-                    std::size_t count, ScoreBackground& background) {
-  bool best_seen = false;
-  for (const LatticePose& pose : candidates) {
-    const bool in_region = levels.within_region(levels.finest(), pose);
-    if (in_region && !best_seen) {
-      best_seen = true;
-      continue;
-    }
-    background.rivals.push_back(pose.score);
-    if (in_region) background.rivals_within.push_back(pose.score);
-  }
+std::vector<double> scores_of(std::span<const LatticePose> poses) {
+  std::vector<double> scores;
+  for (const LatticePose& pose : poses) scores.push_back(pose.score);
+  return scores;
+}
+
+/// Of places within the region and around it, best first: the best `count` beside the best one tell of chance.
+void set_rivals(std::span<const LatticePose> inside, std::span<const LatticePose> around, std::size_t count,
+                ScoreBackground& background) {
+  background.rivals_within = scores_of(inside.subspan(std::min<std::size_t>(1, inside.size())));
+  std::ranges::merge(background.rivals_within, scores_of(around), std::back_inserter(background.rivals),
+                     std::ranges::greater{});
   background.rivals.resize(std::min(background.rivals.size(), count));
-  const double all = poses_of(scanned);
-  background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
 }
 
 }  // namespace
@@ -119,26 +118,27 @@ void set_background(const SearchLevels& levels, const PoseRegion& scanned, const
 void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
           const std::vector<LatticePose>& candidates, SearchResult& result) {
   const Level& finest = levels.finest();
+  std::vector<LatticePose> inside;
+  std::vector<LatticePose> around;
+  for (const LatticePose& pose : candidates) {
+    (levels.within_region(finest, pose) ? inside : around).push_back(pose);
+  }
   // As many as where no other was scanned: those of a region go deeper than those around it. But where it is scanned
   // beyond its border only because it is tiny, its own are what chance is told by.
   const bool tiny = !options.surroundings && scanned.area_km2() > levels.region().area_km2();
-  set_background(levels, scanned, candidates, tiny ? 2 * kSurvivors : kSurvivors, result.background);
-  std::vector<LatticePose> inside;
-  std::vector<LatticePose> outside;  // but at headings of the region
-  for (const LatticePose& pose : candidates) {
-    if (levels.within_region(finest, pose)) {
-      inside.push_back(pose);
-    } else if (levels.region().contains(finest.pose_of(pose).heading)) {
-      outside.push_back(pose);
-    }
-  }
+  set_rivals(inside, around, tiny ? 2 * kSurvivors : kSurvivors, result.background);
+  const double all = poses_of(scanned);
+  result.background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
   const auto wanted = static_cast<std::size_t>(std::max(1, options.max_modes));
   result.modes = modes_of(finest, inside, wanted, deadline, result);
   if (result.modes.empty()) return;
   SearchMode& best = result.modes.front();
   best.shared_road_m2 = shared_road_m2(finest, best);
   if (!options.surroundings) return;
-  result.outside = best_around(levels, scanned, modes_of(finest, outside, kOutside, deadline, result), best);
+  std::erase_if(around, [&](const LatticePose& pose) {
+    return !levels.region().contains(finest.pose_of(pose).heading);  // what lies at other headings is no rival
+  });
+  result.outside = best_around(levels, scanned, modes_of(finest, around, kOutside, deadline, result), best);
 }
 
 }  // namespace roadfix

@@ -57,6 +57,21 @@ double full_opacity(GDALRasterBand& alpha) {
   }
 }
 
+std::optional<double> nodata_of(GDALRasterBand& band) {
+  int has = FALSE;
+  const double value = band.GetNoDataValue(&has);
+  return has == TRUE ? std::optional(value) : std::nullopt;
+}
+
+/// Overviews made before a value was marked as nodata, or kept beside a file whose mask lies within, hide less.
+bool hides_as_much(GDALRasterBand& overview, GDALRasterBand& band) {
+  const auto masked = [](GDALRasterBand& of) { return (of.GetMaskFlags() & GMF_PER_DATASET) != 0; };
+  const std::optional<double> wanted = nodata_of(band);
+  const std::optional<double> own = nodata_of(overview);
+  const bool same = wanted == own || (wanted && own && std::isnan(*wanted) && std::isnan(*own));
+  return same && (masked(overview) || !masked(band));
+}
+
 /// A pixel holds nothing where every band that declares a nodata value has it, or where any value is no number.
 template <typename Value>
 void clear_nodata(const cv::Mat& values, const std::vector<std::optional<double>>& nodata, cv::Mat& valid) {
@@ -126,11 +141,7 @@ void RasterFile::find_bands() {
                         static_cast<std::uint8_t>(entry.c1), static_cast<std::uint8_t>(entry.c4)});
   }
   has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
-  for (const int band : colour_bands_) {
-    int has = FALSE;
-    const double value = dataset_->GetRasterBand(band)->GetNoDataValue(&has);
-    nodata_.push_back(has == TRUE ? std::optional(value) : std::nullopt);
-  }
+  for (const int band : colour_bands_) nodata_.push_back(nodata_of(*dataset_->GetRasterBand(band)));
 }
 
 void RasterFile::find_reference(const RasterOptions& options) {
@@ -181,7 +192,7 @@ int RasterFile::overview_for(double reduction) const {
   double best_factor = 1.0;
   for (int i = 0; i < band.GetOverviewCount(); ++i) {
     GDALRasterBand* overview = band.GetOverview(i);
-    if (overview == nullptr || overview->GetXSize() <= 0) continue;
+    if (overview == nullptr || overview->GetXSize() <= 0 || !hides_as_much(*overview, band)) continue;
     const double factor = static_cast<double>(size().width) / overview->GetXSize();
     if (factor > best_factor && factor <= reduction * 1.01) {
       best = i;

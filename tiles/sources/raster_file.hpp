@@ -57,8 +57,8 @@ class RasterFile {
   bool holds_integers() const;
   /// Number of the band that says what is transparent, 0 without.
   int alpha_band() const { return alpha_band_; }
-  /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image; -1 for
-  /// none.
+  /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image, and which
+  /// knows what of it holds nothing; -1 for none.
   int overview_for(double reduction) const;
 
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".

@@ -121,6 +121,35 @@ TEST_F(RasterFileTest, SamplesLeaveOutWhatHoldsNothing) {
   EXPECT_THAT(values, ::testing::Each(500.0F));
 }
 
+/// As gdaladdo makes them, with -ro beside the file.
+void add_overview(const std::string& path, GDALAccess access) {
+  int factor = 2;
+  const GdalMessages quiet;
+  GDALDatasetUniquePtr(GDALDataset::FromHandle(GDALOpen(path.c_str(), access)))
+      ->BuildOverviews("NEAREST", 1, &factor, 0, nullptr, nullptr, nullptr);
+}
+
+TEST_F(RasterFileTest, OverviewsWithoutTheMaskOfTheirImageAreNotRead) {
+  const auto right_half = [](int col, int) { return col >= 150; };
+  const RasterSpec spec{.width = 300, .height = 300};
+  const std::string with_mask = write_raster(folder / "a.tif", spec, band_number, right_half);
+  add_overview(with_mask, GA_Update);
+  EXPECT_EQ(RasterFile(with_mask, {}).overview_for(2.0), 0);
+  const std::string without = write_raster(folder / "b.tif", spec, band_number, right_half);
+  add_overview(without, GA_ReadOnly);
+  EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), -1);
+}
+
+TEST_F(RasterFileTest, OverviewsFromBeforeAValueMeantNodataAreNotRead) {
+  const std::string path = write_raster(folder / "a.tif", {.width = 300, .height = 300}, band_number);
+  add_overview(path, GA_Update);
+  EXPECT_EQ(RasterFile(path, {}).overview_for(2.0), 0);
+  GDALDatasetUniquePtr(GDALDataset::FromHandle(GDALOpen(path.c_str(), GA_Update)))
+      ->GetRasterBand(1)
+      ->SetNoDataValue(10.0);
+  EXPECT_EQ(RasterFile(path, {}).overview_for(2.0), -1);
+}
+
 TEST_F(RasterFileTest, WithoutGeoreferenceItSaysWhatToDo) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");

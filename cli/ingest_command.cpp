@@ -96,6 +96,7 @@ void run(const IngestArguments& arguments, bool cell_given) {
   }
   std::vector<SourceRequest> requests;
   for (const std::string& source : arguments.sources) requests.push_back(request_of(arguments, source));
+  refuse_without_effect(arguments, requests);
   for (std::size_t i = 0; i < requests.size(); ++i) {
     refuse_the_map_itself(requests[i].files, arguments.map);
     for (std::size_t j = 0; j < i; ++j) {

@@ -90,6 +90,29 @@ SourceRequest request_of(const IngestArguments& arguments, const std::string& so
   return request;
 }
 
+void refuse_without_effect(const IngestArguments& a, std::span<const SourceRequest> requests) {
+  const auto lines = std::ranges::count(requests, SourceKind::kRoadVectors, [](const auto& r) { return r.files.kind; });
+  const auto refuse = [&](bool given, const char* option, const char* why) {
+    if (!given) return;
+    throw InvalidInput("option-without-effect",
+                       fmt::format("{} does nothing with {}: {}", option, requests.front().files.location, why));
+  };
+  if (lines == std::ssize(requests)) {
+    refuse(!a.collar.empty(), "--nodata-color", "lines have no collar");
+  }
+  if (lines > 0) return;
+  refuse(!a.vectors.extent.empty(), "--extent",
+         "it says what ground lines cover, and these are pixels. To ingest a part of them, cut them before "
+         "(gdalwarp -te)");
+  constexpr const char* kPixels = "it is about road lines, and these are pixels";
+  refuse(!a.vectors.layer.empty(), "--layer", kPixels);
+  refuse(!a.classes.empty(), "--classes", kPixels);
+  refuse(!a.rules_file.empty(), "--rules", kPixels);
+  refuse(!a.class_attribute.empty(), "--class-attribute", kPixels);
+  refuse(!a.width_attribute.empty(), "--width-attribute", kPixels);
+  refuse(a.width_m > 0.0, "--width", kPixels);
+}
+
 MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given) {
   std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map);
   if (!existing) return {zone_of(arguments, first), arguments.cell_m};

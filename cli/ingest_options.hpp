@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,10 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& arguments);
 
 /// The source named `source` on the command line. Throws NotFound and InvalidInput about files and options.
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source);
+
+/// Throws InvalidInput "option-without-effect" for what is said of lines where all sources are pixels, and the other
+/// way round: who gives --extent for imagery would get all of it.
+void refuse_without_effect(const IngestArguments& arguments, std::span<const SourceRequest> requests);
 
 /// Those of the map, if it is there: then --cell and --zone must not contradict.
 MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given);

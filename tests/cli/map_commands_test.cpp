@@ -158,6 +158,23 @@ TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
+TEST_F(MapCommands, IngestRefusesOptionsThatDoNothingWithItsSources) {
+  const std::string pixels = folder / "m.tif";
+  ASSERT_EQ(roadfix("export " + path.string() + " " + pixels).code, 0);
+  const std::string ingest = "ingest " + pixels + " --as roads --map " + (folder / "n.gpkg").string();
+  for (const char* option : {"--extent 38.2,37.7,38.3,37.8", "--layer roads", "--classes primary", "--width 6",
+                             "--class-attribute kind", "--width-attribute breite"}) {
+    const ProgramResult result = roadfix(ingest + " " + option);
+    EXPECT_EQ(result.code, 1) << option;
+    EXPECT_THAT(result.err, HasSubstr("[option-without-effect]")) << option;
+  }
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
+  EXPECT_THAT(roadfix("ingest " + lines + " --nodata-color white --map " + (folder / "n.gpkg").string()).err,
+              HasSubstr("[option-without-effect]"));
+  EXPECT_EQ(roadfix(ingest + " " + lines + " --width 6 --nodata-color white").code, 0) << "one for each";
+}
+
 TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
   const ProgramResult mistyped = roadfix("ingset a.tif --map " + path.string());
   EXPECT_EQ(mistyped.code, 2);

@@ -134,8 +134,13 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
                              const QueryDrawing& drawing) {
   require_same_plane(set, map, from);
   const RoadGrid grid = whole(from);
+  const bool on_two_maps = !set.elsewhere && set.from != set.map;
+  const RoadGrid searched = on_two_maps ? whole(map) : RoadGrid{};
+  const Observed in_ground = seen_by(grid);
+  const Observed in_map = on_two_maps ? seen_by(searched) : Observed([](GridPoint) { return true; });
   const auto cells = [&](double side_m) { return static_cast<int>(std::lround(side_m / from.cell_m)); };
-  const PoseSampling sampling{without(from.extent, set.exclude), set.footprint, seen_by(grid)};
+  const PoseSampling sampling{without(from.extent, set.exclude), set.footprint,
+                              [&](GridPoint p) { return in_ground(p) && in_map(p); }};
   std::vector<Query> queries;
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
@@ -161,7 +166,7 @@ std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<Fra
   const FrameTruth& reference = frames[index];
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
-    if (frame.sequence != reference.sequence) break;
+    if (frame.sequence != reference.sequence) continue;  // flights may take turns in the file
     const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
     earlier.push_back({picture_of(frame, set), offset});
   }

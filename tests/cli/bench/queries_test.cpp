@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
 #include "core/units/error.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -62,6 +66,31 @@ TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
   }
   set_.prior_beyond_m = 2000.0;
   EXPECT_THROW(drawn(), InvalidInput);
+}
+
+TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
+  const MapView west = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 250, 400}));
+  set_.from = "newer";
+  for (const Query& query : make_queries(set_, west, map_, {})) {
+    EXPECT_TRUE(west.extent.contains(map_.zone.project(query.truth.value().position))) << query.id;
+  }
+}
+
+TEST_F(Queries, CombineTheFramesOfAFlightAlsoWhereFlightsTakeTurnsInTheFile) {
+  const testing::TemporaryFolder folder;
+  cv::imwrite(folder / "a.png", cv::Mat(20, 20, CV_8UC1, cv::Scalar(90)));
+  std::ofstream(folder / "frames.csv") << "file,sequence,lat,lon,heading_deg,gsd_m\n"
+                                          "a.png,1,36,21,0,1\na.png,2,37,21,0,1\n"
+                                          "a.png,1,36,21,0,1\na.png,2,37,21,0,1\na.png,1,36,21,0,1\n";
+  set_.kind = QuerySet::Kind::kFrames;
+  set_.path = folder / "frames.csv";
+  set_.together = 2;
+  std::vector<std::size_t> earlier;
+  for (const Query& query : drawn()) {
+    earlier.push_back(query.earlier.size());
+    for (const EarlierFrame& frame : query.earlier) EXPECT_NEAR(frame.offset.forward_m, 0.0, 0.01);
+  }
+  EXPECT_EQ(earlier, (std::vector<std::size_t>{0, 0, 1, 1, 1}));
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ json keypoints_json(const std::optional<KeypointCounts>& counts) {
   return {{"matches", counts->matches}, {"right", counts->right}};
 }
 
+/// What position_nees is reckoned with.
+json ellipse_json(const std::optional<FixMode>& mode) {
+  if (!mode) return nullptr;
+  return {{"sigma_m", mode->sigma_m},
+          {"heading_deg", mode->ellipse_heading.degrees()},
+          {"heading_sigma_deg", mode->heading_sigma.degrees()}};
+}
+
 json outcome_json(const Outcome& outcome) {
   const Answer& answer = outcome.answer;
   return {{"id", outcome.id},
@@ -43,6 +51,7 @@ json outcome_json(const Outcome& outcome) {
           {"status", api::to_string(answer.status)},
           {"reason", answer.reason},
           {"answer", answer.best ? api::pose_json(*answer.best) : json(nullptr)},
+          {"ellipse", ellipse_json(answer.mode)},
           {"probability", answer.probability},
           {"evidence", figures_json(answer.figures)},
           {"error_m", number_or_null(outcome.error_m)},

@@ -58,6 +58,25 @@ TEST(Summary, OfNothingHasNoMedian) {
   EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);
 }
 
+TEST(Report, GivesTheEllipseThatEachNeesFollowsFrom) {
+  FixMode mode;
+  mode.pose.position = {37.76, 38.28};
+  mode.sigma_m = {4.0, 2.0};
+  mode.ellipse_heading = Angle::degrees(90.0);
+  mode.heading_sigma = Angle::degrees(0.5);
+  Answer answer;
+  answer.best = mode.pose;
+  answer.mode = mode;
+  const GeoPose truth{{37.76, 38.28009}, {}};  // about 8 m to the east
+  const auto query = to_json({"roads", "m", "q", {judged("a", truth, answer, kZone)}})["queries"][0];
+  EXPECT_EQ(query["ellipse"]["sigma_m"], (std::vector<double>{4.0, 2.0}));
+  EXPECT_NEAR(query["ellipse"]["heading_deg"].get<double>(), 90.0, 1e-9);
+  EXPECT_NEAR(query["ellipse"]["heading_sigma_deg"].get<double>(), 0.5, 1e-9);
+  const double error_m = query["error_m"];
+  EXPECT_NEAR(query["position_nees"].get<double>(), error_m * error_m / 16.0, 0.01);
+  EXPECT_EQ(to_json({"sift", "m", "q", {judged("a", truth, {}, kZone)}})["queries"][0]["ellipse"], nullptr);
+}
+
 TEST(Table, KeepsItsColumnsApartForLongNames) {
   const std::string table = to_table({{"roads", "liechtenstein-latest", "simulated 400x400 m, 60 % erased", {}},
                                       {"sift", "town", "post.jpg 300x300 m", {}}});

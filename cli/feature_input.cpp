@@ -94,8 +94,9 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
 
 FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
   if (options.cell_m <= 0.0 && !options.frame.given()) {
-    throw InvalidInput("input-kind-missing",
-                       "say what the input is: --cell for a feature map, --gsd or --fov and --agl for a frame");
+    throw InvalidInput(
+        "input-kind-missing",
+        "say what the input is: --cell for a feature map, --gsd or --agl with --fov or --focal-px for a frame");
   }
   if (options.cell_m > 0.0) return {all_features(options, nullptr, map_cell_m), {}};
   const auto detector = make_detector(options.detector);

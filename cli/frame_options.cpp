@@ -33,8 +33,13 @@ auto decoded(const std::string& path, const auto& decode) {
 }
 
 FrameCamera camera_of(const FrameOptions& options) {
+  if (options.fov_deg <= 0.0 && options.focal_px <= 0.0) throw CLI::RequiredError("--fov or --focal-px");
   FrameCamera camera;
-  camera.horizontal_fov = Angle::degrees(options.fov_deg);
+  if (options.fov_deg > 0.0) camera.horizontal_fov = Angle::degrees(options.fov_deg);
+  if (options.focal_px > 0.0) camera.focal_px = options.focal_px;
+  if (!options.principal_px.empty()) camera.principal_px.emplace(options.principal_px[0], options.principal_px[1]);
+  if (options.fisheye) camera.lens = LensModel::kFisheye;
+  camera.distortion = options.distortion;
   camera.agl_m = options.agl_m;
   camera.roll = Angle::degrees(options.roll_deg);
   camera.pitch = Angle::degrees(options.pitch_deg);
@@ -44,26 +49,44 @@ FrameCamera camera_of(const FrameOptions& options) {
 }  // namespace
 
 double expected_nadir_sigma_m(const FrameOptions& options) {
-  return options.fov_deg > 0.0 ? nadir_sigma_m(camera_of(options), kAttitudeSigma) : 0.0;
+  return options.camera() ? nadir_sigma_m(camera_of(options), kAttitudeSigma) : 0.0;
 }
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
   auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
                   ->check(positive());
   auto* fov = command.add_option("--fov", o.fov_deg, "The input is a camera frame: field of view across, degrees")
+                  ->check(positive());
+  auto* focal = command
+                    .add_option("--focal-px", o.focal_px,
+                                "The input is a camera frame: focal length in pixels, as a calibration gives it")
+                    ->check(positive())
+                    ->excludes(fov);
+  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov or --focal-px")
                   ->check(positive())
                   ->excludes(gsd);
-  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov")
-                  ->check(positive())
-                  ->needs(fov);
   fov->needs(agl);
+  focal->needs(agl);
   command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down, 0 = straight down")
-      ->needs(fov);
+      ->needs(agl);
   command
       .add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
-      ->needs(fov);
+      ->needs(agl);
+  command.add_option("--principal-px", o.principal_px, "Principal point in pixels (default: the middle of the frame)")
+      ->type_name("X,Y")
+      ->delimiter(',')
+      ->expected(2)
+      ->needs(focal);
+  command
+      .add_option("--distortion", o.distortion,
+                  "Lens distortion by OpenCV's model (ROS: plumb_bob, rational_polynomial), of --fisheye K1,K2,K3,K4")
+      ->type_name("K1,K2,P1,P2[,K3[,K4,K5,K6]]")
+      ->delimiter(',')
+      ->expected(4, 8)
+      ->needs(focal);
+  command.add_flag("--fisheye", o.fisheye, "The lens is a fisheye (OpenCV's model; ROS: equidistant)")->needs(focal);
   command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen")->needs(gsd);
-  return {gsd, fov};
+  return {gsd, agl};
 }
 
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {

@@ -15,16 +15,21 @@ inline constexpr std::int64_t kMaxPixels = 400'000'000;
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
   double fov_deg = 0.0;
+  double focal_px = 0.0;
+  std::vector<double> principal_px;
+  bool fisheye = false;
+  std::vector<double> distortion;
   double agl_m = 0.0;
   double roll_deg = 0.0;
   double pitch_deg = 0.0;
   bool black_unseen = false;
 
-  bool given() const { return gsd_m > 0.0 || fov_deg > 0.0; }
+  bool given() const { return gsd_m > 0.0 || camera(); }
+  bool camera() const { return agl_m > 0.0; }
 };
 
-/// Adds --gsd, --fov, --agl, --roll, --pitch and --black-unseen; `options` must live as long as the command. Returns
-/// the two of which one says that there is a frame.
+/// Adds --gsd, the camera's --fov or --focal-px and what goes with them, and --black-unseen; `options` must live as
+/// long as the command. Returns those of which one says that there is a frame.
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
 
 /// How well the nadir of a frame is known, 1 sigma per axis: by kAttitudeSigma if it is described by its camera. 0 if

@@ -21,6 +21,7 @@ constexpr Range kGsd{0.0, 100.0, true};
 constexpr Range kFeatureCell{0.0, 1000.0, true};
 
 constexpr std::string_view kKinds[] = {"feature_map", "frame"};
+constexpr std::string_view kLenses[] = {"perspective", "fisheye"};
 constexpr std::string_view kBorders[] = {"seen", "black"};
 
 void require_picture(const Content& content) {
@@ -66,6 +67,12 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   return map;
 }
 
+const std::vector<std::string>& camera_fields() {
+  static const std::vector<std::string> kFields{"fov_deg",    "focal_px", "principal_px", "lens",
+                                                "distortion", "agl_m",    "roll_deg",     "pitch_deg"};
+  return kFields;
+}
+
 FrameCamera camera_of(const Fields& fields) {
   FrameCamera camera;
   if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
@@ -75,6 +82,11 @@ FrameCamera camera_of(const Fields& fields) {
     throw InvalidField("missing-parameter", "fov_deg",
                        "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px");
   }
+  camera.lens = fields.word("lens", kLenses) == "fisheye" ? LensModel::kFisheye : LensModel::kPerspective;
+  if (const auto principal = fields.optional_numbers("principal_px", 2)) {
+    camera.principal_px = cv::Point2d(principal->at(0), principal->at(1));
+  }
+  camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
   camera.agl_m = fields.number("agl_m", {0.0, 20'000.0, true});
   camera.roll = Angle::degrees(fields.optional_number("roll_deg", {-90.0, 90.0}).value_or(0.0));
   camera.pitch = Angle::degrees(fields.optional_number("pitch_deg", {-90.0, 90.0}).value_or(0.0));
@@ -82,7 +94,7 @@ FrameCamera camera_of(const Fields& fields) {
 }
 
 void require_straight_down(const Fields& fields) {
-  for (const char* name : {"fov_deg", "focal_px", "agl_m", "roll_deg", "pitch_deg"}) {
+  for (const std::string& name : camera_fields()) {
     if (fields.has(name)) {
       throw InvalidField(
           "bad-parameter", name,
@@ -121,8 +133,7 @@ void require_few_pixels(const GroundImage& image, const RoadDetector& detector, 
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
-  static const std::vector<std::string> kFields{"gsd_m",     "fov_deg",    "focal_px", "agl_m", "roll_deg",
-                                                "pitch_deg", "unobserved", "cell_m",   "seed"};
+  static const std::vector<std::string> kFields = joined({"gsd_m", "unobserved", "cell_m", "seed"}, camera_fields());
   return kFields;
 }
 

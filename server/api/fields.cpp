@@ -150,26 +150,32 @@ std::string Fields::word(const std::string& name, std::span<const std::string_vi
   return value;
 }
 
-std::optional<std::vector<double>> Fields::optional_numbers(const std::string& name, std::size_t count) const {
+std::optional<std::vector<double>> Fields::optional_numbers(const std::string& name, std::size_t min,
+                                                            std::size_t max) const {
   const Value* value = find(name);
   if (value == nullptr) return std::nullopt;
   std::vector<double> numbers;
   if (value->from_text) {
     std::string_view rest = value->json.get_ref<const std::string&>();
-    for (bool more = true; more && numbers.size() <= count;) {
+    for (bool more = true; more && numbers.size() <= max;) {
       const std::size_t comma = rest.find(',');
       const auto number = parse_number(rest.substr(0, comma));
-      if (!number) break;
+      if (!number) {
+        numbers.clear();
+        break;
+      }
       numbers.push_back(*number);
       more = comma != std::string_view::npos;
       if (more) rest.remove_prefix(comma + 1);
     }
-  } else if (value->json.is_array() && value->json.size() == count) {
+  } else if (value->json.is_array() && value->json.size() <= max) {
     for (const json& element : value->json) numbers.push_back(to_number(name, element));
   }
-  if (numbers.size() != count) {
-    throw InvalidField("bad-parameter", name,
-                       fmt::format("'{}' must be {} numbers, not '{}'", name, count, shown(value->json)));
+  if (numbers.size() < min || numbers.size() > max) {
+    throw InvalidField(
+        "bad-parameter", name,
+        fmt::format("'{}' must be {} numbers, not '{}'", name,
+                    min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max), shown(value->json)));
   }
   return numbers;
 }

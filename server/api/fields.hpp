@@ -52,8 +52,11 @@ class Fields {
   std::string text(const std::string& name) const;
   /// One of the words; the first where the field is absent.
   std::string word(const std::string& name, std::span<const std::string_view> words) const;
-  /// `count` numbers: a JSON array, or text with commas between them.
-  std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t count) const;
+  /// So many numbers: a JSON array, or text with commas between them.
+  std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t min, std::size_t max) const;
+  std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t count) const {
+    return optional_numbers(name, count, count);
+  }
   /// The member of a JSON body as it is; nullptr where it is absent.
   const nlohmann::json* member(const std::string& name) const;
   /// Names and values of all but `left_out`, to compare requests by: the order in which they came does not count.

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -67,6 +68,18 @@ TEST_F(DetectCommand, RectifiesWhatACameraSaw) {
   EXPECT_GT(nose_up["nadir_cell"][1], nose_up["rows"].get<double>() / 2.0) << "the ground seen lies ahead of the UAV";
 }
 
+TEST_F(DetectCommand, TakesTheCalibrationOfACamera) {
+  const std::string by_focal = "--focal-px 100 --agl 100 --json ";
+  EXPECT_EQ(nlohmann::json::parse(detect(by_focal).out)["cols"], 100);
+  const auto barrel = nlohmann::json::parse(detect(by_focal + "--distortion -0.1,0,0,0 --principal-px 105,60").out);
+  EXPECT_GT(barrel["cols"], 105) << "its edges see farther";
+  const auto fisheye = nlohmann::json::parse(detect(by_focal + "--fisheye --distortion 0,0,0,0").out);
+  const double corner = std::hypot(1.0, 0.6);  // radians from the optical axis, one across
+  EXPECT_NEAR(fisheye["cols"].get<double>(), 100.0 * std::tan(corner) / corner, 2.0);
+  EXPECT_THAT(detect(by_focal + "--distortion 0,0,0,0,0,0").err, HasSubstr("[frame-camera]"));
+  EXPECT_THAT(detect(by_focal + "--principal-px 210,60").err, HasSubstr("for frames of this size"));
+}
+
 TEST_F(DetectCommand, KeepsThePlaceOfAGeoreferencedImage) {
   std::ofstream(folder / "frame.pgw") << "0.5\n0\n0\n-0.5\n434000.25\n4179999.75\n";
   std::ofstream(folder / "frame.png.aux.xml") << "<PAMDataset><SRS>EPSG:32637</SRS></PAMDataset>";
@@ -117,6 +130,9 @@ TEST_F(DetectCommand, SaysWhatIsMissing) {
   EXPECT_EQ(nowhere.code, 1);
   EXPECT_THAT(nowhere.err, HasSubstr("[image-without-georeference]"));
   EXPECT_EQ(detect("--fov 90").code, 2);
+  EXPECT_EQ(detect("--agl 100").code, 2);
+  EXPECT_EQ(detect("--fov 90 --focal-px 100 --agl 100").code, 2);
+  EXPECT_EQ(detect("--fov 90 --agl 100 --distortion 0,0,0,0").code, 2);
   EXPECT_EQ(detect("--fov 90 --agl 100 --gsd 1").code, 2);
   EXPECT_THAT(detect("--fov 190 --agl 100").err, HasSubstr("[frame-camera]"));
 }

@@ -88,6 +88,12 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=20", png, "image/png")), "422 frame-too-coarse");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1e-4", png, "image/png")), "422 frame-too-fine");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame", png, "image/png")), "400 missing-parameter fov_deg");
+  const std::string camera = fix_ + "?kind=frame&agl_m=50&focal_px=64";
+  EXPECT_EQ(refusal(client_.Post(camera + "&distortion=0.1", png, "image/png")), "400 bad-parameter distortion");
+  EXPECT_EQ(refusal(client_.Post(camera + "&lens=fisheye", png, "image/png")), "422 frame-camera");
+  EXPECT_EQ(refusal(client_.Post(camera + "&principal_px=64,64", png, "image/png")), "422 frame-camera");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1&lens=fisheye", png, "image/png")),
+            "400 bad-parameter lens");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
 }
 

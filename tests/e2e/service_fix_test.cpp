@@ -190,6 +190,13 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
   const json features = testing::json_of(
       client_.Post("/v1/detect?fov_deg=60&agl_m=200&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
   EXPECT_GT(features["cols"], 50);
+  const std::string focal = "/v1/detect?focal_px=200&agl_m=100&format=json";
+  const auto cols = [&](const std::string& lens) {
+    return testing::json_of(client_.Post(focal + lens, testing::text_of(png), "image/png"))["cols"].get<int>();
+  };
+  EXPECT_EQ(cols("&principal_px=199.5,149.5"), 100);
+  EXPECT_GT(cols("&distortion=-0.1,0,0,0"), 105) << "its edges see farther";
+  EXPECT_GT(cols("&lens=fisheye&distortion=0,0,0,0"), 150);
   const json fix =
       testing::json_of(client_.Post("/v1/maps/town/fix?kind=frame&gsd_m=0.5", testing::text_of(png), "image/png"));
   EXPECT_EQ(fix["status"], "no_fix") << "a bare field shows no road";

@@ -84,10 +84,15 @@ TEST(Fields, ReadListsOfNumbers) {
   for (const char* name : {"short", "long", "odd"}) {
     EXPECT_EQ(code_of([&] { text.optional_numbers(name, 4); }), std::string("bad-parameter ") + name);
   }
+  EXPECT_THAT(*text.optional_numbers("long", 4, 5), ::testing::ElementsAre(1, 2, 3, 4, 5));
   Fields array;
   const std::vector<std::string> known{"bbox"};
   array.add(json{{"bbox", {1, 2, 3, 4}}}, known);
   EXPECT_THAT(*array.optional_numbers("bbox", 4), ::testing::ElementsAre(1, 2, 3, 4));
+  for (const auto& [min, max] : {std::pair{1U, 3U}, {5U, 8U}}) {
+    EXPECT_EQ(code_of([&] { array.optional_numbers("bbox", min, max); }), "bad-parameter bbox");
+    EXPECT_EQ(code_of([&] { text.optional_numbers("bbox", min, max); }), "bad-parameter bbox");
+  }
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+#include "core/detect/frame_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+void require_camera(bool condition, const char* field, const char* range) {
+  if (!condition) throw InvalidInput("frame-camera", fmt::format("frame: {} must lie in {}", field, range));
+}
+
+/// A frame that was made smaller or cut has another principal point, and mostly one far from its centre.
+void require_in_the_middle(cv::Point2d principal_px, cv::Size frame) {
+  const auto far = [](double at, int side) { return !(std::abs(at / side - 0.5) <= 0.25); };
+  if (!far(principal_px.x, frame.width) && !far(principal_px.y, frame.height)) return;
+  throw InvalidInput("frame-camera",
+                     fmt::format("frame: principal_px ({}, {}) is not in the middle half of {} x {} pixels: give focal "
+                                 "length, principal point and distortion for frames of this size",
+                                 principal_px.x, principal_px.y, frame.width, frame.height));
+}
+
+/// Cosine of the angle between the optical axis and straight down.
+double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2); }
+
+}  // namespace
+
+void validate(const FrameCamera& camera, cv::Size frame) {
+  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
+    throw InvalidInput("frame-camera", "frame: give either the field of view or the focal length");
+  }
+  require_camera(
+      !camera.horizontal_fov || (camera.horizontal_fov->degrees() > 0.0 && camera.horizontal_fov->degrees() < 180.0),
+      "fov_deg", "(0, 180) degrees");
+  require_camera(!camera.focal_px || (*camera.focal_px > 0.0 && *camera.focal_px < 1e9), "focal_px", "(0, 1e9) pixels");
+  require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
+  require_camera(std::abs(camera.roll.degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
+  require_camera(std::abs(camera.pitch.degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
+  const bool calibrated = camera.principal_px || camera.lens != LensModel::kPerspective || !camera.distortion.empty();
+  if (calibrated && !camera.focal_px) {
+    throw InvalidInput("frame-camera",
+                       "frame: principal point and distortion come from a calibration: give its focal length in pixels "
+                       "with them, not the field of view");
+  }
+  if (camera.principal_px) require_in_the_middle(*camera.principal_px, frame);
+}
+
+Lens lens_of(const FrameCamera& camera, cv::Size frame) {
+  const double focal_px =
+      camera.focal_px ? *camera.focal_px : frame.width / 2.0 / std::tan(camera.horizontal_fov->radians() / 2.0);
+  const cv::Point2d principal = camera.principal_px ? *camera.principal_px + cv::Point2d(0.5, 0.5)
+                                                    : cv::Point2d(frame.width / 2.0, frame.height / 2.0);
+  return {focal_px, principal, camera.lens, camera.distortion};
+}
+
+cv::Matx33d level_from_camera(const FrameCamera& camera) {
+  const double cp = cos(camera.pitch);
+  const double sp = sin(camera.pitch);
+  const double cr = cos(camera.roll);
+  const double sr = sin(camera.roll);
+  // Pitch about the right axis: the optical axis swings forward (-y). Roll about the forward axis: it swings left (-x).
+  const cv::Matx33d pitch(1, 0, 0, 0, cp, -sp, 0, sp, cp);
+  const cv::Matx33d roll(cr, 0, -sr, 0, 1, 0, sr, 0, cr);
+  return pitch * roll;
+}
+
+std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Point2d ray) {
+  const cv::Vec3d level = level_from_camera(camera) * cv::Vec3d(ray.x, ray.y, 1.0);
+  if (level[2] <= 1e-6) return std::nullopt;
+  return cv::Point2d(level[0], level[1]) * (camera.agl_m / level[2]);
+}
+
+/// Gimbals and autopilots that call straight down -90 degrees would be taken at their word and look at the horizon.
+void require_looking_down(const FrameCamera& camera) {
+  if (down(camera) >= cos(kFlattestView)) return;
+  throw InvalidInput(
+      "frame-sees-no-ground",
+      fmt::format(
+          "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the camera looks at the horizon or the sky; "
+          "both are measured from straight down: the -90 of a gimbal is a pitch of 0",
+          camera.roll.degrees(), camera.pitch.degrees()));
+}
+
+double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
+  validate(camera, frame);
+  return camera.agl_m / lens_of(camera, frame).focal_px();
+}
+
+double nadir_sigma_m(const FrameCamera& camera, Angle attitude) {
+  // The ground on the optical axis is agl tan(angle) from the nadir.
+  const double steepness = std::max(down(camera), cos(kFlattestView));
+  return camera.agl_m * attitude.radians() / (steepness * steepness);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,59 @@
+// The camera of a frame: which ground a pixel shows.
+//
+// Body axes: x forward, y right, z down. With roll and pitch of zero the optical axis points straight down and the top
+// row of the frame is the forward edge. Pitch turns the nose up, roll the right side down (aerospace convention): a
+// positive pitch moves the seen ground forward, a positive roll to the left. The ground is taken as flat.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/detect/lens.hpp"
+#include "core/units/angle.hpp"
+
+namespace roadfix {
+
+/// What is known about the camera when the frame was taken.
+struct FrameCamera {
+  /// One of the two: field of view across the columns of a lens without distortion, in (0, 180) degrees, or focal
+  /// length in pixels.
+  std::optional<Angle> horizontal_fov;
+  std::optional<double> focal_px;
+  /// With a focal length: where the optical axis meets the frame, in its middle half, as calibrations give it ((0, 0) =
+  /// centre of the first pixel). nullopt = in its centre.
+  std::optional<cv::Point2d> principal_px;
+  LensModel lens = LensModel::kPerspective;
+  std::vector<double> distortion;  ///< with a focal length; coefficients of the model, empty = none
+  double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
+  Angle roll;
+  Angle pitch;
+};
+
+/// Throws InvalidInput ("frame-camera") that names the field and its range.
+void validate(const FrameCamera& camera, cv::Size frame);
+
+/// Throws what the constructor of Lens does; `camera` is validated.
+Lens lens_of(const FrameCamera& camera, cv::Size frame);
+
+/// Rotation from camera axes (x right, y back, z down the optical axis) to the level frame (x right, y back, z down).
+cv::Matx33d level_from_camera(const FrameCamera& camera);
+
+/// Where on the ground a ray (Lens) ends: metres right and *back* of the nadir point. nullopt at and above the horizon.
+std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Point2d ray);
+
+inline constexpr Angle kFlattestView = Angle::degrees(80.0);
+/// Throws InvalidInput ("frame-sees-no-ground") where the optical axis is farther from straight down than that.
+void require_looking_down(const FrameCamera& camera);
+
+/// Ground sample distance straight below the UAV with the camera level.
+double nominal_gsd_m(const FrameCamera& camera, cv::Size frame);
+
+/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres, where roll and
+/// pitch are known to `attitude`: that many times the height, more in oblique views.
+double nadir_sigma_m(const FrameCamera& camera, Angle attitude);
+
+/// What is expected of a gimbal or an autopilot that says nothing of its own attitude.
+inline constexpr Angle kAttitudeSigma = Angle::degrees(1.0);
+
+}  // namespace roadfix

@@ -1,0 +1,108 @@
+#include "core/detect/frame_camera.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
+
+namespace roadfix {
+namespace {
+
+const cv::Size kFrame(640, 480);
+
+FrameCamera level() {
+  FrameCamera camera;
+  camera.horizontal_fov = Angle::degrees(90);
+  camera.agl_m = 100;
+  return camera;
+}
+
+std::optional<cv::Point2d> ground_at(const FrameCamera& camera, cv::Point2d pixel) {
+  return ground_of(camera, *lens_of(camera, kFrame).ray_of(pixel));
+}
+
+TEST(GroundOf, LevelCameraLooksStraightDown) {
+  // 90 degrees across: half the columns see 100 m at 100 m altitude.
+  const auto corner = ground_at(level(), {640, 0});
+  EXPECT_NEAR(corner->x, 100, 1e-9);
+  EXPECT_NEAR(corner->y, -75, 1e-9);
+  EXPECT_NEAR(nominal_gsd_m(level(), kFrame), 200.0 / 640, 1e-12);
+}
+
+// Oracle: angles of the ray in the plane of the tilt.
+TEST(GroundOf, PitchLooksForwardAndRollLooksLeft) {
+  FrameCamera camera = level();
+  camera.pitch = Angle::degrees(20);
+  EXPECT_NEAR(ground_at(camera, {320, 240})->y, -100 * std::tan(20 * M_PI / 180), 1e-9);
+  EXPECT_NEAR(ground_at(camera, {320, 0})->y, -100 * std::tan(20 * M_PI / 180 + std::atan(0.75)), 1e-9);
+  camera = level();
+  camera.roll = Angle::degrees(10);
+  EXPECT_NEAR(ground_at(camera, {320, 240})->x, -100 * std::tan(10 * M_PI / 180), 1e-9);
+  EXPECT_NEAR(ground_at(camera, {640, 240})->x, 100 * std::tan((45 - 10) * M_PI / 180), 1e-9);
+}
+
+// Oracle: how far the ground on the optical axis moves when the camera turns by a hundredth of the angle.
+TEST(NadirSigma, IsWhatASmallErrorOfPitchOrRollMovesTheGroundInViewBy) {
+  const cv::Point2d middle(320, 240);
+  const Angle little = Angle::degrees(0.01);
+  for (const double pitch_deg : {0.0, 30.0, -45.0}) {
+    FrameCamera camera = level();
+    camera.pitch = Angle::degrees(pitch_deg);
+    FrameCamera turned = camera;
+    turned.pitch += little;
+    const double moved_m = std::abs(ground_at(turned, middle)->y - ground_at(camera, middle)->y);
+    EXPECT_NEAR(nadir_sigma_m(camera, Angle::degrees(1.0)), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
+  }
+  FrameCamera rolled = level();
+  rolled.roll = Angle::degrees(60.0);
+  EXPECT_NEAR(nadir_sigma_m(rolled, Angle::degrees(1.0)), 4.0 * nadir_sigma_m(level(), Angle::degrees(1.0)), 1e-9);
+  rolled.roll = Angle::degrees(90.0);
+  EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled, Angle::degrees(1.0))));
+}
+
+TEST(GroundOf, NothingLiesAboveTheHorizon) {
+  FrameCamera camera = level();
+  camera.pitch = Angle::degrees(80);
+  EXPECT_FALSE(ground_at(camera, {320, 0}));
+  EXPECT_TRUE(ground_at(camera, {320, 479}));
+}
+
+FrameCamera calibrated() {
+  FrameCamera camera;
+  camera.focal_px = 500.0;
+  camera.agl_m = 100;
+  return camera;
+}
+
+TEST(LensOf, TakesThePrincipalPointFromTheCentreOfTheFirstPixel) {
+  FrameCamera camera = calibrated();
+  EXPECT_EQ(*lens_of(camera, kFrame).ray_of({320, 240}), cv::Point2d());
+  camera.principal_px = {300.0, 250.0};
+  EXPECT_EQ(*lens_of(camera, kFrame).ray_of({300.5, 250.5}), cv::Point2d());
+}
+
+TEST(FrameCamera, IsRefusedWithACalibrationOfFramesOfAnotherSize) {
+  FrameCamera camera = calibrated();
+  for (const cv::Point2d far : {cv::Point2d(630, 470), {150, 240}, {320, 361}, {NAN, 240}}) {
+    camera.principal_px = far;
+    EXPECT_THAT(testing::message_of([&] { validate(camera, kFrame); }), ::testing::HasSubstr("for frames of this size"))
+        << far;
+  }
+  camera.principal_px = {200.0, 350.0};
+  EXPECT_NO_THROW(validate(camera, kFrame));
+}
+
+TEST(FrameCamera, NeedsTheFocalLengthOfACalibration) {
+  FrameCamera camera = level();
+  EXPECT_NO_THROW(validate(camera, kFrame));
+  camera.principal_px = {320.0, 240.0};
+  EXPECT_THAT(testing::message_of([&] { validate(camera, kFrame); }), ::testing::HasSubstr("not the field of view"));
+  camera = level();
+  camera.lens = LensModel::kFisheye;
+  EXPECT_EQ(testing::code_of([&] { validate(camera, kFrame); }), "frame-camera");
+}
+
+}  // namespace
+}  // namespace roadfix

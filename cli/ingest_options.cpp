@@ -80,7 +80,7 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
 
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source) {
   SourceRequest request;
-  request.files = find_source(source, parse_meaning(arguments.meaning));
+  request.files = find_source(source, parse_meaning(arguments.meaning), arguments.vectors.layer);
   if (!arguments.name.empty()) request.files.name = arguments.name;
   request.raster.crs = arguments.crs;
   if (!arguments.collar.empty()) request.raster.collar = parse_colour(arguments.collar);

@@ -70,10 +70,13 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
 void print_notes(const SourceFiles& files, const SourceSummary& summary) {
   for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
   if (files.left_out.empty()) return;
-  fmt::print(
-      stderr,
-      "note: a folder or archive is one source, {} one of images; left out are {}: ingest vectors by their own paths\n",
-      files.location, fmt::join(files.left_out, ", "));
+  const bool file = files.paths.size() == 1 && files.paths.front() == files.location;
+  fmt::print(stderr, "note: {}; left out {} {}: {}\n",
+             file ? files.location + " is taken for its pixels"
+                  : fmt::format("a folder or archive is one source, {} one of {}", files.location,
+                                files.kind == SourceKind::kRoadVectors ? "vectors" : "images"),
+             files.left_out.size() == 1 ? "is" : "are", fmt::join(files.left_out, ", "),
+             file ? "--layer NAME ingests vectors instead" : "ingest them by their own paths");
 }
 
 }  // namespace roadfix::cli

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -22,6 +23,11 @@ constexpr std::array<std::string_view, 9> kImageEndings{".tif", ".tiff", ".jpg",
                                                         ".jp2", ".img",  ".vrt", ".webp"};
 constexpr std::array<std::string_view, 9> kVectorEndings{".shp", ".geojson", ".json", ".gpkg", ".pbf",
                                                          ".osm", ".mvt",     ".fgb",  ".gdb"};
+/// Of formats that GDAL reads too, but that are as often something else (a legend, a log, a preview): a folder's user
+/// hears of them and can name them.
+constexpr std::array<std::string_view, 18> kOtherEndings{".asc",     ".bil",  ".ecw", ".j2k", ".jpx",    ".kap",
+                                                         ".mbtiles", ".nitf", ".ntf", ".sid", ".dxf",    ".gml",
+                                                         ".gpx",     ".kml",  ".kmz", ".mif", ".sqlite", ".tab"};
 
 std::string ending_of(const fs::path& path) { return lower_case(path.extension().string()); }
 
@@ -39,10 +45,23 @@ SourceKind kind_of(GDALDataset& raster) {
   return map ? SourceKind::kRoadRaster : SourceKind::kImagery;
 }
 
+/// "layer 'roads' of city.gpkg" for each that has geometries.
+std::vector<std::string> layers_of(const std::string& path) {
+  std::vector<std::string> layers;
+  const GdalMessages messages;
+  const DatasetPtr vectors(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  if (!vectors) return layers;
+  for (OGRLayer* layer : vectors->GetLayers()) {
+    if (layer->GetGeomType() != wkbNone) layers.push_back(fmt::format("layer '{}' of {}", layer->GetName(), path));
+  }
+  return layers;
+}
+
 /// A file that neither opens as raster nor as vectors is reported by name.
-SourceKind kind_of(const std::string& path) {
+SourceKind kind_of(const std::string& path, const std::string& layer) {
   constexpr SourceKind kVectors = SourceKind::kRoadVectors;
   if (one_of(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
+  if (!layer.empty() && !layers_of(path).empty()) return kVectors;
   {
     const GdalMessages messages;
     const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
@@ -96,14 +115,19 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   SourceFiles result;
   std::vector<std::string> images;
   std::vector<std::string> vectors;
+  std::vector<std::string> others;
   for (const std::string& file : files) {
     if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
     const std::string ending = ending_of(file);
     if (one_of(kImageEndings, ending)) images.push_back(file);
     if (one_of(kVectorEndings, ending)) vectors.push_back(file);
+    if (one_of(kOtherEndings, ending)) others.push_back(file);
   }
   if (images.empty() && vectors.empty()) {
-    throw InvalidInput("source-empty", fmt::format("{}: holds neither images nor vector files", location));
+    throw InvalidInput(
+        "source-empty",
+        fmt::format("{}: holds neither images nor vector files{}", location,
+                    others.empty() ? "" : fmt::format("; to ingest {}, name it itself", others.front())));
   }
   result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
   result.paths = std::move(images);
@@ -113,6 +137,7 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   } else {
     result.left_out = std::move(vectors);
   }
+  std::ranges::move(others, std::back_inserter(result.left_out));
   std::ranges::sort(result.paths);
   std::ranges::sort(result.left_out);
   return result;
@@ -134,7 +159,7 @@ SourceMeaning parse_meaning(std::string_view text) {
   throw InvalidInput("source-meaning-unknown", fmt::format("'{}': a source is auto, imagery or roads", text));
 }
 
-SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
+SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer) {
   require_gdal();
   const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();
   SourceFiles result;
@@ -146,11 +171,13 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning) {
     result.name = name_of_file(path);
   } else {
     result.paths = {argument};
-    result.kind = kind_of(argument);
+    result.kind = kind_of(argument, layer);
     if (result.kind == SourceKind::kRoadVectors) {
       open_dataset(argument, GDAL_OF_VECTOR);
-    } else if (meaning != SourceMeaning::kAuto) {
-      result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
+    } else {
+      result.left_out = layers_of(argument);
+      if (meaning == SourceMeaning::kRoads) result.kind = SourceKind::kRoadRaster;
+      if (meaning == SourceMeaning::kImagery) result.kind = SourceKind::kImagery;
     }
     result.name = name_of_file(path);
   }

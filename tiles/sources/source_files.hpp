@@ -19,10 +19,13 @@ struct SourceFiles {
   std::string location;
   SourceKind kind = SourceKind::kImagery;
   std::vector<std::string> paths;  ///< of a folder or ZIP archive all images or vector files in it and below, sorted
-  std::vector<std::string> left_out = {};  ///< vector files beside the images of a folder or archive, sorted
+  /// Of a folder or archive: vector files beside images, and files of formats that are not looked for, sorted. Of a
+  /// file that holds pixels: its layers of vectors.
+  std::vector<std::string> left_out = {};
 };
 
+/// Where a `layer` is named, a file that holds both pixels and vectors stands for its vectors.
 /// Throws NotFound "source-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").
-SourceFiles find_source(const std::string& argument, SourceMeaning meaning);
+SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer = {});
 
 }  // namespace roadfix

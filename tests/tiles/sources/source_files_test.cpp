@@ -113,6 +113,36 @@ TEST_F(SourceFilesTest, VectorsBesideTheImagesOfAFolderAreLeftOutAndNamed) {
   EXPECT_THAT(files.left_out, ElementsAre(lines));
 }
 
+TEST_F(SourceFilesTest, FormatsThatAreNotLookedForInFoldersAreNamed) {
+  const std::string notes = (folder / "b.kml").string();
+  const std::string grid = (folder / "c.asc").string();
+  std::ofstream(folder / "notes.txt") << "hello";
+  std::ofstream{notes} << "<kml/>";
+  std::ofstream{grid} << "ncols 1";
+  EXPECT_THAT(testing::message_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }),
+              ::testing::HasSubstr("name it itself"));
+  image("a.tif");
+  EXPECT_THAT(find_source(folder.path().string(), SourceMeaning::kAuto).left_out, ElementsAre(notes, grid));
+}
+
+TEST_F(SourceFilesTest, AFileOfPixelsAndLinesIsPixelsUnlessALayerIsNamed) {
+  const std::string path = (folder / "both.gpkg").string();
+  std::ofstream(folder / "lines.geojson") << kLine;
+  const std::string lines = (folder / "lines.geojson").string();
+  {
+    const DatasetPtr picture = open_dataset(image("a.tif"), GDAL_OF_RASTER);
+    const DatasetPtr made(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+        path.c_str(), picture.get(), FALSE, nullptr, nullptr, nullptr));
+    const DatasetPtr from = open_dataset(lines, GDAL_OF_VECTOR);
+    ASSERT_NE(made->CopyLayer(from->GetLayer(0), "roads"), nullptr);
+  }
+  const SourceFiles pixels = find_source(path, SourceMeaning::kAuto);
+  EXPECT_EQ(pixels.kind, SourceKind::kImagery);
+  EXPECT_THAT(pixels.left_out, ElementsAre("layer 'roads' of " + path));
+  EXPECT_EQ(find_source(path, SourceMeaning::kRoads, "roads").kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(find_source(image("b.tif"), SourceMeaning::kRoads, "roads").kind, SourceKind::kRoadRaster);
+}
+
 TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
   const std::string archive = (folder / "city.shp.zip").string();
   require_gdal();

@@ -77,6 +77,21 @@ std::string plain(std::string_view text) {
   return lower_case(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
 }
 
+/// Of the beginning of the text, which it and the spaces behind it are taken from; a comma is a decimal point.
+std::optional<double> take_number(std::string_view& text) {
+  std::string number;
+  while (!text.empty() &&
+         (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '.' || text.front() == ',')) {
+    number += text.front() == ',' ? '.' : text.front();
+    text.remove_prefix(1);
+  }
+  text = trimmed(text);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (number.empty() || error != std::errc{} || end != number.data() + number.size()) return std::nullopt;
+  return value;
+}
+
 bool yes(const std::string& value) {
   const std::string word = plain(value);
   return !word.empty() && word != "no" && word != "n" && word != "0" && word != "false" && word != "f";
@@ -166,24 +181,26 @@ std::string RoadRules::describe() const {
 }
 
 std::optional<double> parse_width_m(std::string_view text) {
-  std::string number;
-  while (!text.empty() &&
-         (std::isdigit(static_cast<unsigned char>(text.front())) != 0 || text.front() == '.' || text.front() == ',')) {
-    number += text.front() == ',' ? '.' : text.front();
-    text.remove_prefix(1);
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (number.empty() || error != std::errc{} || end != number.data() + number.size()) return std::nullopt;
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   constexpr double kFootM = 0.3048;
-  if (text == "ft" || text == "'" || text == "feet") {
-    value *= kFootM;
-  } else if (!text.empty() && text != "m" && text != "metres" && text != "meters") {
+  constexpr double kInchM = kFootM / 12.0;
+  constexpr std::array<std::string_view, 4> kFeet{"ft", "ft.", "feet", "foot"};
+  constexpr std::array<std::string_view, 6> kMetres{"", "m", "metres", "meters", "metre", "meter"};
+  const std::string plain_text = plain(text);
+  std::string_view rest = plain_text;
+  const std::optional<double> number = take_number(rest);
+  if (!number) return std::nullopt;
+  double width_m = *number;
+  if (std::ranges::find(kFeet, rest) != kFeet.end()) {
+    width_m *= kFootM;
+  } else if (rest.starts_with('\'')) {  // 12' and 12'6"
+    rest.remove_prefix(1);
+    const std::optional<double> inches = rest.empty() ? 0.0 : take_number(rest);
+    if (!inches || (!rest.empty() && rest != "\"")) return std::nullopt;
+    width_m = *number * kFootM + *inches * kInchM;
+  } else if (std::ranges::find(kMetres, rest) == kMetres.end()) {
     return std::nullopt;
   }
-  if (!(value >= 0.5 && value <= 100.0)) return std::nullopt;
-  return value;
+  return width_m >= 0.5 && width_m <= 100.0 ? std::optional(width_m) : std::nullopt;
 }
 
 }  // namespace roadfix

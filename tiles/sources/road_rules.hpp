@@ -65,7 +65,7 @@ class RoadRules {
   std::optional<double> width_m_;
 };
 
-/// "7.5", "7,5 m", "24 ft", "24'"; nullopt for anything else or a width outside 0.5..100 m.
+/// "7.5", "7,5 m", "24 ft", "24'", "24'6\"", in any case; nullopt for anything else or a width outside 0.5..100 m.
 std::optional<double> parse_width_m(std::string_view text);
 
 }  // namespace roadfix

@@ -110,7 +110,11 @@ TEST(WidthText, IsMetresUnlessItSaysOtherwise) {
   EXPECT_THAT(parse_width_m("7.5"), Optional(7.5));
   EXPECT_THAT(parse_width_m("7,5 m"), Optional(7.5));
   EXPECT_THAT(parse_width_m("20'"), Optional(::testing::DoubleNear(6.096, 1e-9)));
-  for (const char* wrong : {"", "narrow", "1.2.3", "0", "500", "-3", "5 km", "5;6"}) {
+  EXPECT_THAT(parse_width_m(" 6 "), Optional(6.0));
+  EXPECT_THAT(parse_width_m("6.0 Metres"), Optional(6.0));
+  EXPECT_THAT(parse_width_m("10 FT"), Optional(::testing::DoubleNear(3.048, 1e-9)));
+  EXPECT_THAT(parse_width_m("12'6\""), Optional(::testing::DoubleNear(3.81, 1e-9)));
+  for (const char* wrong : {"", "narrow", "1.2.3", "0", "500", "-3", "5 km", "5;6", "12'x", "6\""}) {
     EXPECT_EQ(parse_width_m(wrong), std::nullopt) << wrong;
   }
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -22,7 +23,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   while (true) {
     const auto end = text.find(separator);
-    parts.push_back(text.substr(0, end));
+    parts.push_back(trimmed(text.substr(0, end)));
     if (end == std::string_view::npos) return parts;
     text.remove_prefix(end + 1);
   }
@@ -87,6 +88,8 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   std::vector<FrameTruth> frames;
   std::optional<Columns> columns;
   int line = 0;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // which spreadsheets write
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (std::string_view row : split(text, '\n')) {
     ++line;
     if (row.ends_with('\r')) row.remove_suffix(1);

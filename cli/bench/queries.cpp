@@ -173,8 +173,24 @@ std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<Fra
   return earlier;
 }
 
+/// Some frames of a flight may lie beyond the map. Where all do, latitude and longitude were mixed up, or the maps.
+void require_any_on_map(const std::vector<FrameTruth>& frames, const QuerySet& set, const MapView& map) {
+  const auto on_map = [&](const FrameTruth& frame) {
+    const auto place = map.zone.project_if_defined(frame.pose.position);
+    return place && map.extent.contains(*place);
+  };
+  if (set.elsewhere || std::ranges::any_of(frames, on_map)) return;
+  const LatLon first = frames.front().pose.position;
+  throw InvalidInput("frames-outside-map",
+                     fmt::format("{}: none of its frames lies on the map '{}', the first one at latitude {} and "
+                                 "longitude {}: correct these columns, name the map of the place, or say "
+                                 "\"elsewhere\": true",
+                                 set.path.string(), map.name, first.lat_deg, first.lon_deg));
+}
+
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
   const auto frames = read_frames_csv(set.path);
+  require_any_on_map(frames, set, map);
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];

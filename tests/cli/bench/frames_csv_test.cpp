@@ -33,6 +33,14 @@ TEST(FramesCsv, KnowsTheTimeWhereThereIsOne) {
   EXPECT_FALSE(frames.at(2).time_s);
 }
 
+TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {
+  const auto frames = parse_frames_csv(
+      "\xef\xbb\xbf"
+      "file, lat, lon, heading_deg, gsd_m\na.jpg, 32.1, 35.2, 90, 0.4\n");
+  EXPECT_EQ(frames.at(0).file, "a.jpg");
+  EXPECT_EQ(frames.at(0).pose.position.lat_deg, 32.1);
+}
+
 TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   const auto complaint = [](const char* text, const char* part) {
     EXPECT_THAT([&] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -76,12 +77,34 @@ TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
   }
 }
 
+TEST_F(Queries, OfFramesOfWhichNoneLiesOnTheMapAreRefused) {
+  const testing::TemporaryFolder folder;
+  cv::imwrite(folder / "a.png", cv::Mat(20, 20, CV_8UC1, cv::Scalar(90)));
+  const LatLon on_map = map_.zone.unproject(map_.extent.centre());
+  const LatLon beyond{on_map.lat_deg + 0.5, on_map.lon_deg};
+  const auto frames_at = [&](std::initializer_list<LatLon> places) {
+    std::ofstream csv(folder / "frames.csv");
+    csv << "file,lat,lon,heading_deg,gsd_m\n";
+    for (const LatLon at : places) csv << "a.png," << at.lat_deg << ',' << at.lon_deg << ",0,1\n";
+  };
+  set_.kind = QuerySet::Kind::kFrames;
+  set_.path = folder / "frames.csv";
+  frames_at({beyond, {on_map.lon_deg, on_map.lat_deg}});
+  EXPECT_EQ(testing::code_of([&] { drawn(); }), "frames-outside-map");
+  frames_at({beyond, on_map});
+  EXPECT_EQ(drawn().size(), 2U);
+  frames_at({beyond});
+  set_.elsewhere = true;
+  EXPECT_EQ(drawn().size(), 1U);
+}
+
 TEST_F(Queries, CombineTheFramesOfAFlightAlsoWhereFlightsTakeTurnsInTheFile) {
   const testing::TemporaryFolder folder;
   cv::imwrite(folder / "a.png", cv::Mat(20, 20, CV_8UC1, cv::Scalar(90)));
   std::ofstream(folder / "frames.csv") << "file,sequence,lat,lon,heading_deg,gsd_m\n"
                                           "a.png,1,36,21,0,1\na.png,2,37,21,0,1\n"
                                           "a.png,1,36,21,0,1\na.png,2,37,21,0,1\na.png,1,36,21,0,1\n";
+  set_.elsewhere = true;  // than on the map
   set_.kind = QuerySet::Kind::kFrames;
   set_.path = folder / "frames.csv";
   set_.together = 2;

@@ -73,6 +73,12 @@ void remove_unfinished(const fs::path& unfinished) {
   fs::remove(fs::path(unfinished).replace_extension(".wld"), ignored);
 }
 
+/// Overviews and statistics that other programs left beside the file that is replaced: they would be taken for its own.
+void remove_side_files(const fs::path& target) {
+  std::error_code none;
+  for (const char* suffix : {".ovr", ".aux.xml", ".msk"}) fs::remove(target.string() + suffix, none);
+}
+
 void copy(MapDataset& source, const Driver& target, const fs::path& path, const Monitor& monitor) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
   if (driver == nullptr) {
@@ -118,6 +124,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     const fs::path world = fs::path(unfinished).replace_extension(".wld");
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);
+    remove_side_files(target);
     remove_unfinished(unfinished);
   } catch (const fs::filesystem_error& error) {
     remove_unfinished(unfinished);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <fstream>
 #include <memory>
 
 #include "core/units/error.hpp"
@@ -114,6 +115,14 @@ TEST_F(MapExport, PngsAreGreyAndTransparentWhereUnobserved) {
     ASSERT_EQ(alpha[i], is_observed(cell) ? 255.0F : 0.0F);
     ASSERT_EQ(grey[i], is_observed(cell) ? static_cast<float>(cell) : 0.0F);
   }
+}
+
+TEST_F(MapExport, WhatOtherProgramsLeftBesideAReplacedFileIsRemoved) {
+  const auto target = folder / "out.png";
+  export_map(MapReader(path), target, {.format = ExportFormat::kPng});
+  for (const char* suffix : {".ovr", ".aux.xml"}) std::ofstream(target.string() + suffix) << "of the old picture";
+  export_map(MapReader(path), target, {.format = ExportFormat::kPng});
+  EXPECT_EQ(files(), 3U) << "map, picture and world file";
 }
 
 TEST_F(MapExport, MbTilesCoverTheMap) {

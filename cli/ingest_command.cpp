@@ -52,6 +52,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const SourceRecord record = record_of(arguments, request, summary);
   const nlohmann::json json = summary_json(record, summary, blocks, settings);
   if (arguments.dry_run) {
+    MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
     print_plan(json, arguments.json);
     return;
   }

@@ -175,6 +175,20 @@ TEST_F(MapCommands, IngestRefusesOptionsThatDoNothingWithItsSources) {
   EXPECT_EQ(roadfix(ingest + " " + lines + " --width 6 --nodata-color white").code, 0) << "one for each";
 }
 
+TEST_F(MapCommands, ADryRunRefusesWhatTheIngestWouldRefuse) {
+  const std::string map = folder / "n.gpkg";
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
+  const std::string ingest = "ingest " + lines + " --map " + map;
+  ASSERT_EQ(roadfix(ingest).code, 0);
+  EXPECT_EQ(roadfix(ingest + " --dry-run").code, 0);
+  const ProgramResult other = roadfix(ingest + " --width 9 --dry-run");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.err, HasSubstr("[source-exists]"));
+  EXPECT_EQ(roadfix(ingest + " --width 9 --dry-run --replace").code, 0);
+  EXPECT_THAT(roadfix(ingest + " --cell 4 --dry-run").err, HasSubstr("[map-settings-differ]"));
+}
+
 TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
   const ProgramResult mistyped = roadfix("ingset a.tif --map " + path.string());
   EXPECT_EQ(mistyped.code, 2);

@@ -31,8 +31,8 @@ bool create_if_missing(const std::filesystem::path& path, const MapSettings& set
   return true;
 }
 
-Connection open_with(const std::filesystem::path& path, const MapSettings& settings) {
-  Connection map = open_map(path, Access::kReadWrite);
+Connection open_with(const std::filesystem::path& path, const MapSettings& settings, Access access) {
+  Connection map = open_map(path, access);
   const MapSettings existing = read_settings(map);
   if (existing != settings) {
     throw InvalidInput(
@@ -44,13 +44,24 @@ Connection open_with(const std::filesystem::path& path, const MapSettings& setti
   return map;
 }
 
+void refuse_other_content(const Connection& map, SourceTable& sources, const SourceRecord& record) {
+  const auto in_force = sources.find(record.name, true);
+  const auto unfinished = sources.find(record.name, false);
+  const auto same = [&](const auto& entry) { return entry && entry->fingerprint == record.fingerprint; };
+  if ((!in_force && !unfinished) || same(in_force) || same(unfinished)) return;
+  throw InvalidInput("source-exists",
+                     fmt::format("{}: a source named '{}' with other content or settings is in the map already. "
+                                 "Replace it with --replace, or give this one another name",
+                                 map.path().string(), record.name));
+}
+
 }  // namespace
 
 struct MapWriter::State {
   State(const std::filesystem::path& path, const MapSettings& settings)
       : lock(path),
         made_here(create_if_missing(path, settings)),
-        map(open_with(path, settings)),
+        map(open_with(path, settings, Access::kReadWrite)),
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
         fusion(map, tiles),
@@ -128,6 +139,14 @@ std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& p
   return read_settings(map);
 }
 
+void MapWriter::require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
+                                   const SourceRecord& record, bool replace) {
+  if (!is_there(path)) return;
+  Connection map = open_with(path, settings, Access::kRead);
+  SourceTable sources(map, zoom_of(settings.cell_m));
+  if (!replace) refuse_other_content(map, sources, record);
+}
+
 std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::span<const TileIndex> blocks,
                                                bool replace) {
   State& s = *state_;
@@ -139,16 +158,11 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
                                    record.name, block.col, block.row));
   }
   Transaction transaction(s.map, Transaction::Kind::kWrite);
+  if (!replace) refuse_other_content(s.map, s.sources, record);
   const auto in_force = s.sources.find(record.name, true);
   auto unfinished = s.sources.find(record.name, false);
   const bool same = in_force && in_force->fingerprint == record.fingerprint;
   const bool resumes = unfinished && unfinished->fingerprint == record.fingerprint;
-  if (!replace && !same && !resumes && (in_force || unfinished)) {
-    throw InvalidInput("source-exists",
-                       fmt::format("{}: a source named '{}' with other content or settings is in the map already. "
-                                   "Replace it with --replace, or give this one another name",
-                                   s.map.path().string(), record.name));
-  }
   if (unfinished && !resumes) {
     s.sources.remove(unfinished->id);
     unfinished.reset();

@@ -25,6 +25,11 @@ class MapWriter {
   /// Settings of an existing map; nullopt where no file is.
   static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
 
+  /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
+  /// writes nothing: for a plan.
+  static void require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
+                                 const SourceRecord& record, bool replace);
+
   /// Starts a source over these blocks (a block is one tile of the finest level) or resumes it: an incomplete source
   /// with the same name and fingerprint keeps its finished blocks. A complete one with the same name and fingerprint
   /// needs nothing. Another fingerprint under that name is refused (InvalidInput "source-exists") unless `replace`. The

@@ -25,10 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-struct Block {
-  TileIndex index;
-  CellArray cells;  // empty: could not be read
-};
+using Block = FinishedBlock;  // without cells where it could not be read
 
 [[noreturn]] void stopped(const std::string& source) {
   throw Interrupted(
@@ -68,6 +65,32 @@ class FirstFailure {
   std::atomic<bool> failed_ = false;
 };
 
+/// Writes blocks as they come, but where they come fast a tenth of a second of them at a time: the disk takes longer to
+/// confirm a transaction than it takes to draw roads. Killed in between, the ingest draws those again.
+class BlockWriter {
+ public:
+  BlockWriter(MapWriter& writer, const std::string& source) : writer_(writer), source_(source) {}
+
+  /// Returns the blocks written by now, this one or none or several.
+  std::vector<Block> add(Block block) {
+    constexpr double kGatheringS = 0.1;
+    gathered_.push_back(std::move(block));
+    return seconds_since(last_) >= kGatheringS ? write() : std::vector<Block>();
+  }
+  std::vector<Block> write() {
+    std::vector<Block> blocks = std::exchange(gathered_, {});
+    if (!blocks.empty()) writer_.put_blocks(source_, blocks);
+    last_ = Clock::now();
+    return blocks;
+  }
+
+ private:
+  MapWriter& writer_;
+  const std::string& source_;
+  std::vector<Block> gathered_;
+  Clock::time_point last_ = Clock::now();
+};
+
 /// Reads and writes the blocks; returns the number of observed cells.
 std::int64_t carry(const CellSource& source, const std::string& name, double cell_m, std::span<const TileIndex> todo,
                    std::int64_t before, MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
@@ -91,13 +114,15 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
         [&] { block.cells = source.read(tile_geometry(block.index, cell_m), block_seed(options.seed, block.index)); });
     return block;
   };
-  const auto write = [&](const Block& block) {
-    if (block.cells.empty()) return;
-    failure.guard([&] {
-      writer.put_block(name, block.index, block.cells);
+  BlockWriter blocks(writer, name);
+  const auto count = [&](const std::vector<Block>& written) {
+    for (const Block& block : written) {
       observed += static_cast<std::int64_t>(block.cells.observed_count());
       if (progress.blocks) progress.blocks(++done, total);
-    });
+    }
+  };
+  const auto write = [&](Block block) {
+    if (!block.cells.empty()) failure.guard([&] { count(blocks.add(std::move(block))); });
   };
   const auto tokens = static_cast<std::size_t>(2 * options.jobs);
   // More jobs than processors are the user's choice: reading may wait for a disk or a network.
@@ -109,6 +134,7 @@ std::int64_t carry(const CellSource& source, const std::string& name, double cel
                                        tbb::make_filter<std::size_t, Block>(tbb::filter_mode::parallel, read) &
                                        tbb::make_filter<Block, void>(tbb::filter_mode::serial_out_of_order, write));
   });
+  failure.guard([&] { count(blocks.write()); });
   failure.rethrow();
   return observed;
 }

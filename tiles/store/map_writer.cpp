@@ -74,6 +74,7 @@ struct MapWriter::State {
                   "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
                   "RETURNING 1") {}
 
+  void put(const std::string& source, TileIndex block, const CellArray& cells);
   std::vector<std::string> drop_damaged_evidence();
   NotFound no_source(const std::string& name) const {
     return {"source-not-found",
@@ -91,6 +92,25 @@ struct MapWriter::State {
   Statement remove_evidence;
   Statement mark_done;
 };
+
+/// Within a transaction.
+void MapWriter::State::put(const std::string& source, TileIndex block, const CellArray& cells) {
+  assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
+  const int row = tile_row(block, tiles.finest_zoom());
+  const auto target = sources.find(source, false);
+  const bool expected = target && mark_done.with(target->id, block.col, row).step();
+  mark_done.reset();
+  if (!expected) {
+    throw InvalidInput("block-not-expected", fmt::format("{}: source '{}' has not begun with block column {} row {}",
+                                                         map.path().string(), source, block.col, block.row));
+  }
+  if (cells.observed_count() > 0) {
+    const std::vector<std::byte> png = encode_tile(cells, TileDepth::kEvidence);
+    put_evidence.with(target->id, block.col, row, std::span(png)).run();
+  } else {
+    remove_evidence.with(target->id, block.col, row).run();
+  }
+}
 
 /// What cannot be read, or stands for no block that the ledger calls done.
 /// Returns the sources that lost evidence, each once. Their fingerprint is emptied: they are not what was ingested.
@@ -183,24 +203,14 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
 }
 
 void MapWriter::put_block(const std::string& source, TileIndex block, const CellArray& cells) {
-  assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
-  State& s = *state_;
-  const bool observed = cells.observed_count() > 0;
-  const auto png = observed ? encode_tile(cells, TileDepth::kEvidence) : std::vector<std::byte>();
-  const int row = tile_row(block, s.tiles.finest_zoom());
-  Transaction transaction(s.map, Transaction::Kind::kWrite);
-  const auto target = s.sources.find(source, false);
-  const bool expected = target && s.mark_done.with(target->id, block.col, row).step();
-  s.mark_done.reset();
-  if (!expected) {
-    throw InvalidInput("block-not-expected", fmt::format("{}: source '{}' has not begun with block column {} row {}",
-                                                         s.map.path().string(), source, block.col, block.row));
-  }
-  if (observed) {
-    s.put_evidence.with(target->id, block.col, row, std::span(png)).run();
-  } else {
-    s.remove_evidence.with(target->id, block.col, row).run();
-  }
+  Transaction transaction(state_->map, Transaction::Kind::kWrite);
+  state_->put(source, block, cells);
+  transaction.commit();
+}
+
+void MapWriter::put_blocks(const std::string& source, std::span<const FinishedBlock> blocks) {
+  Transaction transaction(state_->map, Transaction::Kind::kWrite);
+  for (const FinishedBlock& block : blocks) state_->put(source, block.index, block.cells);
   transaction.commit();
 }
 

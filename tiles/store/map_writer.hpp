@@ -1,5 +1,5 @@
 // Writes a map file. Every source keeps its own evidence; the fused map is derived from it, whatever the order of
-// ingestion. One transaction per block: killing the process anywhere loses at most the blocks in flight.
+// ingestion. Transactions hold whole blocks: killing the process anywhere loses at most the blocks in flight.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,11 @@
 #include "tiles/store/progress.hpp"
 
 namespace roadfix {
+
+struct FinishedBlock {
+  TileIndex index;
+  CellArray cells;  ///< 256 x 256; all unobserved is fine
+};
 
 class MapWriter {
  public:
@@ -39,6 +44,8 @@ class MapWriter {
   /// Records a finished block (256 x 256 cells; all unobserved is fine) in one transaction. Call from one thread at a
   /// time.
   void put_block(const std::string& source, TileIndex block, const CellArray& cells);
+  /// The same for several in one transaction: each waits for the disk.
+  void put_blocks(const std::string& source, std::span<const FinishedBlock> blocks);
 
   /// All blocks are there: puts the source in force, fuses the tiles it (or what it replaced) touches and their
   /// overviews. Can be interrupted and repeated.

@@ -46,6 +46,27 @@ TEST(MapWriter, WhatWasPutCanBeRead) {
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-writer"));
 }
 
+TEST(MapWriter, SeveralBlocksAreOneTransaction) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  const TestSource source{"a", 1, some_blocks(2)};
+  MapWriter writer(path, settings_37n());
+  std::vector<FinishedBlock> blocks;
+  for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
+    blocks.push_back({block, random_cells(1, block)});
+  }
+  const auto done = [&] { return MapReader(path).info().sources.front().blocks_done; };
+  blocks.push_back({{0, 0}, CellArray(kTileCells, kTileCells)});
+  EXPECT_EQ(code_of([&] { writer.put_blocks("a", blocks); }), "block-not-expected");
+  EXPECT_EQ(done(), 0) << "all or none";
+  blocks.pop_back();
+  writer.put_blocks("a", blocks);
+  EXPECT_EQ(done(), 4);
+  writer.finish_source("a");
+  const MapReader reader(path);
+  for (const TileIndex block : source.blocks) EXPECT_EQ(reader.tile(0, block), random_cells(1, block));
+}
+
 TEST(MapWriter, FindsSourcesThatSayTheSame) {
   const TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", settings_37n());

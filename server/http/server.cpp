@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <memory>
+#include <system_error>
 #include <thread>
 
 #include "core/units/error.hpp"
@@ -27,6 +32,8 @@ constexpr auto kIdlePoll = 50ms;
 /// A connection keeps its thread for so many requests even when others wait for one.
 constexpr int kTurnRequests = 32;
 constexpr auto kFirstByteGrace = 1s;
+constexpr auto kAcceptPause = 10ms;
+constexpr auto kComplaintPause = 10s;
 
 /// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
 thread_local Exchange* t_exchange = nullptr;
@@ -41,6 +48,7 @@ class Server::Impl : public httplib::Server {
   void stop_and_join();
 
  private:
+  void accept_connections();
   bool process_and_close_socket(socket_t socket) override;
   bool wait_for_request(Connection& connection, bool first) const;
   void refuse_connection(Connection& connection) const;
@@ -61,7 +69,7 @@ class Server::Impl : public httplib::Server {
   Admission admission_;
   AccessLog access_log_;
   std::atomic<bool> stopping_ = false;
-  std::atomic<WorkerPool*> pool_ = nullptr;
+  std::unique_ptr<WorkerPool> pool_;  ///< from start() on
   std::jthread listener_;
 };
 
@@ -85,11 +93,6 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
     const int on = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   });
-  new_task_queue = [this] {
-    pool_ = new WorkerPool(static_cast<std::size_t>(settings_.threads),
-                           static_cast<std::size_t>(settings_.max_waiting_connections));
-    return pool_.load();
-  };
   set_pre_routing_handler([this](const auto& head, auto& out) { return before_body(head, out); });
   Post(R"([\s\S]*)", [this](const auto& head, auto& out, const auto& reader) { with_body(head, out, reader); });
   set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
@@ -106,23 +109,44 @@ int Server::Impl::start() {
                                 settings_.host, settings_.port));
   }
   ::listen(svr_sock_, kListenBacklog);
-  listener_ = std::jthread([this] { listen_after_bind(); });
-  while (!is_running()) std::this_thread::sleep_for(1ms);
+  pool_ = std::make_unique<WorkerPool>(static_cast<std::size_t>(settings_.threads),
+                                       static_cast<std::size_t>(settings_.max_waiting_connections));
+  listener_ = std::jthread([this] { accept_connections(); });
   return port;
+}
+
+/// Instead of cpp-httplib's own loop, which ends when one connection cannot be accepted, and the service with it.
+void Server::Impl::accept_connections() {
+  auto complained = Clock::now() - kComplaintPause;
+  while (!stopping_) {
+    const int socket = ::accept(svr_sock_, nullptr, nullptr);
+    const int reason = errno;
+    if (socket >= 0) {
+      pool_->enqueue([this, socket] { process_and_close_socket(socket); });
+    } else if (!stopping_ && reason != EINTR) {
+      if (Clock::now() - complained >= kComplaintPause) {
+        spdlog::warn("a connection cannot be accepted: {}", std::generic_category().message(reason));
+        complained = Clock::now();
+      }
+      std::this_thread::sleep_for(kAcceptPause);  // until a descriptor or some memory is free
+    }
+  }
 }
 
 void Server::Impl::stop_and_join() {
   stopping_ = true;
   if (!listener_.joinable()) return;
-  stop();
+  ::shutdown(svr_sock_, SHUT_RDWR);  // ends accept()
   listener_.join();
+  ::close(svr_sock_.exchange(INVALID_SOCKET));
+  pool_->shutdown();
 }
 
 bool Server::Impl::process_and_close_socket(socket_t socket) {
   const Counted open(metrics_.connections);
   ConnectionLimits limits{settings_.head_time, settings_.body_time, settings_.write_time, settings_.head_bytes};
   limits.grace = settings_.crowded_time;
-  limits.others_wait = [this] { return pool_.load()->waiting() > 0; };
+  limits.others_wait = [this] { return pool_->waiting() > 0; };
   Connection connection(socket, limits);
   if (WorkerPool::overflow()) {
     refuse_connection(connection);
@@ -132,8 +156,8 @@ bool Server::Impl::process_and_close_socket(socket_t socket) {
     connection.begin_head();
     Exchange exchange(connection);
     t_exchange = &exchange;
-    const bool last = stopping_ || served >= settings_.keep_alive_requests ||
-                      (served >= kTurnRequests && pool_.load()->waiting() > 0);
+    const bool last =
+        stopping_ || served >= settings_.keep_alive_requests || (served >= kTurnRequests && pool_->waiting() > 0);
     bool closed_by_client = false;
     const bool written =
         process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
@@ -149,7 +173,7 @@ bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
   while (!stopping_) {
     if (connection.wait(kIdlePoll)) return true;
     const auto idle = Clock::now() - begin;
-    const bool others_wait = pool_.load()->waiting() > 0 && (!first || idle > kFirstByteGrace);
+    const bool others_wait = pool_->waiting() > 0 && (!first || idle > kFirstByteGrace);
     if (connection.at_end() || idle > settings_.idle_time || others_wait) return false;
   }
   return connection.wait(0ms);

@@ -1,9 +1,8 @@
 // Threads that each serve one connection at a time. Connections beyond the threads wait in a bounded queue.
 #pragma once
 
-#include <httplib.h>
-
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -12,17 +11,17 @@
 
 namespace roadfix::http {
 
-class WorkerPool : public httplib::TaskQueue {
+class WorkerPool {
  public:
   WorkerPool(std::size_t threads, std::size_t max_waiting);
-  ~WorkerPool() override;
+  ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Runs the job at once, in the caller's thread and with `overflow()` set, when the queue is full.
-  void enqueue(std::function<void()> job) override;
+  void enqueue(std::function<void()> job);
   /// Runs what waits, then joins.
-  void shutdown() override;
+  void shutdown();
 
   std::size_t waiting() const;
   /// The job that runs in this thread got no thread of its own and must end at once.

@@ -98,15 +98,16 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
     spdlog::info("serving map {} version {}", name, reader->info().version);
     return {stamp, std::move(map), {}};
   } catch (const Error& error) {
-    spdlog::warn("map {} cannot be served: {} [{}]", name, error.what(), error.code());
     return {stamp, nullptr, {name, error.code(), error.what()}};
   }
 }
 
-/// A touched file that says the same keeps its reader and with it the decoded tiles.
+/// A touched file that says the same keeps its reader and with it the decoded tiles. One that could not be read may be
+/// readable now, though nothing was written to it: other permissions do not show.
 bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Stamp& stamp) const {
+  if (entry.map == nullptr) return false;
   if (entry.stamp == stamp) return true;
-  if (entry.map == nullptr || entry.stamp.inode != stamp.inode) return false;
+  if (entry.stamp.inode != stamp.inode) return false;
   try {
     return says_the_same(MapReader(path, 0).info(), entry.map->reader->info());
   } catch (const Error&) {
@@ -134,9 +135,10 @@ void MapRegistry::refresh() {
       const auto found = entries_.find(name);
       if (found != entries_.end()) known = found->second;
     }
-    const bool is_known = known.map != nullptr || !known.problem.code.empty();
-    Entry current =
-        is_known && is_current(known, path, stamp) ? Entry{stamp, known.map, known.problem} : opened(path, stamp);
+    Entry current = is_current(known, path, stamp) ? Entry{stamp, known.map, {}} : opened(path, stamp);
+    if (current.map == nullptr && current.problem.reason != known.problem.reason) {
+      spdlog::warn("map {} cannot be served: {} [{}]", name, current.problem.reason, current.problem.code);
+    }
     const std::lock_guard lock(mutex_);
     entries_[name] = std::move(current);
   }

@@ -1,8 +1,10 @@
 #include "server/maps/map_registry.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <optional>
 
 #include "core/units/error.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -87,6 +89,38 @@ TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   make_map(folder / "broken.gpkg", 3);
   registry.refresh();
   EXPECT_EQ(registry.find("broken")->name, "broken") << "a repaired map is served";
+}
+
+/// The rights of root, who may read everything, are laid down for as long as this lives.
+class AsAnotherUser {
+ public:
+  AsAnotherUser() { is_root_ = geteuid() == 0 && seteuid(65534) == 0; }
+  ~AsAnotherUser() { EXPECT_TRUE(!is_root_ || seteuid(0) == 0); }
+  AsAnotherUser(const AsAnotherUser&) = delete;
+  AsAnotherUser& operator=(const AsAnotherUser&) = delete;
+  bool reads_everything() const { return geteuid() == 0; }  // where there is no other user
+
+ private:
+  bool is_root_ = false;
+};
+
+TEST(MapRegistry, ServesAMapOnceItMayReadIt) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  fs::permissions(folder.path(), fs::perms{0755});
+  fs::permissions(folder / "city.gpkg", fs::perms::none);
+  std::optional<MapRegistry> registry;
+  {
+    const AsAnotherUser reader;
+    if (reader.reads_everything()) GTEST_SKIP();
+    registry.emplace(folder.path(), kCache);
+  }
+  ASSERT_EQ(registry->unreadable().size(), 1U);
+  fs::permissions(folder / "city.gpkg", fs::perms{0644});
+  const AsAnotherUser reader;
+  registry->refresh();
+  EXPECT_EQ(registry->maps().size(), 1U) << "though nothing was written to it";
+  EXPECT_TRUE(registry->unreadable().empty());
 }
 
 TEST(MapRegistry, WatchesByItself) {

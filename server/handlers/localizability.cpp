@@ -59,7 +59,7 @@ struct Layer {
   double footprint_m = 0.0;
   std::string style;
 
-  std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name, map->view.version, footprint_m); }
+  std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name, map->edition(), footprint_m); }
 };
 
 Layer layer_of(const Service& service, const http::Request& request) {
@@ -113,7 +113,7 @@ http::Response get_tile(const Service& service, const http::Request& request, ht
   const auto& at = request.path_parameters;
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const Layer layer = layer_of(service, request);
-  const std::string tag = entity_tag(layer.map->view.version, variation(service, layer, request.path));
+  const std::string tag = entity_tag(layer.map->edition(), variation(service, layer, request.path));
   return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, turns); });
 }
 

@@ -23,9 +23,8 @@ http::Response get_tile(const Service& service, const http::Request& request) {
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const std::string style = api::Fields(request.query).word("style", kTileStyles);
   const auto map = service.maps.find(at.at("map"));
-  return tile_response(request, entity_tag(map->view.version, style + request.path), [&] {
-    const std::string key =
-        fmt::format("{}/{}/{}/{}/{}/{}", map->name, map->view.version, style, tile.z, tile.x, tile.y);
+  return tile_response(request, entity_tag(map->edition(), style + request.path), [&] {
+    const std::string key = fmt::format("{}/{}/{}/{}/{}/{}", map->name, map->edition(), style, tile.z, tile.x, tile.y);
     return kept_or_drawn(service.pictures, key, [&] { return api::tile_png(map->view, tile, tile_style(style)); });
   });
 }

@@ -40,6 +40,8 @@ bool says_the_same(const MapInfo& a, const MapInfo& b) {
 
 }  // namespace
 
+std::string ServedMap::edition() const { return fmt::format("{}-{}", view.version, reader->info().pending); }
+
 MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes)
     : folder_(std::move(folder)), cache_bytes_(cache_bytes), search_cache_bytes_(search_cache_bytes) {
   if (!fs::is_directory(folder_)) {

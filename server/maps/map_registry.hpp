@@ -23,6 +23,10 @@ struct ServedMap {
   std::filesystem::path path;
   std::shared_ptr<const MapReader> reader;
   MapView view;
+
+  /// Tells one look of the map from another. Its version does not: it is that of the finest cells, which are fused
+  /// before the overviews.
+  std::string edition() const;
 };
 
 /// A file that looks like a map and cannot be served.

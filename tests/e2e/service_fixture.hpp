@@ -48,8 +48,9 @@ inline std::string refusal(const httplib::Result& answer) {
   if (answer->get_header_value("Content-Type") != "application/problem+json")
     return std::to_string(answer->status) + " no problem";
   const auto body = nlohmann::json::parse(answer->body);
-  return std::to_string(answer->status) + " " + body.value("code", "?") +
-         (body.contains("field") ? " " + body["field"].get<std::string>() : "");
+  std::string text = std::to_string(answer->status) + " " + body.value("code", "?");
+  if (body.contains("field")) text.append(" ").append(body["field"].get<std::string>());
+  return text;
 }
 
 }  // namespace roadfix::testing

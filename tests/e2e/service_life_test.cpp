@@ -8,10 +8,12 @@
 #include <thread>
 
 #include "core/locate/calibration.hpp"
+#include "core/units/error.hpp"
 #include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
 #include "tests/support/sqlite_file.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
 namespace {
@@ -129,6 +131,30 @@ TEST(ServiceLife, SendsTilesOfLocalizabilityAnewUnderAnotherCalibration) {
   };
   EXPECT_EQ(tag(0.2), tag(0.2));
   EXPECT_NE(tag(0.2), tag(0.3));
+}
+
+TEST(ServiceLife, SendsTilesAnewWhenTheOverviewsOfAMapAreFused) {
+  const testing::TemporaryFolder folder;
+  MapWriter writer(folder / "city.gpkg", testing::settings_37n());
+  const testing::TestSource source{"a", 1, testing::some_blocks(8)};
+  for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
+    writer.put_block("a", block, testing::random_cells(source.seed, block));
+  }
+  std::stop_source stop;
+  const auto stop_after_the_finest = [&](std::int64_t done, std::int64_t) {
+    if (done > 0) stop.request_stop();
+  };
+  EXPECT_THROW(writer.finish_source("a", stop_after_the_finest, stop.get_token()), Interrupted);
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  const std::string tile = "/v1/maps/city/tiles/11/1241/791.png";
+  const auto before = client.Get(tile);
+  ASSERT_EQ(before->status, 204) << "what it shows is not fused yet";
+
+  writer.finish_source("a");
+  ASSERT_TRUE(eventually([&] { return testing::json_of(client.Get("/v1/maps/city"))["status"] == "ready"; }));
+  const httplib::Headers known{{"If-None-Match", before->get_header_value("ETag")}};
+  EXPECT_EQ(client.Get(tile, known)->status, 200);
 }
 
 TEST(ServiceLife, StopsAtOnceWhenNothingIsInFlight) {

@@ -1,6 +1,7 @@
 #include "tiles/store/map_reader.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cassert>
 #include <cmath>
@@ -21,6 +22,12 @@ namespace {
 using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
+
+/// Which file has the name now.
+std::pair<dev_t, ino_t> file_named(const std::filesystem::path& path) {
+  struct stat file {};
+  return stat(path.c_str(), &file) == 0 ? std::pair(file.st_dev, file.st_ino) : std::pair<dev_t, ino_t>();
+}
 
 /// A connection with its prepared query serves one thread at a time.
 struct Channel {
@@ -49,7 +56,8 @@ TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
 }  // namespace
 
 struct MapReader::State {
-  State(const std::filesystem::path& file, std::size_t cache_bytes) : path(file), cache(cache_bytes) {
+  State(const std::filesystem::path& name, std::size_t cache_bytes)
+      : path(name), file(file_named(name)), cache(cache_bytes) {
     Channel first(open_map(path, Access::kRead));
     info = read_info(*first.map);
     idle.push_back(std::move(first));
@@ -74,7 +82,10 @@ struct MapReader::State {
         return channel;
       }
     }
-    return Channel(open_map(path, Access::kRead));
+    Channel channel(open_map(path, Access::kRead));
+    if (file_named(path) == file) return channel;
+    throw Interrupted("map-renewed",
+                      fmt::format("{}: another file took its place while it was read. Try again", path.string()));
   }
 
   /// A writer may be killed while we read.
@@ -98,6 +109,7 @@ struct MapReader::State {
   }
 
   std::filesystem::path path;
+  std::pair<dev_t, ino_t> file;  ///< that all channels read, whatever has the name by now
   std::optional<MapInfo> info;
   TileCache cache;
   std::mutex mutex;

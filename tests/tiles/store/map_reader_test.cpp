@@ -120,5 +120,30 @@ TEST_F(MapReaderTest, ManyThreadsReadWhileAWriterWrites) {
   go_on = false;
 }
 
+TEST_F(MapReaderTest, NeverReadsAnotherFileThatTookItsPlace) {
+  const MapReader reader(path, 0);
+  {
+    MapWriter other(folder / "other.gpkg", settings_37n());
+    ingest(other, {"a", 3, source.blocks});
+  }
+  std::filesystem::rename(folder / "other.gpkg", path);
+  const CellArray expected = random_cells(source.seed, source.blocks[0]);
+  std::atomic<int> others = 0;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 200; ++i) {
+        try {
+          if (reader.tile(0, source.blocks[0]) != expected) ++others;
+        } catch (const Interrupted&) {  // of those that need a descriptor of their own
+        }
+      }
+    });
+  }
+  threads.clear();
+  EXPECT_EQ(others, 0);
+  EXPECT_EQ(reader.tile(0, source.blocks[0]), expected);
+}
+
 }  // namespace
 }  // namespace roadfix

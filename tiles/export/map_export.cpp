@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <fstream>
+#include <ios>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "core/units/error.hpp"
@@ -79,6 +83,21 @@ void remove_side_files(const fs::path& target) {
   for (const char* suffix : {".ovr", ".aux.xml", ".msk"}) fs::remove(target.string() + suffix, none);
 }
 
+bool ends_with(const fs::path& file, std::string_view end) {
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(end.size(), '\0');
+  in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  return in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && bytes == end;
+}
+
+/// GDAL's driver does not notice when the last bytes of a picture or of its world file find no room.
+void require_whole_picture(const fs::path& picture, const fs::path& world) {
+  constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+  if (ends_with(picture, kLastChunk) && ends_with(world, "\n")) return;
+  throw IoFailure("export-failed",
+                  fmt::format("{}: its end cannot be written. Check that the disk has room", picture.string()));
+}
+
 void copy(MapDataset& source, const Driver& target, const fs::path& path, const Monitor& monitor) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
   if (driver == nullptr) {
@@ -87,14 +106,15 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
   CPLErrorReset();
   // The error is reported by exception, not printed by GDAL.
   CPLPushErrorHandler(CPLQuietErrorHandler);
-  const std::unique_ptr<GDALDataset> written(driver->CreateCopy(path.c_str(), &source, FALSE,
-                                                                const_cast<char**>(target.options.data()), on_progress,
-                                                                const_cast<Monitor*>(&monitor)));
-  if (written != nullptr) written->FlushCache();
+  std::unique_ptr<GDALDataset> written(driver->CreateCopy(path.c_str(), &source, FALSE,
+                                                          const_cast<char**>(target.options.data()), on_progress,
+                                                          const_cast<Monitor*>(&monitor)));
+  const bool copied = written != nullptr;
+  written.reset();  // closing writes what is left, and may fail
   CPLPopErrorHandler();
   source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("interrupted", "the export was stopped; nothing was written");
-  if (written == nullptr || CPLGetLastErrorType() >= CE_Failure) {
+  if (!copied || CPLGetLastErrorType() >= CE_Failure) {
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
                                 "has room",
@@ -122,6 +142,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     MapDataset source(map, geometry, driver.pixels);
     copy(source, driver, unfinished, {progress, stop});
     const fs::path world = fs::path(unfinished).replace_extension(".wld");
+    if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world);
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);
     remove_side_files(target);

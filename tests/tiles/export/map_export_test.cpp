@@ -2,6 +2,8 @@
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <fstream>
@@ -42,6 +44,26 @@ class MapExport : public ::testing::Test {
 
   TemporaryFolder folder;
   fs::path path;
+};
+
+/// No file may grow beyond so many bytes, as on a full disk, for as long as this lives.
+class Room {
+ public:
+  explicit Room(std::uintmax_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit less{bytes, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &less), 0);
+  }
+  ~Room() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
 };
 
 struct Picture {
@@ -144,6 +166,22 @@ TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
   EXPECT_EQ(files(), 1U);
   { MapWriter(folder / "empty.gpkg", settings_37n()); }
   EXPECT_THROW(export_map(MapReader(folder / "empty.gpkg"), folder / "out.tif", {}), InvalidInput);
+}
+
+TEST_F(MapExport, SaysWhenTheLastByteFindsNoRoomAndLeavesNothingBehind) {
+  for (const auto& [name, format] : {std::pair("out.tif", ExportFormat::kCog),
+                                     {"out.tif", ExportFormat::kGeoTiff},
+                                     {"out.png", ExportFormat::kPng},
+                                     {"out.mbtiles", ExportFormat::kMbTiles}}) {
+    const auto target = folder / name;
+    export_map(MapReader(path), target, {.format = format});
+    const std::uintmax_t whole = fs::file_size(target);
+    fs::remove(target);
+    fs::remove(folder / "out.wld");
+    const Room room(whole - 1);
+    EXPECT_EQ(code_of(target, {.format = format}), "export-failed") << name;
+    EXPECT_EQ(files(), 1U);
+  }
 }
 
 TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {

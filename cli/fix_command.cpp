@@ -140,7 +140,7 @@ void add_fix_command(CLI::App& app) {
           "--nadir-sigma", o->nadir_sigma_m,
           "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
           "the error of roll and pitch (default: 1 degree at --agl, otherwise 0)")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(not_negative(1000.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")
       ->check(positive());

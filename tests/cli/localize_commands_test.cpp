@@ -67,7 +67,9 @@ TEST_F(LocalizeCommands, FixIsAsAccurateAsTheNadirIsKnown) {
   EXPECT_GT(nlohmann::json::parse(told.out)["sigma_m"][1].get<double>(), 30.0);
   const ProgramResult exact = roadfix("fix --json " + input);
   EXPECT_LT(nlohmann::json::parse(exact.out)["sigma_m"][0].get<double>(), 10.0);
-  EXPECT_EQ(roadfix("fix " + input + "--nadir-sigma -1").code, 2);
+  for (const char* senseless : {"-1", "1001", "nan"}) {
+    EXPECT_EQ(roadfix("fix " + input + "--nadir-sigma " + std::string(senseless)).code, 2) << senseless;
+  }
 }
 
 TEST_F(LocalizeCommands, FixTakesAPrior) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 
 #include "core/detect/image_codec.hpp"
 #include "server/api/fix_json.hpp"
@@ -8,6 +9,7 @@
 #include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/http/admission.hpp"
 #include "tiles/export/window_tiff.hpp"
 
 namespace roadfix::server {
@@ -31,11 +33,12 @@ http::Response rendered(const api::Window& window, std::string_view format) {
   return {200, "image/png", std::string(png.begin(), png.end())};
 }
 
-http::Response get_window(const Service& service, const http::Request& request) {
+http::Response get_window(const Service& service, const http::Request& request, http::Admission& turns) {
   const api::Fields fields(request.query);
   const api::WindowRequest asked = api::parse_window(fields);
   const std::string_view format = format_of(request, fields);
   const auto map = service.maps.find(request.path_parameters.at("map"));
+  const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
   const api::Window window = api::cut_window(map->view, asked, service.limits);
   http::Response response = rendered(window, format);
   // What a picture cannot say about itself, so that it can be posted back: its pose and cell size.
@@ -49,8 +52,11 @@ http::Response get_window(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_window_route(http::Router& router, const Service& service) {
+  // The map around a long window on a slant takes hundreds of megabytes. Not among the heavy requests, whose turns are
+  // longer; and none is sent away: no more wait than have a thread.
+  const auto turns = std::make_shared<http::Admission>(service.http.heavy_running, service.http.threads);
   router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), http::Load::kLight,
-              [&service](const http::Request& request) { return get_window(service, request); }});
+              [&service, turns](const http::Request& request) { return get_window(service, request, *turns); }});
 }
 
 }  // namespace roadfix::server

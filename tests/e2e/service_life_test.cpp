@@ -196,6 +196,41 @@ TEST(ServiceLife, SendsSearchesAwayWhenTooManyWait) {
   EXPECT_GT(sent_away, 0);
 }
 
+/// The most that the process ever held.
+double peak_mib(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && status >> kib) return kib / 1024.0;
+  }
+  return 0.0;
+}
+
+TEST(ServiceLife, HoldsTheGroundOfFewWindowsAtATime) {
+  const testing::TemporaryFolder folder;
+  {
+    MapWriter writer(folder / "wide.gpkg", testing::settings_37n());
+    testing::ingest(writer, {"corners", 1, {{847, -8165}, {887, -8125}}});
+  }
+  const testing::ServiceProcess service(folder.path(), {"--searches", "1"});
+  const std::string window = "/v1/maps/wide/window?lat=37.67&lon=38.38&width_m=29000&height_m=10&heading_deg=45";
+  httplib::Client first = testing::client_of(service);
+  ASSERT_EQ(first.Get(window)->status, 200);
+  const double of_one = peak_mib(service.id());
+  ASSERT_GT(of_one, 100.0) << "the 110 million cells between the corners";
+  std::atomic<int> answered = 0;
+  std::vector<std::jthread> clients;
+  for (int i = 0; i < 12; ++i) {
+    clients.emplace_back([&] {
+      httplib::Client client = testing::client_of(service);
+      answered += client.Get(window)->status == 200 ? 1 : 0;
+    });
+  }
+  clients.clear();
+  EXPECT_EQ(answered, 12);
+  EXPECT_LT(peak_mib(service.id()), of_one + 150.0);
+}
+
 TEST(ServiceLife, EndsASearchWhoseClientHungUp) {
   const testing::TemporaryFolder folder;
   const testing::Town town;

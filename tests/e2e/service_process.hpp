@@ -22,6 +22,7 @@ class ServiceProcess {
   ServiceProcess& operator=(const ServiceProcess&) = delete;
 
   int port() const { return port_; }
+  pid_t id() const { return process_; }
   void send_signal(int signal) const;
   /// Exit status as waitpid gives it, -1 if it did not end in time.
   int wait(std::chrono::milliseconds time = std::chrono::seconds(30));

@@ -15,6 +15,13 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
+/// What is printed passes through a buffer, whose end may find no room.
+void flush_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw roadfix::IoFailure("output-unwritable",
+                           "the answer cannot be written to the standard output: check that its disk is not full");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,6 +48,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_serve_command(app);
   try {
     app.parse(argc, argv);
+    flush_output();
     return 0;
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);

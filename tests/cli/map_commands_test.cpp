@@ -148,6 +148,13 @@ TEST_F(MapCommands, FailureIsOneLineAndWrongUsageIsTwo) {
   }
 }
 
+TEST_F(MapCommands, AnAnswerThatFindsNoRoomIsAFailure) {
+  const std::string err = folder / "err";
+  const int status = std::system((ROADFIX_PROGRAM " info " + path.string() + " >/dev/full 2>" + err).c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_THAT(testing::text_of(err), HasSubstr("[output-unwritable]"));
+}
+
 TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   const auto before = testing::tile_bytes(path);
   for (const std::string& source : {path.string(), folder.path().string()}) {

@@ -16,6 +16,7 @@
 #include "cli/threads_option.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/view/map_file_view.hpp"
 
@@ -61,7 +62,7 @@ void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
   if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
   int number = 0;
   for (std::string line; std::getline(in, line);) {
-    ++number;
+    if (++number == 1) line = without_byte_order_mark(line);
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty() || (number == 1 && line.starts_with("lat"))) continue;
     poses.push_back(parse_pose(line, fmt::format("{} line {}", path, number)));

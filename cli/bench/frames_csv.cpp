@@ -88,9 +88,7 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   std::vector<FrameTruth> frames;
   std::optional<Columns> columns;
   int line = 0;
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // which spreadsheets write
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  for (std::string_view row : split(text, '\n')) {
+  for (std::string_view row : split(without_byte_order_mark(text), '\n')) {
     ++line;
     if (row.ends_with('\r')) row.remove_suffix(1);
     if (row.empty()) continue;

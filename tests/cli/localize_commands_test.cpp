@@ -132,7 +132,7 @@ TEST_F(LocalizeCommands, FixNamesTheOptionWithANumberThatMakesNoSense) {
 }
 
 TEST_F(LocalizeCommands, MatchScoresPosesFromOptionsAndFile) {
-  std::ofstream(folder / "poses.csv") << "lat,lon,heading\n"
+  std::ofstream(folder / "poses.csv") << "\xef\xbb\xbflat,lon,heading\n"
                                       << place.lat_deg + 0.001 << ", " << place.lon_deg << ", 10\n\n";
   const std::string pose =
       std::to_string(place.lat_deg) + "," + std::to_string(place.lon_deg) + "," + std::to_string(heading_deg);

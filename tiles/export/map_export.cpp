@@ -146,6 +146,8 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);
     remove_side_files(target);
+    const fs::path reference = unfinished.string() + ".aux.xml";  // of a PNG
+    if (fs::exists(reference)) fs::rename(reference, target.string() + ".aux.xml");
     remove_unfinished(unfinished);
   } catch (const fs::filesystem_error& error) {
     remove_unfinished(unfinished);

@@ -127,8 +127,10 @@ TEST_F(MapExport, PngsAreGreyAndTransparentWhereUnobserved) {
   const auto target = folder / "out.png";
   export_map(map, target, {.format = ExportFormat::kPng});
   EXPECT_TRUE(fs::exists(folder / "out.wld"));
-  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(files(), 4U) << "map, picture, world file and reference system";
   const Picture picture(target);
+  ASSERT_NE(picture.data->GetSpatialRef(), nullptr);
+  EXPECT_STREQ(picture.data->GetSpatialRef()->GetAuthorityCode(nullptr), "32637");
   const auto grey = picture.band(1);
   const auto alpha = picture.band(2);
   const RoadGrid whole = map.read(GridGeometry::covering(map.info().extent, 2.0));
@@ -144,7 +146,8 @@ TEST_F(MapExport, WhatOtherProgramsLeftBesideAReplacedFileIsRemoved) {
   export_map(MapReader(path), target, {.format = ExportFormat::kPng});
   for (const char* suffix : {".ovr", ".aux.xml"}) std::ofstream(target.string() + suffix) << "of the old picture";
   export_map(MapReader(path), target, {.format = ExportFormat::kPng});
-  EXPECT_EQ(files(), 3U) << "map, picture and world file";
+  EXPECT_EQ(files(), 4U) << "map, picture, world file and its own reference system";
+  EXPECT_NE(Picture(target).data->GetSpatialRef(), nullptr);
 }
 
 TEST_F(MapExport, MbTilesCoverTheMap) {

@@ -16,40 +16,63 @@ constexpr double kCoarsestCellOfLargeM = 16.0;
 constexpr double kLargeKm2 = 30.0;
 constexpr int kFootprintCells = 32;         // that the coarse level keeps at least across a footprint
 constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
+// What lies where in a footprint of kilometres is known from coarser cells still, and tells places apart more surely.
+constexpr double kWideM = 1500.0;  // side of a square as large as what was seen
+constexpr double kCoarsestCellOfWideM = 32.0;
 
-constexpr double kProofCellM = 4.0;       // roads are hardly wider
-constexpr int kProofFootprintCells = 64;  // likewise at least, where a proof is given in coarser cells than the map's
+constexpr int kMostFootprintCells = 512;  // across what was seen of a footprint, on the finest level
+
+// Of a proof, which may be given in coarser cells than the map's: roads are hardly wider.
+constexpr double kProofCellM = 4.0;
+constexpr int kProofFootprintCells = 64;  // across a footprint at least
 
 // Followed from the coarse level. What is known of chance comes from the places that are followed: where they are few
 // for the ground, the one of them that happens to fit looks as if no other did.
 constexpr double kCandidatesPerKm2 = 32.0;
 constexpr double kFewestCandidates = 256.0;
 constexpr double kMostCandidates = 4096.0;
-constexpr std::size_t kCandidatesAfterCoarser = 1024;  // from 8 m, where the scan was coarser
+constexpr double kCandidatesAfterCoarser = 1024.0;  // from the level below a scan in cells of more than 8 m
 
-int coarse_level(double finest_cell_m, double side_m, const PoseRegion& region) {
-  const bool large = region.area_km2() >= kLargeKm2;
+int coarse_level(double finest_cell_m, double side_m, double seen_m, const PoseRegion& region) {
+  const bool wide = seen_m >= kWideM;
+  const bool large = wide || region.area_km2() >= kLargeKm2;
   const auto fits = [&](double cell_m) {
     const double across = side_m / cell_m;
     return (cell_m <= kCoarsestCellM && across >= kFootprintCells) ||
-           (large && cell_m <= kCoarsestCellOfLargeM && across >= kFootprintCellsOfLarge);
+           (large && cell_m <= kCoarsestCellOfLargeM && across >= kFootprintCellsOfLarge) ||
+           (wide && cell_m <= kCoarsestCellOfWideM);
   };
   int level = 0;
   while (fits(std::ldexp(finest_cell_m, level + 1))) ++level;
   return level;
 }
 
+/// More cells tell places apart no better, and each level takes four times as long as the one above.
+int finest_level(double finest_cell_m, double seen_m, int coarsest) {
+  int level = 0;
+  while (level < coarsest && seen_m / std::ldexp(finest_cell_m, level) > kMostFootprintCells) ++level;
+  return level;
+}
+
+/// Of a square as large as the ground that was seen.
+double side_seen_m(const FeatureMap& features) {
+  return features.cell_m * std::sqrt(static_cast<double>(features.cells.observed_count()));
+}
+
 }  // namespace
 
 SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
                            const PoseRegion& region, const SearchOptions& options)
-    : region_(region), side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())) {
-  const int coarsest = coarse_level(finest_cell_m, side_m_, region);
+    : region_(region),
+      finest_cell_m_(finest_cell_m),
+      side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())),
+      seen_m_(side_seen_m(features)) {
+  const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region);
   const double radius_m = 0.5 * side_m_;
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
   const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
-  for (int k = 0; k <= coarsest; ++k) {
+  for (int k = finest_level(finest_cell_m, seen_m_, coarsest); k <= coarsest; ++k) {
     const double cell_m = std::ldexp(finest_cell_m, k);
     levels_.push_back({read, features, LevelFeatures(resampled(features, cell_m), options.min_observed_share),
                        options.min_observed_share, HeadingBins(bins.count() << (coarsest - k)),
@@ -57,14 +80,19 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   }
 }
 
+int SearchLevels::halvings() const {
+  return static_cast<int>(std::lround(std::log2(coarse().cell_m() / finest_cell_m_)));
+}
+
 std::size_t SearchLevels::followed(int index) const {
-  const double cell_m = at(index).cell_m();
+  const bool coarser = coarse().cell_m() > kCoarsestCellM;
+  const double cost = std::max(1.0, seen_m_ * seen_m_ / (kWideM * kWideM));  // of following one
   if (index == coarsest()) {
-    if (cell_m > kCoarsestCellM) return static_cast<std::size_t>(kMostCandidates);
-    return static_cast<std::size_t>(
-        std::clamp(kCandidatesPerKm2 * region_.area_km2(), kFewestCandidates, kMostCandidates));
+    const double all = coarser ? kMostCandidates : kCandidatesPerKm2 * region_.area_km2();
+    return static_cast<std::size_t>(std::clamp(all / cost, kFewestCandidates, kMostCandidates));
   }
-  return cell_m == kCoarsestCellM ? kCandidatesAfterCoarser : kSurvivors;
+  if (!coarser || index + 1 < coarsest()) return kSurvivors;
+  return std::max(kSurvivors, static_cast<std::size_t>(kCandidatesAfterCoarser / cost));
 }
 
 int SearchLevels::proof_level() const {

@@ -25,6 +25,8 @@ class SearchLevels {
   const Level& at(int index) const { return levels_[static_cast<std::size_t>(index)]; }
   const Level& coarse() const { return levels_.back(); }
   const Level& finest() const { return levels_.front(); }
+  /// From the finest cells that were given to those of the scan. Large footprints leave the finest levels out.
+  int halvings() const;
   const PoseRegion& region() const { return region_; }
   /// The longer side of the feature map.
   double side_m() const { return side_m_; }
@@ -40,7 +42,9 @@ class SearchLevels {
 
  private:
   const PoseRegion& region_;
+  double finest_cell_m_;
   double side_m_;
+  double seen_m_;              ///< side of a square as large as the ground that was seen
   std::vector<Level> levels_;  ///< finest first
 };
 

@@ -60,6 +60,21 @@ TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
   EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 4.0);
 }
 
+TEST(Search, FindsAWindowOfKilometresInCoarserCells) {
+  const RoadGrid map = street_map(12, {4.0, {75'000, -1'000'000}, 1500, 1400});
+  std::mt19937_64 random(17);
+  PoseRegion region;
+  region.box = map.geometry.box();
+  const GridPose truth = pose_within(region.box, 1500.0, random);
+  const FeatureMap seen = observed_at(map, truth, 520, 520, 4.0, {0.3, 0.3}, random);
+  const SearchResult found = search(reader_of(map), 4.0, seen, region, {});
+  EXPECT_EQ(found.coarse_cell_m, 32.0);
+  EXPECT_EQ(found.cell_m, 8.0);
+  ASSERT_FALSE(found.modes.empty());
+  EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 4.0);
+  EXPECT_LT(angular_distance(found.modes[0].pose.heading, truth.heading).degrees(), 0.2);
+}
+
 TEST(Search, ProvesWhereItIsAskedToThatNoOtherPoseIsBetter) {
   const RoadGrid map = street_map(14, town(1000, 900));
   std::mt19937_64 random(15);

@@ -90,10 +90,10 @@ bool ends_with(const fs::path& file, std::string_view end) {
   return in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && bytes == end;
 }
 
-/// GDAL's driver does not notice when the last bytes of a picture or of its world file find no room.
-void require_whole_picture(const fs::path& picture, const fs::path& world) {
+/// GDAL's driver does not notice when the last bytes of a picture or of the files that say where it lies find no room.
+void require_whole_picture(const fs::path& picture, const fs::path& world, const fs::path& reference) {
   constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
-  if (ends_with(picture, kLastChunk) && ends_with(world, "\n")) return;
+  if (ends_with(picture, kLastChunk) && ends_with(world, "\n") && ends_with(reference, "</PAMDataset>\n")) return;
   throw IoFailure("export-failed",
                   fmt::format("{}: its end cannot be written. Check that the disk has room", picture.string()));
 }
@@ -142,11 +142,11 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     MapDataset source(map, geometry, driver.pixels);
     copy(source, driver, unfinished, {progress, stop});
     const fs::path world = fs::path(unfinished).replace_extension(".wld");
-    if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world);
+    const fs::path reference = unfinished.string() + ".aux.xml";
+    if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);
     remove_side_files(target);
-    const fs::path reference = unfinished.string() + ".aux.xml";  // of a PNG
     if (fs::exists(reference)) fs::rename(reference, target.string() + ".aux.xml");
     remove_unfinished(unfinished);
   } catch (const fs::filesystem_error& error) {

@@ -51,7 +51,8 @@ class HttpServerTest : public ::testing::Test {
            throw Interrupted("search-interrupted", "as searches do");
          }});
     router_.add({"POST", "/times", {}, http::Load::kHeavy, [this](const http::Request& request) {
-                   times_ = {request.received, request.deadline};
+                   received_ = request.received;
+                   deadline_ = request.deadline;
                    return http::Response{200, "text/plain", "done"};
                  }});
     router_.add({"GET", "/throw", {}, http::Load::kLight, [](const http::Request&) -> http::Response {
@@ -107,7 +108,7 @@ class HttpServerTest : public ::testing::Test {
   int port_ = 0;
   std::atomic<int> waiting_ = 0;
   std::atomic<bool> go_ = false;
-  std::pair<http::Clock::time_point, http::Clock::time_point> times_;  ///< received, deadline
+  std::atomic<http::Clock::time_point> received_, deadline_;  ///< of POST /times
 };
 
 }  // namespace roadfix::testing

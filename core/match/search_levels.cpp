@@ -80,8 +80,8 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   }
 }
 
-int SearchLevels::halvings() const {
-  return static_cast<int>(std::lround(std::log2(coarse().cell_m() / finest_cell_m_)));
+int SearchLevels::halvings(int index) const {
+  return static_cast<int>(std::lround(std::log2(at(index).cell_m() / finest_cell_m_)));
 }
 
 std::size_t SearchLevels::followed(int index) const {

@@ -25,8 +25,8 @@ class SearchLevels {
   const Level& at(int index) const { return levels_[static_cast<std::size_t>(index)]; }
   const Level& coarse() const { return levels_.back(); }
   const Level& finest() const { return levels_.front(); }
-  /// From the finest cells that were given to those of the scan. Large footprints leave the finest levels out.
-  int halvings() const;
+  /// From the finest cells that were given to those of a level. Large footprints leave the finest levels out.
+  int halvings(int index) const;
   const PoseRegion& region() const { return region_; }
   /// The longer side of the feature map.
   double side_m() const { return side_m_; }

@@ -44,7 +44,7 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const int largest = level.scales.reach();
   const GridGeometry window = padded(bounded.positions, level.reach(largest) + BoundMap::kBorder);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  const auto map = get_or_build<BoundMap>(options.cache, window, {levels.proof_level()},
+  const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
                                           [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();
   const Deadline deadline = end_of_proof(options);

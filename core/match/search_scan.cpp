@@ -73,7 +73,7 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
   const GridGeometry window = padded(positions, reach);
   const int block = scan_block(coarse.features.map);
   // Its cells are means of the finest ones, which are not as fine in every search.
-  return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings()},
+  return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings(levels_.coarsest())},
                                [&] { return ScanMap(coarse.read(window), reach, block); });
 }
 

@@ -242,6 +242,28 @@ TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
   EXPECT_EQ(warm.proof->bound, plain.proof->bound);
 }
 
+TEST(Search, ProvesByMeansOfItsOwnFinestCellsWhateverWasKept) {
+  const RoadGrid finer = street_map(22, {1.0, {300'000, -4'000'000}, 900, 800});
+  RoadGrid map = halved(finer);
+  const GridPose pose{map.geometry.box().centre(), Angle::degrees(31.0)};
+  const FeatureMap window = cut_out(map, pose, 270, 270, 2.0);
+  paste(CellArray(map.geometry.cols, 60, kNoRoad), map.cells, 0, map.geometry.rows / 2);
+  PoseRegion region;
+  region.box = grown({pose.position, pose.position}, 10.0);
+  region.heading = pose.heading;
+  region.heading_half_width = Angle::degrees(20.0);
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult fresh = search(reader_of(map), 2.0, window, region, options);
+  ASSERT_TRUE(fresh.proof->complete);
+  options.cache = std::make_shared<SearchCache>(std::size_t{1} << 30);
+  // Too many of the finest cells across: their level is left out, and the next is the finest of both searches.
+  const SearchResult other = search(reader_of(finer), 1.0, cut_out(finer, pose, 540, 540, 1.0), region, options);
+  ASSERT_EQ(other.cell_m, fresh.cell_m);
+  const SearchResult again = search(reader_of(map), 2.0, window, region, options);
+  EXPECT_EQ(again.proof->bound, fresh.proof->bound);
+}
+
 TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const RoadGrid map = street_map(7, town(800, 800));
   std::mt19937_64 random(9);

@@ -73,8 +73,9 @@ PointProjector::Box& PointProjector::box_of(BoxIndex index) {
 }
 
 std::optional<ProjectedPoint> PointProjector::operator()(LatLon point) {
+  constexpr double kPole = 90.0;  // a box begins at it that lies beyond
   constexpr double kTurn = 360.0;
-  if (!(std::abs(point.lat_deg) <= 90.0) || !(std::abs(point.lon_deg) <= kTurn)) return exactly(zone_, point);
+  if (!(std::abs(point.lat_deg) < kPole) || !(std::abs(point.lon_deg) <= kTurn)) return exactly(zone_, point);
   const double row = std::floor(point.lat_deg / LocalProjection::kSideDeg);
   const double col = std::floor(point.lon_deg / LocalProjection::kSideDeg);
   Box& box = box_of({static_cast<int>(row), static_cast<int>(col)});

@@ -68,5 +68,13 @@ TEST(PointProjector, KnowsWhereThereIsNoProjectionHoweverOftenItIsAsked) {
   EXPECT_THROW(project({40.0, 1e9}), InvalidInput);
 }
 
+TEST(PointProjector, KnowsThatThereIsNoProjectionAtThePolesHoweverOftenItIsAsked) {
+  PointProjector project(UtmZone::from_epsg(32634).value());
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_FALSE(project({90.0, 21.0}));
+    EXPECT_FALSE(project({-90.0, 21.0}));
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

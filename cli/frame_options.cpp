@@ -90,12 +90,10 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 }
 
 GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {
-  if (options.gsd_m > 0.0) {
-    require_roads_visible(options.gsd_m);
-    return rectified(frame_image(decoded, options.gsd_m, options.black_unseen ? Border::kBlackUnseen : Border::kSeen));
-  }
-  constexpr double kAnyGsd = 1.0;  // follows from the camera
-  return ground_seen(frame_image(decoded, kAnyGsd), camera_of(options), detector, static_cast<double>(kMaxPixels));
+  std::optional<FrameCamera> camera;
+  if (options.camera()) camera = camera_of(options);
+  const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
+  return ground_seen(frame_image(decoded, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
 }
 
 cv::Mat picture_in(const std::string& path) {

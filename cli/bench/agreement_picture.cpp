@@ -70,7 +70,7 @@ cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imager
     const cv::Mat before = ground_before(imagery, features, on_grid(*query.truth, map.zone));
     if (!before.empty()) panels.push_back({"before", before});
   }
-  if (query.picture) panels.push_back({"after", query.picture->pixels});
+  if (query.view) panels.push_back({"after", query.view->image.pixels});
   CellArray there;
   if (query.truth) {
     there = map_under(map, features, on_grid(*query.truth, map.zone));

@@ -62,26 +62,26 @@ class FeatureMethod : public Method {
 
   Answer answer(const Query& query) const override {
     Answer result;
-    if (!query.picture) {
+    if (!query.view) {
       result.reason = "no-picture";
       return result;
     }
     const auto start = std::chrono::steady_clock::now();
-    const PointMatches matches = matches_of(*query.picture);
-    place(*query.picture, matches, result);
+    const PointMatches matches = matches_of(*query.view);
+    place(*query.view, matches, result);
     result.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     if (query.truth) {
-      const auto right = right_matches(matches, origin_, *query.picture, on_grid(*query.truth, zone_), kRightMatchM);
+      const auto right = right_matches(matches, origin_, *query.view, on_grid(*query.truth, zone_), kRightMatchM);
       result.keypoints = {static_cast<int>(right.size()), static_cast<int>(std::ranges::count(right, true))};
     }
     return result;
   }
 
   cv::Mat drawn(const Query& query, const Answer&, std::span<const Orthoimage> imagery) const override {
-    if (!query.picture) return {};
+    if (!query.view) return {};
     std::optional<GridPose> truth;
     if (query.truth) truth = on_grid(*query.truth, zone_);
-    return match_picture(imagery, *query.picture, matches_of(*query.picture), truth);
+    return match_picture(imagery, *query.view, matches_of(*query.view), truth);
   }
 
  private:
@@ -99,8 +99,8 @@ class FeatureMethod : public Method {
     }
   }
 
-  PointMatches matches_of(const GroundImage& picture) const {
-    const Keypoints frame = detect(kind_, picture);
+  PointMatches matches_of(const GroundView& view) const {
+    const Keypoints frame = detect(kind_, view.image);
     PointMatches matches;
     for (const cv::DMatch& match : good_matches(frame)) {
       matches.frame_px.push_back(frame.points[static_cast<std::size_t>(match.queryIdx)]);
@@ -123,21 +123,21 @@ class FeatureMethod : public Method {
     return good;
   }
 
-  void place(const GroundImage& picture, const PointMatches& matches, Answer& result) const {
+  void place(const GroundView& view, const PointMatches& matches, Answer& result) const {
     const auto& [from, to] = matches;
     result.reason = "too-few-matches";
     if (from.size() < 3) return;
     cv::Mat inliers;
     const cv::Mat similarity =
-        cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kReprojectionPx * picture.gsd_m, 5000);
+        cv::estimateAffinePartial2D(from, to, inliers, cv::RANSAC, kReprojectionPx * view.image.gsd_m, 5000);
     if (similarity.empty()) return;
     const cv::Matx23d map_from_frame = similarity;
-    const double scale = std::hypot(map_from_frame(0, 0), map_from_frame(1, 0)) / picture.gsd_m;
+    const double scale = std::hypot(map_from_frame(0, 0), map_from_frame(1, 0)) / view.image.gsd_m;
     if (scale < kLowestScale || scale > kHighestScale) {
       result.reason = "wrong-scale";
       return;
     }
-    result.best = pose_of(map_from_frame, picture);
+    result.best = pose_of(map_from_frame, view);
     const int count = cv::countNonZero(inliers);
     result.probability = static_cast<double>(count) / static_cast<double>(from.size());
     if (count < kMinInliers) return;
@@ -146,10 +146,9 @@ class FeatureMethod : public Method {
   }
 
   /// The plane of the keypoints has rows running south, so its rotation is the compass heading.
-  GeoPose pose_of(const cv::Matx23d& map_from_frame, const GroundImage& picture) const {
-    const cv::Vec2d centre =
-        map_from_frame * cv::Vec3d(picture.pixels.cols / 2.0 - 0.5, picture.pixels.rows / 2.0 - 0.5, 1.0);
-    const GridPoint position{origin_.east_m + centre[0], origin_.north_m - centre[1]};
+  GeoPose pose_of(const cv::Matx23d& map_from_frame, const GroundView& view) const {
+    const cv::Vec2d nadir = map_from_frame * cv::Vec3d(view.nadir_px.x - 0.5, view.nadir_px.y - 0.5, 1.0);
+    const GridPoint position{origin_.east_m + nadir[0], origin_.north_m - nadir[1]};
     const Angle grid_heading = Angle::radians(std::atan2(map_from_frame(1, 0), map_from_frame(0, 0)));
     return {zone_.unproject(position), zone_.true_from_grid(grid_heading, position)};
   }

@@ -5,14 +5,24 @@
 #include <vector>
 
 #include "cli/bench/frames_csv.hpp"
+#include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
+#include "core/detect/orthoimage.hpp"
 
 namespace roadfix::bench {
 
 /// Throws NotFound "frames-missing", and as parse_frames_csv.
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
 
-/// `folder` is that of the CSV. Throws InvalidInput "image-unreadable".
+/// The picture alone; gsd_m is that of the CSV, which says nothing where the frame has a camera. `folder` is that of
+/// the CSV. Throws InvalidInput "image-unreadable".
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border);
+
+/// The ground that its picture shows, as `roadfix fix` with this detector sees it. Throws what ground_seen() does, as
+/// InvalidInput with the file's name.
+GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector);
+
+/// Of a camera as if it looked straight down through a lens without distortion. Throws likewise.
+Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame);
 
 }  // namespace roadfix::bench

@@ -3,17 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 
 namespace roadfix::bench {
 namespace {
+
+constexpr double kAnyNumber = 1e10;  // Unix times too
 
 [[noreturn]] void refuse(int line, const std::string& what) {
   throw InvalidInput("frames-csv", fmt::format("frames CSV, line {}: {}", line, what));
@@ -29,73 +29,118 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-std::optional<std::size_t> place_of(const std::vector<std::string_view>& names, std::string_view name) {
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
-}
+/// The cells of a line by the names of their columns; empty where there is no such column or the line leaves it empty.
+class Row {
+ public:
+  Row(const std::vector<std::string_view>& names, std::string_view text, int line)
+      : names_(names), cells_(split(text, ',')), line_(line) {}
 
-struct Columns {
-  std::array<std::size_t, 5> place{};
-  std::optional<std::size_t> sequence;
-  std::optional<std::size_t> time;
-  static constexpr std::array<std::string_view, 5> kNames{"file", "lat", "lon", "heading_deg", "gsd_m"};
-
-  static Columns of(std::string_view header) {
-    const auto names = split(header, ',');
-    Columns columns;
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-      const auto found = place_of(names, kNames[i]);
-      if (!found) refuse(1, fmt::format("the column '{}' is missing", kNames[i]));
-      columns.place[i] = *found;
-    }
-    columns.sequence = place_of(names, "sequence");
-    columns.time = place_of(names, "time_s");
-    return columns;
+  std::string_view text(std::string_view name) const {
+    const auto column = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
+    return column < cells_.size() ? cells_[column] : std::string_view();
   }
+  bool has(std::string_view name) const { return !text(name).empty(); }
+
+  double number(std::string_view name, double low, double high) const { return number(name, text(name), low, high); }
+  std::optional<double> optional_number(std::string_view name) const {
+    if (!has(name)) return std::nullopt;
+    return number(name, -kAnyNumber, kAnyNumber);
+  }
+  std::optional<Angle> optional_angle(std::string_view name) const {
+    if (!has(name)) return std::nullopt;
+    return Angle::degrees(number(name, -360.0, 360.0));
+  }
+  std::vector<double> numbers(std::string_view name) const {
+    std::vector<double> values;
+    for (const std::string_view part : split(text(name), ' ')) {
+      if (!part.empty()) values.push_back(number(name, part, -kAnyNumber, kAnyNumber));
+    }
+    return values;
+  }
+  [[noreturn]] void refuse(const std::string& what) const { bench::refuse(line_, what); }
+
+ private:
+  double number(std::string_view name, std::string_view text, double low, double high) const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc() && end == text.data() + text.size() && value >= low && value <= high) return value;
+    refuse(fmt::format("{} is '{}'; it must be a number within {} to {}", name, text, low, high));
+  }
+
+  const std::vector<std::string_view>& names_;
+  std::vector<std::string_view> cells_;
+  int line_;
 };
 
-double number(std::string_view text, int line, std::string_view column, double low, double high) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high)) {
-    refuse(line, fmt::format("{} is '{}'; it must be a number within {} to {}", column, text, low, high));
+FrameCamera camera_of(const Row& row) {
+  FrameCamera camera;
+  camera.agl_m = row.number("agl_m", 0.0, kAnyNumber);
+  camera.horizontal_fov = row.optional_angle("fov_deg");
+  camera.focal_px = row.optional_number("focal_px");
+  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
+    row.refuse("agl_m needs either fov_deg or focal_px");
   }
-  return value;
+  camera.roll = row.optional_angle("roll_deg").value_or(Angle());
+  camera.pitch = row.optional_angle("pitch_deg").value_or(Angle());
+  if (row.has("principal_px")) {
+    const std::vector<double> principal = row.numbers("principal_px");
+    if (principal.size() != 2) row.refuse("principal_px must be two numbers with a blank between");
+    camera.principal_px.emplace(principal[0], principal[1]);
+  }
+  if (row.has("lens")) {
+    const std::string_view lens = row.text("lens");
+    if (lens != "perspective" && lens != "fisheye") {
+      row.refuse(fmt::format("lens is '{}'; it must be perspective or fisheye", lens));
+    }
+    if (lens == "fisheye") camera.lens = LensModel::kFisheye;
+  }
+  camera.distortion = row.numbers("distortion");
+  return camera;
 }
 
-FrameTruth parse_line(std::string_view text, int line, const Columns& columns) {
-  const auto fields = split(text, ',');
-  if (fields.size() <= *std::ranges::max_element(columns.place)) refuse(line, "it has too few columns");
-  const auto value = [&](std::size_t i, double low, double high) {
-    return number(fields[columns.place[i]], line, Columns::kNames[i], low, high);
-  };
-  const auto optional_field = [&](const std::optional<std::size_t>& column) {
-    return column && *column < fields.size() ? fields[*column] : std::string_view();
-  };
-  const std::string_view time = optional_field(columns.time);
-  constexpr double kLongestS = 1e10;  // Unix times too
-  return {std::string(fields[columns.place[0]]),
-          {{value(1, -90.0, 90.0), value(2, -180.0, 180.0)}, Angle::degrees(value(3, -360.0, 360.0))},
-          value(4, 1e-3, 1e3),
-          std::string(optional_field(columns.sequence)),
-          time.empty() ? std::nullopt : std::optional(number(time, line, "time_s", -kLongestS, kLongestS))};
+FrameTruth frame_of(const Row& row) {
+  if (!row.has("file")) row.refuse("the column 'file' is empty");
+  FrameTruth frame;
+  frame.file = std::string(row.text("file"));
+  frame.pose = {{row.number("lat", -90.0, 90.0), row.number("lon", -180.0, 180.0)},
+                Angle::degrees(row.number("heading_deg", -360.0, 360.0))};
+  if (row.has("gsd_m") == row.has("agl_m")) {
+    row.refuse("give gsd_m for a frame seen straight from above, or agl_m with fov_deg or focal_px for any other");
+  }
+  if (row.has("agl_m")) {
+    frame.camera = camera_of(row);
+  } else {
+    frame.gsd_m = row.number("gsd_m", 1e-3, 1e3);
+  }
+  frame.sequence = std::string(row.text("sequence"));
+  frame.time_s = row.optional_number("time_s");
+  return frame;
+}
+
+std::vector<std::string_view> names_in(std::string_view header) {
+  std::vector<std::string_view> names = split(header, ',');
+  const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
+  for (const std::string_view name : {"file", "lat", "lon", "heading_deg"}) {
+    if (!has(name)) refuse(1, fmt::format("the column '{}' is missing", name));
+  }
+  if (!has("gsd_m") && !has("agl_m")) refuse(1, "there is neither a column 'gsd_m' nor 'agl_m'");
+  return names;
 }
 
 }  // namespace
 
 std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   std::vector<FrameTruth> frames;
-  std::optional<Columns> columns;
+  std::optional<std::vector<std::string_view>> names;
   int line = 0;
   for (std::string_view row : split(without_byte_order_mark(text), '\n')) {
     ++line;
     if (row.ends_with('\r')) row.remove_suffix(1);
     if (row.empty()) continue;
-    if (!columns) {
-      columns = Columns::of(row);
+    if (!names) {
+      names = names_in(row);
     } else {
-      frames.push_back(parse_line(row, line, *columns));
+      frames.push_back(frame_of(Row(*names, row, line)));
     }
   }
   if (frames.empty()) refuse(line, "there are no frames");

@@ -1,5 +1,7 @@
-// Truth of real frames: a CSV with a header line, columns file, lat, lon, heading_deg, gsd_m in any order, and
-// optionally sequence and time_s; others are ignored.
+// Truth of real frames: a CSV with a header line, columns file, lat, lon, heading_deg in any order, and in each row
+// either gsd_m, or agl_m with fov_deg or focal_px and what else is known of the camera (roll_deg, pitch_deg,
+// principal_px, lens, distortion: named and measured as in FrameCamera, several numbers separated by blanks).
+// Optionally sequence and time_s; others are ignored.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +10,18 @@
 #include <string_view>
 #include <vector>
 
+#include "core/detect/frame_camera.hpp"
 #include "core/geodesy/geo_pose.hpp"
 
 namespace roadfix::bench {
 
 struct FrameTruth {
-  std::filesystem::path file;  ///< relative to the CSV
-  GeoPose pose;                ///< of the frame's centre
-  double gsd_m = 1.0;
-  std::string sequence;          ///< frames of one flight share it; empty where the CSV does not say
-  std::optional<double> time_s;  ///< when it was taken, from any one moment on
+  std::filesystem::path file;         ///< relative to the CSV
+  GeoPose pose;                       ///< of the UAV; below it lies the centre of a frame seen straight from above
+  double gsd_m = 0.0;                 ///< of a frame seen straight from above
+  std::optional<FrameCamera> camera;  ///< of any other frame
+  std::string sequence;               ///< frames of one flight share it; empty where the CSV does not say
+  std::optional<double> time_s;       ///< when it was taken, from any one moment on
 };
 
 /// Throws InvalidInput ("frames-csv") naming line and column.

@@ -46,32 +46,32 @@ cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m
 
 }  // namespace
 
-std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, const GroundImage& frame,
+std::vector<bool> right_matches(const PointMatches& matches, GridPoint origin, const GroundView& view,
                                 const GridPose& truth, double tolerance_m) {
   std::vector<bool> right;
   for (std::size_t i = 0; i < matches.frame_px.size(); ++i) {
     const cv::Point2d seen = matches.frame_px[i];
     const cv::Point2d known = matches.map_m[i];
-    const double across = (seen.x + 0.5 - frame.pixels.cols / 2.0) * frame.gsd_m;
-    const double ahead = (frame.pixels.rows / 2.0 - 0.5 - seen.y) * frame.gsd_m;
+    const double across = (seen.x + 0.5 - view.nadir_px.x) * view.image.gsd_m;
+    const double ahead = (view.nadir_px.y - 0.5 - seen.y) * view.image.gsd_m;
     const GridPoint found{origin.east_m + known.x, origin.north_m - known.y};
     right.push_back(distance_m(found, moved(truth, {ahead, across, {}}).position) <= tolerance_m);
   }
   return right;
 }
 
-cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundImage& frame, const PointMatches& matches,
+cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundView& view, const PointMatches& matches,
                       const std::optional<GridPose>& truth) {
   const GridBox box = common_box(imagery);
   const GridPoint origin = imagery.front().north_west;
   const double m_per_px = box.height_m() / kHeightPx;
-  const double frame_scale = static_cast<double>(kHeightPx) / frame.pixels.rows;
+  const double frame_scale = static_cast<double>(kHeightPx) / view.image.pixels.rows;
   cv::Mat before = mosaic(imagery, box, m_per_px);
   cv::Mat after;
-  cv::resize(coloured(frame.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
+  cv::resize(coloured(view.image.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
   cv::resize(before, before, {before.cols, after.rows});
   std::vector<bool> right(matches.map_m.size(), false);
-  if (truth) right = right_matches(matches, origin, frame, *truth, kRightMatchM);
+  if (truth) right = right_matches(matches, origin, view, *truth, kRightMatchM);
 
   cv::Mat both;
   cv::hconcat(before, after, both);

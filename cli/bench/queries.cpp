@@ -113,8 +113,10 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("{}/{:04}", set.path.stem().string(), i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
-    query.picture = cut_out(ortho, pose, set.footprint, ortho.image.gsd_m);
+    Query query;
+    query.id = fmt::format("{}/{:04}", set.path.stem().string(), i);
+    query.truth = truth_of(pose, set, map.zone);
+    query.view = rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m));
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, zone).heading, set,
                                map, random);
     queries.push_back(std::move(query));
@@ -145,7 +147,9 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
   for (int i = 0; i < number_of(set.count, drawing); ++i) {
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     const GridPose pose = draw(sampling, set, random);
-    Query query{fmt::format("simulated/{:04}", i), {}, {}, truth_of(pose, set, map.zone), {}, {}};
+    Query query;
+    query.id = fmt::format("simulated/{:04}", i);
+    query.truth = truth_of(pose, set, map.zone);
     const FeatureQuality quality = draw(set.noise, random);
     query.features =
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
@@ -156,19 +160,20 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
   return queries;
 }
 
-GroundImage picture_of(const FrameTruth& frame, const QuerySet& set) {
-  return read_frame(set.path.parent_path(), frame, set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen);
+GroundView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
+  const Border border = set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen;
+  return view_of(read_frame(set.path.parent_path(), frame, border), frame, detector);
 }
 
 std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
-                                        const UtmZone& zone) {
+                                        const UtmZone& zone, const RoadDetector& detector) {
   std::vector<EarlierFrame> earlier;
   const FrameTruth& reference = frames[index];
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
     if (frame.sequence != reference.sequence) continue;  // flights may take turns in the file
     const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
-    earlier.push_back({picture_of(frame, set), offset});
+    earlier.push_back({seen_in(frame, set, detector), offset});
   }
   return earlier;
 }
@@ -188,20 +193,23 @@ void require_any_on_map(const std::vector<FrameTruth>& frames, const QuerySet& s
                                  set.path.string(), map.name, first.lat_deg, first.lon_deg));
 }
 
-std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
+                               const QueryDrawing& drawing) {
   const auto frames = read_frames_csv(set.path);
   require_any_on_map(frames, set, map);
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
-    Query query{frame.file.string(), {}, {}, frame.pose, {}, {}};
-    if (set.elsewhere) query.truth.reset();
-    query.picture = picture_of(frame, set);
+    Query query;
+    query.id = frame.file.string();
+    if (!set.elsewhere) query.truth = frame.pose;
+    query.view = seen_in(frame, set, detector);
+    if (frame.camera) query.nadir_sigma_m = nadir_sigma_m(*frame.camera, kAttitudeSigma);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                                frame.pose.heading, set, map, random);
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
-    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone);
+    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, detector);
     queries.push_back(std::move(query));
   }
   return queries;
@@ -243,12 +251,12 @@ std::string ground_words(const QuerySet& set) {
 }  // namespace
 
 std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
-                                const QueryDrawing& drawing) {
+                                const RoadDetector& detector, const QueryDrawing& drawing) {
   switch (set.kind) {
     case QuerySet::Kind::kImage:
       return from_imagery(set, map, drawing);
     case QuerySet::Kind::kFrames:
-      return real_frames(set, map, drawing);
+      return real_frames(set, map, detector, drawing);
     case QuerySet::Kind::kSimulated:
       return simulated(set, map, from, drawing);
   }

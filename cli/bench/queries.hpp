@@ -17,11 +17,11 @@ struct QueryDrawing {
   int limit = 0;          ///< at most so many; 0 = all
 };
 
-/// `map` is searched; simulated queries are cut out of `from`.
+/// `map` is searched; simulated queries are cut out of `from`; of camera frames what `detector` makes use of is kept.
 /// Throws InvalidInput "no-place-for-query" where no pose fits, "frames-csv" naming line and column, and what reading
 /// the imagery throws.
 std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
-                                const QueryDrawing& drawing);
+                                const RoadDetector& detector, const QueryDrawing& drawing);
 
 /// Of simulated feature maps that are all equally bad; otherwise nullopt.
 std::optional<FeatureQuality> common_quality(const QuerySet& set);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/detect/frame.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/grid/combine.hpp"
 #include "core/locate/fix.hpp"
@@ -15,17 +16,18 @@ namespace roadfix::bench {
 
 /// A frame taken before the one that is asked about, and where.
 struct EarlierFrame {
-  GroundImage picture;
+  GroundView view;
   BodyOffset offset;
 };
 
 struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
-  std::optional<GroundImage> picture;  ///< in the body frame, nadir at its centre
-  std::optional<FeatureMap> features;  ///< instead of a picture where the query is simulated
+  std::optional<GroundView> view;      ///< what a frame shows
+  std::optional<FeatureMap> features;  ///< instead of a view where the query is simulated
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
-  std::vector<EarlierFrame> earlier;  ///< to be laid together with `picture`
+  std::vector<EarlierFrame> earlier;  ///< to be laid together with `view`
+  double nadir_sigma_m = 0.0;         ///< see FixOptions
 };
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's

@@ -17,7 +17,9 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
     const FeatureMap features = features_of(query);
-    const Fix fix = locate(map_, features, query.prior, options_.fix);
+    FixOptions options = options_.fix;
+    options.nadir_sigma_m = query.nadir_sigma_m;
+    const Fix fix = locate(map_, features, query.prior, options);
     Answer answer;
     answer.status = fix.status;
     answer.reason = fix.reason;
@@ -37,16 +39,16 @@ class RoadsMethod : public Method {
   }
 
  private:
-  FeatureMap detected(const GroundImage& picture) const {
-    return detect_features(detector_, rectified(picture), options_.cell_m, options_.seed);
+  FeatureMap detected(const GroundView& view) const {
+    return detect_features(detector_, view, options_.cell_m, options_.seed);
   }
 
   FeatureMap features_of(const Query& query) const {
     constexpr double kMaxCells = 25e6;
     if (query.features) return *query.features;
-    if (query.earlier.empty()) return detected(*query.picture);
-    std::vector<PlacedFeatures> parts{{detected(*query.picture), {}}};
-    for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.picture), frame.offset});
+    if (query.earlier.empty()) return detected(*query.view);
+    std::vector<PlacedFeatures> parts{{detected(*query.view), {}}};
+    for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.view), frame.offset});
     return combined(parts, kMaxCells);
   }
 

@@ -89,7 +89,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
-      const auto queries = make_queries(set, map, maps.at(set.from), {options.seed, i, options.limit});
+      const auto queries =
+          make_queries(set, map, maps.at(set.from), *options.maps.detector, {options.seed, i, options.limit});
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));

@@ -53,17 +53,18 @@ std::vector<double> times_of(const Sequence& sequence, double step_s) {
 
 RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& truth, double time_s, const UtmZone& zone,
                        const RecordingOptions& options) {
-  GroundImage picture = bench::read_frame(folder, truth, options.border);
-  RecordedFrame frame{on_grid(truth.pose, zone),
-                      time_s,
-                      {picture.pixels.cols * picture.gsd_m, picture.pixels.rows * picture.gsd_m},
-                      {}};
+  const GroundImage picture = bench::read_frame(folder, truth, options.border);
+  RecordedFrame frame;
+  frame.truth = on_grid(truth.pose, zone);
+  frame.time_s = time_s;
+  frame.footprint = bench::footprint_of(picture, truth);
+  if (truth.camera) frame.nadir_sigma_m = nadir_sigma_m(*truth.camera, kAttitudeSigma);
   if (options.detector != nullptr) {
-    frame.observation.features =
-        detect_features(*options.detector, rectified(std::move(picture)), options.cell_m, options.seed);
+    const GroundView view = bench::view_of(picture, truth, *options.detector);
+    frame.observation.features = detect_features(*options.detector, view, options.cell_m, options.seed);
   } else {
     frame.observation.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
-      return CameraFrame{bench::read_frame(folder, truth, border), cell_m, seed};
+      return CameraFrame{bench::read_frame(folder, truth, border), truth.camera, cell_m, seed};
     };
   }
   return frame;

@@ -37,7 +37,7 @@ class Camera {
     const Footprint covered{shot.scale * footprint_.width_m, shot.scale * footprint_.height_m};
     GroundImage frame = cut_out(around(shot.pose, covered), shot.pose, covered, shot.scale * gsd);
     frame.gsd_m = gsd;
-    return {std::move(frame), cell_m_, shot.seed};
+    return {std::move(frame), std::nullopt, cell_m_, shot.seed};
   }
 
   bool shows(GridPoint point) const { return sees(imagery_, point); }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/bench/random.hpp"
+#include "core/detect/frame_camera.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
@@ -16,11 +17,12 @@
 
 namespace roadfix::fly {
 
-/// A picture of the ground straight below, before its roads are detected.
+/// A picture of the ground, before its roads are detected.
 struct CameraFrame {
   GroundImage image;
-  double cell_m = 0.0;     ///< of the feature map that is to be made of it
-  std::uint64_t seed = 0;  ///< of the detector; below 2^31, as a service takes it
+  std::optional<FrameCamera> camera;  ///< nullopt = seen straight from above, in pixels of image.gsd_m
+  double cell_m = 0.0;                ///< of the feature map that is to be made of it
+  std::uint64_t seed = 0;             ///< of the detector; below 2^31, as a service takes it
 };
 
 /// Called when the picture is needed: those of whole flights would fill the memory. Equal calls give equal pictures.

@@ -101,7 +101,8 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
                {"odometry_share", plan.vehicle.odometry_share},
                {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
                {"wind_walk", plan.vehicle.wind.walk},
-               {"scale_range", plan.vehicle.scale_range}};
+               {"scale_range", plan.vehicle.scale_range},
+               {"nadir_sigma_m", plan.vehicle.nadir_sigma_m}};
   if (plan.vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
     request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;
@@ -124,10 +125,27 @@ Picture picture_of(const FeatureMap& features) {
           {png.begin(), png.end()}};
 }
 
+std::string with_commas(const std::vector<double>& numbers) { return fmt::format("{}", fmt::join(numbers, ",")); }
+
+json camera_fields(const FrameCamera& camera) {
+  json fields{{"agl_m", camera.agl_m}, {"roll_deg", camera.roll.degrees()}, {"pitch_deg", camera.pitch.degrees()}};
+  if (camera.horizontal_fov) fields["fov_deg"] = camera.horizontal_fov->degrees();
+  if (camera.focal_px) fields["focal_px"] = *camera.focal_px;
+  if (camera.principal_px) fields["principal_px"] = with_commas({camera.principal_px->x, camera.principal_px->y});
+  if (camera.lens == LensModel::kFisheye) fields["lens"] = "fisheye";
+  if (!camera.distortion.empty()) fields["distortion"] = with_commas(camera.distortion);
+  return fields;
+}
+
 Picture picture_of(const CameraFrame& frame) {
   const auto png = encode_frame(frame.image);
-  return {{{"kind", "frame"}, {"gsd_m", frame.image.gsd_m}, {"cell_m", frame.cell_m}, {"seed", frame.seed}},
-          {png.begin(), png.end()}};
+  Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}, {"seed", frame.seed}}, {png.begin(), png.end()}};
+  if (frame.camera) {
+    picture.fields.update(camera_fields(*frame.camera));
+  } else {
+    picture.fields["gsd_m"] = frame.image.gsd_m;
+  }
+  return picture;
 }
 
 json told(const StepInput& step) {

@@ -156,13 +156,14 @@ void require_roads_visible(double gsd_m) {
                                  gsd_m, kCoarsestGsdM));
 }
 
-GroundView ground_seen(const GroundImage& frame, const FrameCamera& camera, const RoadDetector& detector,
+GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels) {
   constexpr double kFarthestGroundM = 3000.0;
-  const double nominal_m = nominal_gsd_m(camera, frame.pixels.size());
+  const double nominal_m = camera ? nominal_gsd_m(*camera, frame.pixels.size()) : frame.gsd_m;
   require_roads_visible(nominal_m);
+  if (!camera) return rectified(frame);
   const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-  return rectify(frame.pixels, frame.observed, camera, gsd_m, kFarthestGroundM, max_pixels);
+  return rectify(frame.pixels, frame.observed, *camera, gsd_m, kFarthestGroundM, max_pixels);
 }
 
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,

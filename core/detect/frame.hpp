@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "core/detect/frame_camera.hpp"
 #include "core/detect/road_detector.hpp"
@@ -29,10 +30,11 @@ inline constexpr double kFinestGsdM = 0.001;
 /// Throws InvalidInput ("frame-too-coarse", "frame-too-fine") beyond these.
 void require_roads_visible(double gsd_m);
 
-/// rectify() up to 3 km from the nadir point, farther than which ground is seen too flat to tell a road, in pixels that
-/// the detector makes use of. What frame.gsd_m says is not looked at. Throws "frame-too-coarse" and "frame-too-fine"
+/// What the frame shows of the ground. Without a camera it was seen straight from above, in pixels of frame.gsd_m. With
+/// one, which says what gsd_m does not: rectify() up to 3 km from the nadir point, farther than which ground is seen
+/// too flat to tell a road, in pixels that the detector makes use of. Throws "frame-too-coarse" and "frame-too-fine"
 /// too.
-GroundView ground_seen(const GroundImage& frame, const FrameCamera& camera, const RoadDetector& detector,
+GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels);
 
 /// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.

@@ -108,13 +108,14 @@ GroundView view_of(const Content& content, const RoadDetector& detector, const L
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
   const GroundImage frame = frame_image(decode_image(content.image, limits.pixels),
-                                        fields.optional_number("gsd_m", kGsd).value_or(1.0), border);
+                                        fields.optional_number("gsd_m", kGsd).value_or(0.0), border);
+  std::optional<FrameCamera> camera;
   if (fields.has("gsd_m")) {
     require_straight_down(fields);
-    require_roads_visible(frame.gsd_m);
-    return rectified(frame);
+  } else {
+    camera = camera_of(fields);
   }
-  return ground_seen(frame, camera_of(fields), detector, static_cast<double>(limits.pixels));
+  return ground_seen(frame, camera, detector, static_cast<double>(limits.pixels));
 }
 
 /// Detectors draw a coarse frame in finer pixels of their own before they look at it.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ std::vector<Row> rows_of(const std::filesystem::path& csv) {
 class FlownOverHttp : public ::testing::Test {
  protected:
   FlownOverHttp() {
-    EXPECT_EQ(roadfix("world " + town() + " --size-km 0.7x0.7 --frames 0").code, 0);
+    EXPECT_EQ(roadfix("world " + town() + " --size-km 0.7x0.7 --frames 2 --footprint-m 300").code, 0);
     EXPECT_EQ(roadfix("ingest " + town() + "/pre.tif --detector tree --map " + (folder_ / "town.gpkg").string()).code,
               0);
   }
@@ -45,16 +46,30 @@ class FlownOverHttp : public ::testing::Test {
 
   /// Two vehicles over what the earthquake left, by a prior of the whole map.
   std::vector<Row> flown(const std::string& options, const std::string& csv) const {
-    const ProgramResult result =
-        roadfix("fly " + (folder_ / "town.gpkg").string() + " --over " + town() +
-                "/post.tif --footprint-m 300 --steps 6 --missing 0.2 --particles 500 --runs 2 --seed 3 --csv " +
-                (folder_ / csv).string() + options);
+    return flown_over("post.tif --footprint-m 300 --steps 6 --missing 0.2 --runs 2" + options, csv);
+  }
+
+  std::vector<Row> flown_over(const std::string& what, const std::string& csv) const {
+    const ProgramResult result = roadfix("fly " + (folder_ / "town.gpkg").string() + " --over " + town() + "/" + what +
+                                         " --particles 500 --seed 3 --csv " + (folder_ / csv).string());
     EXPECT_EQ(result.code, 0) << result.err;
     return rows_of(folder_ / csv);
   }
 
   const testing::TemporaryFolder folder_;
 };
+
+/// The same frames, as of a camera that looked ahead and to the side through a lens that bends straight lines.
+void write_as_of_a_camera(const std::filesystem::path& frames_csv, const std::filesystem::path& camera_csv) {
+  std::istringstream lines(text_of(frames_csv));
+  std::ofstream camera(camera_csv);
+  for (std::string line; std::getline(lines, line);) {
+    const bool header = line.starts_with("file,");
+    camera << line.substr(0, line.rfind(','))
+           << (header ? ",agl_m,focal_px,roll_deg,pitch_deg,principal_px,distortion\n"
+                      : ",250,500,2,-10,401 398,-0.1 0.02 0 0.001\n");
+  }
+}
 
 /// Text that is equal, or numbers that differ by their last digit.
 bool alike(const std::string& a, const std::string& b) {
@@ -83,6 +98,15 @@ TEST_F(FlownOverHttp, FramesAreAnsweredWithTheNumbersThatTheirRoadsAre) {
           << by_frames[0][k] << " of line " << i << ": " << by_library[i][k] << " and " << by_frames[i][k];
     }
   }
+}
+
+TEST_F(FlownOverHttp, RecordedFramesOfACameraAreAnsweredWithTheNumbersThatTheirRoadsAre) {
+  write_as_of_a_camera(town() + "/frames/frames.csv", town() + "/frames/camera.csv");
+  const testing::ServiceProcess service(folder_.path(), {"--request-time", "600", "--tree-roots", "500"});
+  const std::string there = "frames/camera.csv --server http://127.0.0.1:" + std::to_string(service.port());
+  const std::vector<Row> by_frames = flown_over(there + " --send frames", "frames.csv");
+  EXPECT_EQ(by_frames.size(), 3U) << "a header and a flight of two steps";
+  EXPECT_EQ(by_frames, flown_over(there + " --detector tree --tree-roots 500", "features.csv"));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
   const auto method = make_feature_method(GetParam(), {ortho}, kZone);
   const GridPose truth{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(37)};
   Query query;
-  query.picture = cut_out(ortho, truth, {150, 150}, 0.5);
+  query.view = rectified(cut_out(ortho, truth, {150, 150}, 0.5));
   query.truth = GeoPose{kZone.unproject(truth.position), kZone.true_from_grid(truth.heading, truth.position)};
   const Answer answer = method->answer(query);
   ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
@@ -37,10 +37,23 @@ TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
   EXPECT_GT(answer.keypoints->right, 0.8 * answer.keypoints->matches);
 }
 
+TEST_P(FeatureMethods, PlaceTheUavAndNotTheMiddleOfWhatItSees) {
+  const Orthoimage ortho = textured(1);
+  const auto method = make_feature_method(GetParam(), {ortho}, kZone);
+  const GridPose middle{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(90)};
+  Query query;
+  query.view = rectified(cut_out(ortho, middle, {150, 150}, 0.5));
+  query.view->nadir_px.y += 60.0;  // 30 m behind the middle, which is 30 m to the west
+  const Answer answer = method->answer(query);
+  ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
+  const GridPoint west{middle.position.east_m - 30.0, middle.position.north_m};
+  EXPECT_LT(distance_m(kZone.project(answer.best->position), west), 0.5);
+}
+
 TEST_P(FeatureMethods, GiveNoFixOnOtherImagery) {
   const auto method = make_feature_method(GetParam(), {textured(1)}, kZone);
   Query query;
-  query.picture = textured(2).image;
+  query.view = rectified(textured(2).image);
   EXPECT_EQ(method->answer(query).status, FixStatus::kNoFix);
 }
 

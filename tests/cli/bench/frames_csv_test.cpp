@@ -41,6 +41,27 @@ TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {
   EXPECT_EQ(frames.at(0).pose.position.lat_deg, 32.1);
 }
 
+TEST(FramesCsv, DescribesTheCameraOfAFrame) {
+  const auto frames = parse_frames_csv(
+      "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,roll_deg,pitch_deg,principal_px,lens,distortion\n"
+      "a,1,1,0,0.5\n"
+      "b,1,1,0,,120,84,,1.5,-3\n"
+      "c,1,1,0,,300,,1000,,,811 588.5,fisheye,-0.28  0.08 1e-3 0\n");
+  EXPECT_FALSE(frames.at(0).camera);
+  const FrameCamera simple = frames.at(1).camera.value();
+  EXPECT_EQ(simple.agl_m, 120.0);
+  EXPECT_EQ(simple.horizontal_fov, Angle::degrees(84));
+  EXPECT_EQ(simple.roll, Angle::degrees(1.5));
+  EXPECT_EQ(simple.pitch, Angle::degrees(-3));
+  EXPECT_FALSE(simple.focal_px || simple.principal_px);
+  const FrameCamera calibrated = frames.at(2).camera.value();
+  EXPECT_EQ(calibrated.focal_px, 1000.0);
+  EXPECT_EQ(calibrated.principal_px, cv::Point2d(811, 588.5));
+  EXPECT_EQ(calibrated.lens, LensModel::kFisheye);
+  EXPECT_EQ(calibrated.distortion, (std::vector{-0.28, 0.08, 1e-3, 0.0}));
+  EXPECT_EQ(calibrated.pitch, Angle());
+}
+
 TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   const auto complaint = [](const char* text, const char* part) {
     EXPECT_THAT([&] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;
@@ -49,8 +70,21 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   complaint("file,lat,lon,heading_deg,gsd_m\n", "no frames");
   complaint("file,lat,lon,heading_deg,gsd_m\na,91,0,0,1\n", "lat is '91'");
   complaint("file,lat,lon,heading_deg,gsd_m\na,1,0,0,1\nb,1,nan,0,1\n", "line 3");
-  complaint("file,lat,lon,heading_deg,gsd_m\na,1,0\n", "too few");
+  complaint("file,lat,lon,heading_deg,gsd_m\na,1,0\n", "heading_deg is ''");
   complaint("file,lat,lon,heading_deg,gsd_m,time_s\na,1,1,0,1,12:30\n", "time_s is '12:30'");
+  complaint("file,lat,lon,heading_deg\na,1,1,0\n", "neither");
+  const auto of_the_camera = [&](const std::string& row, const char* part) {
+    const std::string header = "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,principal_px,lens,distortion\n";
+    complaint((header + "a,1,1,0," + row + "\n").c_str(), part);
+  };
+  of_the_camera(",,84", "give gsd_m");
+  of_the_camera("0.5,120,84", "give gsd_m");
+  of_the_camera(",120", "either fov_deg or focal_px");
+  of_the_camera(",120,84,1000", "either fov_deg or focal_px");
+  of_the_camera(",120m,84", "agl_m is '120m'");
+  of_the_camera(",120,,1000,800", "principal_px must be two numbers");
+  of_the_camera(",120,,1000,,pinhole", "lens is 'pinhole'");
+  of_the_camera(",120,,1000,,,0.1 x", "distortion is 'x'");
 }
 
 }  // namespace

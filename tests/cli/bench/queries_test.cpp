@@ -5,6 +5,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/detect/tree_detector.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
@@ -27,9 +28,10 @@ class Queries : public ::testing::Test {
     set_.footprint = {200.0, 200.0};
   }
 
-  std::vector<Query> drawn() const { return make_queries(set_, map_, map_, {}); }
+  std::vector<Query> drawn() const { return make_queries(set_, map_, map_, detector_, {}); }
 
   const MapView map_ = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
+  const TreeRoadDetector detector_;
   QuerySet set_;
 };
 
@@ -72,7 +74,7 @@ TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
 TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
   const MapView west = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 250, 400}));
   set_.from = "newer";
-  for (const Query& query : make_queries(set_, west, map_, {})) {
+  for (const Query& query : make_queries(set_, west, map_, detector_, {})) {
     EXPECT_TRUE(west.extent.contains(map_.zone.project(query.truth.value().position))) << query.id;
   }
 }

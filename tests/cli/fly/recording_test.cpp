@@ -124,6 +124,26 @@ TEST_F(Recordings, KeepTheirPicturesForADetectorElsewhere) {
   EXPECT_EQ(flight[1].input.frame().image.pixels.at<cv::Vec3b>(3, 4)[1], 30);
 }
 
+TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
+  std::ofstream(folder / "camera.csv") << "file,lat,lon,heading_deg,agl_m,focal_px,pitch_deg\n"
+                                          "10.png,57.5,21,0,100,50,30\n";
+  const auto read = [&] {
+    return read_recordings(folder / "camera.csv", zone, options, [](std::int64_t, std::int64_t) {}).at(0).frames.at(0);
+  };
+  const RecordedFrame seen = read();
+  EXPECT_EQ(seen.footprint.width_m, 20 * 100.0 / 50.0);
+  EXPECT_EQ(seen.footprint.height_m, 30 * 100.0 / 50.0);
+  EXPECT_GT(seen.nadir_sigma_m, 100.0 * kAttitudeSigma.radians());
+  const FeatureMap& features = seen.observation.features.value();
+  const double ahead_m = (features.nadir.row - features.cells.rows() / 2.0) * features.cell_m;
+  EXPECT_GT(ahead_m, 100.0 * std::tan(Angle::degrees(30).radians())) << "the nose is up, so it looks ahead";
+
+  options.detector = nullptr;
+  const CameraFrame sent = read().observation.frame();
+  EXPECT_EQ(sent.image.pixels.size(), cv::Size(20, 30)) << "as it was taken";
+  EXPECT_EQ(sent.camera.value().pitch, Angle::degrees(30));
+}
+
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
   EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
   EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "image-unreadable");

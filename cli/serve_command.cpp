@@ -35,6 +35,7 @@ struct ServeOptions {
   std::size_t search_cache_mib = service.search_cache_bytes / kMiB;
   std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
   double request_time_s = 30.0;
+  double body_time_s = 60.0;
   double turn_time_s = 0.0;  ///< 0: as long as the request time
   double idle_time_s = 15.0;
   double watch_s = 1.0;
@@ -54,6 +55,7 @@ server::Configuration configuration(const ServeOptions& options) {
   result.map_cache_bytes = options.map_cache_mib * kMiB;
   result.search_cache_bytes = options.search_cache_mib * kMiB;
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
+  result.http.body_time = milliseconds(options.body_time_s);
   result.http.request_time = milliseconds(options.request_time_s);
   result.http.turn_time = options.turn_time_s > 0.0 ? milliseconds(options.turn_time_s) : result.http.request_time;
   result.http.idle_time = milliseconds(options.idle_time_s);
@@ -97,6 +99,7 @@ void add_limits(CLI::App& command, ServeOptions& o) {
     command.add_option(name, value, text)->capture_default_str()->check(positive(max))->group("Limits of one request");
   };
   add("--max-body", o.body_mib, "Body in MiB, after unpacking", kMaxMiB);
+  add("--body-time", o.body_time_s, "Seconds that a body may take to arrive", kMaxSeconds);
   add("--max-pixels", limits.pixels, "Pixels of a picture");
   add("--max-cells", limits.cells, "Cells of a window or feature map");
   add("--max-poses", limits.poses, "Poses of a match");

@@ -105,9 +105,9 @@ bool Connection::wait_for(short events, milliseconds time, Clock::time_point sin
 }
 
 bool Connection::fill() {
-  const auto left = std::chrono::duration_cast<milliseconds>(deadline_ - Clock::now());
+  const auto left = std::chrono::ceil<milliseconds>(deadline_ - Clock::now());
   if (left <= 0ms || !wait_for(POLLIN, left, begun_, received_)) {
-    failure_ = Failure::kTimeout;
+    failure_ = Clock::now() < deadline_ ? Failure::kLetGo : Failure::kTimeout;
     return false;
   }
   const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);

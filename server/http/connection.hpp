@@ -24,7 +24,8 @@ struct ConnectionLimits {
 
 class Connection : public httplib::Stream {
  public:
-  enum class Failure { kNone, kTimeout, kHeadTooLarge, kCutOff };
+  /// kLetGo: slow while others waited.
+  enum class Failure { kNone, kTimeout, kLetGo, kHeadTooLarge, kCutOff };
 
   Connection(int socket, const ConnectionLimits& limits);
   ~Connection() override;

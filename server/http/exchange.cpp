@@ -10,6 +10,7 @@
 #include <ctime>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
@@ -23,16 +24,24 @@ bool is_usable_id(const std::string& id) {
   return !id.empty() && id.size() <= kMaxIdLength && std::ranges::all_of(id, [](char c) { return c > ' ' && c < 127; });
 }
 
-/// RFC 9110 12.5.3: named, or covered by "*", and not with a weight of 0.
-bool accepts_gzip(const std::string& accept_encoding) {
-  std::string text = lower_case(accept_encoding);
+/// The parts between the commas of a header, without blanks and in small letters.
+std::vector<std::string> list_of(const std::string& header) {
+  std::string text = lower_case(header);
   std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-  std::optional<bool> named;
-  bool any = false;
+  std::vector<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string coding = text.substr(begin, end - begin);
+    parts.push_back(text.substr(begin, end - begin));
     begin = end + 1;
+  }
+  return parts;
+}
+
+/// RFC 9110 12.5.3: named, or covered by "*", and not with a weight of 0.
+bool accepts_gzip(const std::string& accept_encoding) {
+  std::optional<bool> named;
+  bool any = false;
+  for (const std::string& coding : list_of(accept_encoding)) {
     const std::size_t weight = coding.find(";q=");
     const bool wanted = weight == std::string::npos || coding.find_first_of("123456789", weight) != std::string::npos;
     const std::string name = coding.substr(0, coding.find(';'));
@@ -40,6 +49,13 @@ bool accepts_gzip(const std::string& accept_encoding) {
     if (name == "*") any = wanted;
   }
   return named.value_or(any);
+}
+
+/// RFC 9112 9.6: one of a list, in any case.
+bool asks_to_close(const httplib::Request& head) {
+  const auto [first, last] = head.headers.equal_range("Connection");
+  return std::any_of(first, last,
+                     [](const auto& header) { return std::ranges::count(list_of(header.second), "close") > 0; });
 }
 
 bool is_token(const std::string& name) {
@@ -67,8 +83,9 @@ void take_over(httplib::Request& head, Exchange& exchange) {
   const bool gzip = accepts_gzip(head.get_header_value("Accept-Encoding"));
   head.headers.erase("Accept-Encoding");
   if (gzip) head.headers.emplace("Accept-Encoding", "gzip");
-  // The library closes these after the answer, in which it says that it keeps them.
-  if (head.version == "HTTP/1.0" && head.get_header_value("Connection") != "Keep-Alive") {
+  exchange.asked_to_close = asks_to_close(head);
+  // The library does not notice all that ask for it, and says that it keeps some that it closes.
+  if (exchange.asked_to_close || (head.version == "HTTP/1.0" && head.get_header_value("Connection") != "Keep-Alive")) {
     head.headers.erase("Connection");
     head.headers.emplace("Connection", "close");
   }
@@ -135,7 +152,8 @@ void check_body_headers(const Request& request, std::size_t max_bytes) {
   }
 }
 
-void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes) {
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes,
+               std::chrono::milliseconds time) {
   std::string& body = exchange.request.body;
   bool too_large = false;
   const bool whole = reader([&](const char* data, std::size_t size) {
@@ -149,7 +167,13 @@ void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::si
   }
   switch (exchange.connection->failure()) {
     case Connection::Failure::kTimeout:
-      throw Interrupted("request-timeout", "the rest of the body did not come in time");
+      throw Interrupted("request-timeout",
+                        fmt::format("{} bytes of the body came within {} s, and then it was not whole: send less, or "
+                                    "raise serve --body-time",
+                                    body.size(), std::chrono::duration<double>(time).count()));
+    case Connection::Failure::kLetGo:
+      throw Interrupted("request-timeout",
+                        "the body came slower than 4 KiB/s while other clients waited: send it again, or send less");
     case Connection::Failure::kCutOff:
       throw InvalidInput("body-cut-off",
                          fmt::format("the body ended after {} bytes, before its announced end", body.size()));
@@ -164,6 +188,7 @@ std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_byt
       return std::make_exception_ptr(
           LimitExceeded("head-too-large", fmt::format("request line and headers exceed {} bytes", max_bytes)));
     case Connection::Failure::kTimeout:
+    case Connection::Failure::kLetGo:
       return std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
     default:
       return std::make_exception_ptr(

@@ -3,6 +3,7 @@
 
 #include <httplib.h>
 
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <string>
@@ -26,6 +27,7 @@ struct Exchange {
   Clock::time_point started = Clock::now();
   bool head_read = false;
   bool must_close = false;  ///< bytes of the request were left unread
+  bool asked_to_close = false;
   bool logged = false;
 };
 
@@ -45,9 +47,10 @@ void check_headers(const httplib::Request& head);
 
 bool announces_body(const Request& request);
 
-/// Throws LimitExceeded "body-too-large" beyond so many bytes after unpacking, Interrupted "request-timeout" or
-/// InvalidInput ("body-cut-off", "bad-body-encoding").
-void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes);
+/// Throws LimitExceeded "body-too-large" beyond so many bytes after unpacking, Interrupted "request-timeout" (`time` is
+/// what the connection allows) or InvalidInput ("body-cut-off", "bad-body-encoding").
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes,
+               std::chrono::milliseconds time);
 
 /// Why no head could be read: LimitExceeded "head-too-large", Interrupted "request-timeout", InvalidInput
 /// "bad-request".

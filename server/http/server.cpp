@@ -38,6 +38,10 @@ constexpr auto kComplaintPause = 10s;
 /// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
 thread_local Exchange* t_exchange = nullptr;
 
+LimitExceeded url_too_long(std::size_t limit) {
+  return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
+}
+
 }  // namespace
 
 class Server::Impl : public httplib::Server {
@@ -163,7 +167,9 @@ bool Server::Impl::process_and_close_socket(socket_t socket) {
         process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
     t_exchange = nullptr;
     if (exchange.must_close || !exchange.head_read) connection.linger();
-    if (!written || last || closed_by_client || exchange.must_close || !exchange.head_read) break;
+    if (!written || last || closed_by_client || exchange.asked_to_close || exchange.must_close || !exchange.head_read) {
+      break;
+    }
   }
   return true;
 }
@@ -203,10 +209,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     const bool close = std::exchange(exchange.must_close, true);
     check_headers(head);
     exchange.must_close = close;
-    if (head.target.size() > settings_.target_bytes) {
-      throw LimitExceeded("url-too-long",
-                          fmt::format("the request target is longer than {} bytes", settings_.target_bytes));
-    }
+    if (head.target.size() > settings_.target_bytes) throw url_too_long(settings_.target_bytes);
     exchange.target = parse_target(head.target);
     request.path = exchange.target.path;
     request.query = exchange.target.query;
@@ -236,7 +239,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
 void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
   Exchange& exchange = *t_exchange;
   try {
-    read_body(exchange, reader, settings_.body_bytes);
+    read_body(exchange, reader, settings_.body_bytes, settings_.body_time);
   } catch (...) {
     exchange.must_close = true;
     reply(exchange, out, failed(exchange, std::current_exception()));
@@ -286,7 +289,10 @@ HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
     exchange.connection->get_remote_ip_and_port(exchange.request.client, port);
   }
   exchange.must_close = true;
-  reply(exchange, out, failed(exchange, failure_of_head(exchange, settings_.head_bytes)));
+  const bool long_line = out.status == 414;
+  const auto thrown = long_line ? std::make_exception_ptr(url_too_long(settings_.target_bytes))
+                                : failure_of_head(exchange, settings_.head_bytes);
+  reply(exchange, out, failed(exchange, thrown));
   return HandlerResponse::Handled;
 }
 

@@ -97,6 +97,30 @@ TEST_F(HttpServer, SaysToClientsOfHttp10ThatItCloses) {
   }
 }
 
+TEST_F(HttpServer, ClosesForWhoeverAsksForItInAnyCaseAndAmongOthers) {
+  const auto server = started();
+  for (const char* asked : {"close", "Close", "TE, close", "CLOSE , TE"}) {
+    testing::RawConnection connection(port_);
+    connection.send(std::string("GET /echo?text=abc HTTP/1.1\r\nHost: x\r\nConnection: ") + asked + "\r\n\r\n");
+    const auto start = Clock::now();
+    EXPECT_THAT(connection.read_all(), ::testing::HasSubstr("Connection: close")) << asked;
+    EXPECT_LT(Clock::now() - start, settings_.idle_time / 2) << asked << ": kept until it was idle for too long";
+  }
+  testing::RawConnection kept(port_);
+  kept.send("GET /echo?text=abc HTTP/1.1\r\nHost: x\r\nConnection: closed\r\n\r\n");
+  kept.finish();
+  EXPECT_THAT(kept.read_all(), ::testing::HasSubstr("Keep-Alive"));
+}
+
+TEST_F(HttpServer, TellsALongTargetFromWhatIsNoRequest) {
+  const auto server = started();
+  for (const std::size_t length : {5'000, 20'000}) {  // the library stops at 8192 by itself
+    EXPECT_THAT(raw("GET /" + std::string(length, 'x') + " HTTP/1.1\r\nHost: x\r\n\r\n"),
+                ::testing::HasSubstr("url-too-long"))
+        << length;
+  }
+}
+
 TEST_F(HttpServer, SaysWhenItAnswered) {
   const auto server = started();
   EXPECT_THAT(client().Get("/echo?text=a")->get_header_value("Date"),

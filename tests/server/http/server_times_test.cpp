@@ -23,6 +23,24 @@ TEST_F(HttpServerTimes, EndsABodyThatComesTooSlowly) {
               ::testing::HasSubstr("request-timeout"));
 }
 
+TEST_F(HttpServerTimes, SaysHowLongABodyMayTakeSoThatNobodyRepeatsItForEver) {
+  settings_.body_time = 50ms;
+  Server server(
+      settings_, router_,
+      [](std::exception_ptr thrown, const Request&) {
+        try {
+          std::rethrow_exception(std::move(thrown));
+        } catch (const Error& error) {
+          return Response{408, "text/plain", error.what()};
+        }
+      },
+      metrics_);
+  port_ = server.start();
+  EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nabc"),
+              ::testing::AllOf(::testing::HasSubstr("3 bytes of the body came within 0.05 s"),
+                               ::testing::HasSubstr("--body-time")));
+}
+
 TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   settings_.threads = 1;
   settings_.body_time = 10min;

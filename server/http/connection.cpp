@@ -15,7 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLinger = 500ms;
+constexpr milliseconds kLinger = 500ms;  // however others wait
+constexpr milliseconds kLingerSilence = 5s;
 constexpr milliseconds kSlice = 100ms;
 
 bool poll_for(int socket, short events, milliseconds time) {
@@ -79,12 +80,15 @@ void Connection::begin_body() {
   begin(limits_.body);
 }
 
-void Connection::linger() {
+void Connection::linger(const std::function<bool()>& in_a_hurry) {
   ::shutdown(socket_, SHUT_WR);
-  const auto until = Clock::now() + kLinger;
-  while (Clock::now() < until &&
-         poll_for(socket_, POLLIN, std::chrono::duration_cast<milliseconds>(until - Clock::now()))) {
+  const auto begun = Clock::now();
+  auto heard = begun;
+  for (auto now = begun; now - heard < kLingerSilence; now = Clock::now()) {
+    if (now - begun > (in_a_hurry() ? kLinger : limits_.body)) return;
+    if (!poll_for(socket_, POLLIN, kSlice)) continue;
     if (::recv(socket_, buffer_.data(), buffer_.size(), 0) <= 0) return;
+    heard = Clock::now();
   }
 }
 

@@ -42,8 +42,10 @@ class Connection : public httplib::Stream {
   void begin_body();
   Failure failure() const { return failure_; }
 
-  /// Lets the peer read what was written although bytes of it were not read.
-  void linger();
+  /// Lets the peer read what was written although bytes of it were not read: were it closed at once, those that it
+  /// still sends would break the connection first. Listens as long as a body may take, but not to silence, and only
+  /// shortly while it is `in_a_hurry`.
+  void linger(const std::function<bool()>& in_a_hurry);
 
   bool is_readable() const override;
   bool is_writable() const override;

@@ -166,7 +166,9 @@ bool Server::Impl::process_and_close_socket(socket_t socket) {
     const bool written =
         process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
     t_exchange = nullptr;
-    if (exchange.must_close || !exchange.head_read) connection.linger();
+    if (exchange.must_close || !exchange.head_read) {
+      connection.linger([this] { return stopping_ || pool_->waiting() > 0; });
+    }
     if (!written || last || closed_by_client || exchange.asked_to_close || exchange.must_close || !exchange.head_read) {
       break;
     }

@@ -57,6 +57,31 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
 }
 
+TEST_F(HttpServerTimes, ListensToARefusedBodySoThatItsSlowSenderLearnsWhy) {
+  const auto server = started();
+  const auto slowly = [](std::size_t, std::size_t, httplib::DataSink& sink) {
+    std::this_thread::sleep_for(100ms);
+    return sink.write("x", 1);
+  };
+  const auto answer = client().Post("/nowhere", 12, slowly, "text/plain");
+  ASSERT_TRUE(answer) << "the connection was broken while the body was sent";
+  EXPECT_EQ(answer->body, "route-not-found");
+}
+
+TEST_F(HttpServerTimes, ListensToARefusedBodyOnlyWhileNobodyElseWaits) {
+  settings_.threads = 1;
+  settings_.body_time = 10min;
+  const auto server = started();
+  testing::RawConnection refused(port_);
+  refused.send("POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\n");
+  const std::jthread sender([&](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(20ms)) refused.send("x");
+  });
+  httplib::Client other = client();
+  other.set_read_timeout(60s);
+  ASSERT_TRUE(other.Get("/echo?text=alive")) << "the only thread was kept by a body that nobody wants";
+}
+
 TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
   settings_.threads = 1;
   settings_.crowded_time = 1ms;

@@ -55,13 +55,17 @@ MapRegistry::~MapRegistry() { stop(); }
 
 void MapRegistry::watch(std::chrono::milliseconds interval) {
   watcher_ = std::jthread([this, interval](std::stop_token stop) {
+    std::string problem;
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
       lock.unlock();
+      const std::string before = std::exchange(problem, {});
       try {
         refresh();
+        if (!before.empty()) spdlog::info("the maps folder {} can be read again", folder_.string());
       } catch (const std::exception& error) {
-        spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), error.what());
+        problem = error.what();
+        if (problem != before) spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), problem);
       }
       lock.lock();
       if (stop.stop_requested()) return;

@@ -1,10 +1,15 @@
 #include "server/maps/map_registry.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <memory>
 #include <optional>
+#include <thread>
 
 #include "core/units/error.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -130,6 +135,31 @@ TEST(MapRegistry, WatchesByItself) {
   make_map(folder / "city.gpkg", 1);
   for (int i = 0; i < 2000 && registry.maps().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(registry.maps().size(), 1U);
+}
+
+TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
+  using std::chrono::milliseconds;
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "maps");
+  const auto lines = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
+  const auto usual = spdlog::default_logger();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", lines));
+  const auto said = [&](const std::string& what) {
+    return std::ranges::count_if(lines->last_formatted(),
+                                 [&](const std::string& line) { return line.find(what) != std::string::npos; });
+  };
+  {
+    MapRegistry registry(folder / "maps", kCache);
+    registry.watch(milliseconds(2));
+    fs::rename(folder / "maps", folder / "away");
+    for (int i = 0; i < 2000 && said("cannot be read") == 0; ++i) std::this_thread::sleep_for(milliseconds(5));
+    std::this_thread::sleep_for(milliseconds(50));
+    fs::rename(folder / "away", folder / "maps");
+    for (int i = 0; i < 2000 && said("can be read again") == 0; ++i) std::this_thread::sleep_for(milliseconds(5));
+  }
+  spdlog::set_default_logger(usual);
+  EXPECT_EQ(said("cannot be read"), 1) << "a folder that stays away for a night is no night of messages";
+  EXPECT_EQ(said("can be read again"), 1);
 }
 
 TEST(MapRegistry, RefusesAFolderThatIsNotThere) { EXPECT_THROW(MapRegistry("/no/such/folder", kCache), NotFound); }

@@ -26,6 +26,12 @@ TEST(Problem, GivesEachClassOfErrorsItsStatus) {
   EXPECT_EQ(status_of(InvalidInput("unsupported-media-type", "m")), 415);
 }
 
+TEST(Problem, IsThatOfTheServiceWhereWhatItKeptOfATrackIsDamaged) {
+  for (const char* code : {"track-store-corrupt", "filter-state-corrupt", "track-frames-corrupt"}) {
+    EXPECT_EQ(status_of(CorruptData(code, "m")), 503) << code;
+  }
+}
+
 TEST(Problem, CarriesCodeDetailFieldAndByte) {
   const auto response = of(http::InvalidField("bad-json", "body", "it breaks off", 17));
   EXPECT_EQ(response.content_type, "application/problem+json");

@@ -35,12 +35,11 @@ BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline)
   BlockScanResult result;
   std::vector<Row> rows = rows_of(tile);
   for (const Sector& sector : headings_.sectors()) {
-    if (deadline.over()) return {{}, 0, 0, false};
+    if (deadline.over()) return {{}, 0, false};
     cover(sector, tile, rows);
     for (std::size_t h = sector.first; h < sector.last; ++h) {
       for (std::size_t r = 0; r < rows.size(); ++r) {
         if (rows[r].excluded) continue;
-        result.blocks += BoundMap::kRun;
         scan_row(h, tile.col, tile.row + static_cast<int>(r), rows[r], result.nodes);
       }
     }

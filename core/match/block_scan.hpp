@@ -31,7 +31,6 @@ struct BlockTile {
 
 struct BlockScanResult {
   std::vector<BoundNode> nodes;
-  std::int64_t blocks = 0;    ///< blocks x headings of which all terms were summed
   std::int64_t eligible = 0;  ///< blocks x headings with a position that counts
   bool complete = true;       ///< false if time was over before
 };

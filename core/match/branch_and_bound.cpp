@@ -36,7 +36,6 @@ class BranchAndBound {
     constexpr double kHighestScore = 1.0;
     result_.bound = std::max(best_.load(), result_.complete ? 0.0 : scanned ? highest_left_ : kHighestScore);
     if (!result_.complete) result_.excluded_share = excluded_share();
-    result_.visited = visited_;
     std::ranges::sort(result_.poses, std::ranges::greater{}, &LatticePose::score);
     return std::move(result_);
   }
@@ -70,7 +69,6 @@ class BranchAndBound {
   void add(const BlockScanResult& found) {
     const std::lock_guard lock(mutex_);
     nodes_.insert(nodes_.end(), found.nodes.begin(), found.nodes.end());
-    result_.blocks += found.blocks;
     bounded_ += found.eligible;
   }
 
@@ -95,7 +93,6 @@ class BranchAndBound {
   /// Adds the best pose of each node that has one better than what is known; false if time was over before all were
   /// looked into.
   bool look_into(const std::vector<BoundNode>& nodes) {
-    visited_ += static_cast<std::int64_t>(nodes.size());
     std::map<std::int32_t, std::vector<BoundNode>> of_heading;
     for (const BoundNode& node : nodes) of_heading[node.heading].push_back(node);
     const std::vector<std::pair<std::int32_t, std::vector<BoundNode>>> tasks(of_heading.begin(), of_heading.end());
@@ -121,7 +118,6 @@ class BranchAndBound {
   std::atomic<double> best_;
   BlockScan block_scan_;
   BlockVisit block_visit_;
-  std::atomic<std::int64_t> visited_{0};
   std::mutex mutex_;
   std::vector<BoundNode> nodes_;
   std::int64_t bounded_ = 0;  ///< blocks x headings

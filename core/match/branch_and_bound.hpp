@@ -33,9 +33,7 @@ struct BoundedResult {
   /// No pose of the region scores more than this: the best score known or found if `complete`.
   double bound = 0.0;
   bool complete = true;         ///< false if time was over before
-  double excluded_share = 1.0;  ///< of all poses; 1 if `complete`
-  std::int64_t blocks = 0;      ///< blocks x headings bounded
-  std::int64_t visited = 0;     ///< of those looked into
+  double excluded_share = 1.0;  ///< of all poses, at least; 1 if `complete`
 };
 
 /// At the deadline it stops and says what it has; throws Interrupted if asked to stop.

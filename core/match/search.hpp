@@ -56,7 +56,7 @@ struct SearchProof {
   double best_score = 0.0;      ///< of the best pose found, on this lattice
   double bound = 1.0;           ///< no pose on this lattice scores more; equal to best_score if `complete`
   bool complete = false;        ///< the best pose is proven to be the best; else time was over before
-  double excluded_share = 0.0;  ///< of the poses that cannot be better than the best; 1 if `complete`
+  double excluded_share = 0.0;  ///< of the poses that cannot be better than the best, at least; 1 if `complete`
 };
 
 /// A place that fits, apart from the others by a tenth of the footprint or several heading bins.

@@ -138,7 +138,7 @@ TEST(ServiceLife, SendsTilesAnewWhenTheOverviewsOfAMapAreFused) {
   MapWriter writer(folder / "city.gpkg", testing::settings_37n());
   const testing::TestSource source{"a", 1, testing::some_blocks(8)};
   for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
-    writer.put_block("a", block, testing::random_cells(source.seed, block));
+    testing::put_block(writer, "a", block, testing::random_cells(source.seed, block));
   }
   std::stop_source stop;
   const auto stop_after_the_finest = [&](std::int64_t done, std::int64_t) {

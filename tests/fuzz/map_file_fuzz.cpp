@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "tests/support/put_block.hpp"
 #include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_verifier.hpp"
 #include "tiles/store/map_writer.hpp"
@@ -40,7 +41,7 @@ std::string small_map() {
                               .method = {},
                               .registration_sigma_m = 1.0};
     writer.begin_source(source, {&block, 1}, false);
-    writer.put_block("a", block, CellArray(kTileCells, kTileCells, kRoad));
+    testing::put_block(writer, "a", block, CellArray(kTileCells, kTileCells, kRoad));
     writer.finish_source("a");
   }
   std::stringstream bytes;

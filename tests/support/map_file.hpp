@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/grid/road_grid.hpp"
+#include "tests/support/put_block.hpp"
 #include "tiles/store/map_writer.hpp"
 
 namespace roadfix::testing {
@@ -25,7 +26,7 @@ inline void write_map_file(const std::filesystem::path& path, const RoadGrid& gr
     RoadGrid tile = RoadGrid::unobserved(geometry);
     paste(grid.cells, tile.cells, grid.geometry.origin.col - geometry.origin.col,
           grid.geometry.origin.row - geometry.origin.row);
-    writer.put_block(record.name, block, tile.cells);
+    put_block(writer, record.name, block, tile.cells);
   }
   writer.finish_source(record.name);
 }

@@ -202,12 +202,6 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
   return open;
 }
 
-void MapWriter::put_block(const std::string& source, TileIndex block, const CellArray& cells) {
-  Transaction transaction(state_->map, Transaction::Kind::kWrite);
-  state_->put(source, block, cells);
-  transaction.commit();
-}
-
 void MapWriter::put_blocks(const std::string& source, std::span<const FinishedBlock> blocks) {
   Transaction transaction(state_->map, Transaction::Kind::kWrite);
   for (const FinishedBlock& block : blocks) state_->put(source, block.index, block.cells);

@@ -41,10 +41,8 @@ class MapWriter {
   /// replaced evidence stays in force until finish_source. Returns the blocks still to do, in the order given.
   std::vector<TileIndex> begin_source(const SourceRecord& record, std::span<const TileIndex> blocks, bool replace);
 
-  /// Records a finished block (256 x 256 cells; all unobserved is fine) in one transaction. Call from one thread at a
-  /// time.
-  void put_block(const std::string& source, TileIndex block, const CellArray& cells);
-  /// The same for several in one transaction: each waits for the disk.
+  /// Records finished blocks in one transaction: each of these waits for the disk. Call from one thread at a time.
+  /// Throws InvalidInput ("block-not-expected") where the source has not begun with one of them; none is recorded then.
   void put_blocks(const std::string& source, std::span<const FinishedBlock> blocks);
 
   /// All blocks are there: puts the source in force, fuses the tiles it (or what it replaced) touches and their

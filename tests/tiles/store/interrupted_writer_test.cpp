@@ -17,6 +17,7 @@ namespace {
 
 using testing::code_of;
 using testing::ingest;
+using testing::put_block;
 using testing::random_cells;
 using testing::settings_37n;
 using testing::some_blocks;
@@ -39,7 +40,7 @@ TEST(InterruptedWriter, ASourceGoesOnWhereAWriterWasThrownAway) {
     if (open.empty()) {
       writer.finish_source("a");
     } else {
-      writer.put_block("a", open.front(), random_cells(1, open.front()));
+      put_block(writer, "a", open.front(), random_cells(1, open.front()));
       if (open.size() > 1) {
         EXPECT_EQ(code_of([&] { writer.finish_source("a"); }), "source-incomplete");
       }
@@ -56,7 +57,7 @@ TEST(InterruptedWriter, FusingCanBeStoppedAndRepeated) {
   for (const TileIndex block : writer.begin_source(source.record(), source.blocks, false)) {
     CellArray cells(kTileCells, kTileCells);
     cells.at(3, 4) = kRoad;
-    writer.put_block("a", block, cells);
+    put_block(writer, "a", block, cells);
   }
   std::stop_source stop;
   const auto stop_midway = [&](std::int64_t done, std::int64_t) {
@@ -98,7 +99,7 @@ TEST(InterruptedWriter, OnlyANewMapWithoutAFinishedBlockIsRemoved) {
   {
     MapWriter begun(folder / "begun.gpkg", settings_37n());
     begun.begin_source(source.record(), source.blocks, false);
-    begun.put_block("a", source.blocks.front(), CellArray(256, 256));
+    put_block(begun, "a", source.blocks.front(), CellArray(256, 256));
     begun.remove_if_new_and_empty();
   }
   EXPECT_EQ(MapReader(folder / "begun.gpkg").info().sources.front().blocks_done, 1);

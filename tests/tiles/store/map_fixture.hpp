@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "tests/support/put_block.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/store/map_reader.hpp"
@@ -61,7 +62,7 @@ struct TestSource {
 
 inline void ingest(MapWriter& writer, const TestSource& source, bool replace = false) {
   for (const TileIndex block : writer.begin_source(source.record(), source.blocks, replace)) {
-    writer.put_block(source.name, block, random_cells(source.seed, block));
+    put_block(writer, source.name, block, random_cells(source.seed, block));
   }
   writer.finish_source(source.name);
 }

@@ -10,6 +10,7 @@
 namespace roadfix {
 namespace {
 
+using testing::put_block;
 using testing::random_cells;
 using testing::TemporaryFolder;
 using testing::TestSource;
@@ -28,7 +29,7 @@ TEST_P(MapInGdal, IsARasterOfProbabilitiesInPlaceWithNoData) {
   {
     MapWriter writer(path, settings);
     writer.begin_source(TestSource{"a", 1, {}}.record(), std::vector{block}, false);
-    writer.put_block("a", block, cells);
+    put_block(writer, "a", block, cells);
     writer.finish_source("a");
   }
   GDALAllRegister();

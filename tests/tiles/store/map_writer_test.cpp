@@ -15,6 +15,7 @@ namespace {
 
 using testing::code_of;
 using testing::ingest;
+using testing::put_block;
 using testing::random_cells;
 using testing::settings_37n;
 using testing::some_blocks;
@@ -111,7 +112,7 @@ TEST(MapWriter, TheExtentIsThatOfTheObservedCells) {
   MapWriter writer(folder / "m.gpkg", settings_37n());
   EXPECT_TRUE(MapReader(folder / "m.gpkg").info().extent.empty());
   writer.begin_source(TestSource{"a", 1, {}}.record(), std::vector{block}, false);
-  writer.put_block("a", block, cells);
+  put_block(writer, "a", block, cells);
   writer.finish_source("a");
   const GridBox box = MapReader(folder / "m.gpkg").info().extent;
   const GridGeometry tile = tile_geometry(block, 2.0);
@@ -167,7 +168,7 @@ TEST(MapWriter, AReplacedSourceStaysInForceUntilTheNewOneIsComplete) {
   const auto before = tile_bytes(path);
   EXPECT_EQ(code_of([&] { writer.begin_source(new_source.record(), new_source.blocks, false); }), "source-exists");
   for (const TileIndex block : writer.begin_source(new_source.record(), new_source.blocks, true)) {
-    writer.put_block("a", block, random_cells(2, block));
+    put_block(writer, "a", block, random_cells(2, block));
     EXPECT_EQ(tile_bytes(path), before);
   }
   const MapInfo during = MapReader(path).info();
@@ -241,7 +242,7 @@ TEST(MapWriter, RefusesWhatDoesNotFit) {
   EXPECT_EQ(code_of([&] { MapWriter(folder / "no/such/folder/m.gpkg", settings_37n()); }), "map-not-writable");
   MapWriter writer(path, settings_37n(2.0));
   EXPECT_EQ(MapWriter::settings_of(path), settings_37n(2.0));
-  EXPECT_EQ(code_of([&] { writer.put_block("a", {847, -8165}, CellArray(256, 256)); }), "block-not-expected");
+  EXPECT_EQ(code_of([&] { put_block(writer, "a", {847, -8165}, CellArray(256, 256)); }), "block-not-expected");
   const std::vector<TileIndex> outside{{5000, -8165}};
   EXPECT_EQ(code_of([&] {
               writer.begin_source(TestSource{"a", 1, {}}.record(), outside, false);

@@ -1,5 +1,5 @@
 -- State of the tracks being served. One step is one transaction: what was answered is in here.
--- Times are microseconds since 1970 by the server's clock, except steps.time_us, which is the vehicle's.
+-- Times are microseconds since 1970 by the server's clock; those of the vehicle stand in the answers and counters.
 
 CREATE TABLE IF NOT EXISTS tracks (
   id          TEXT PRIMARY KEY NOT NULL,

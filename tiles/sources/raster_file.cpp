@@ -4,13 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <opencv2/imgproc.hpp>
-#include <type_traits>
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/nodata.hpp"
 
 namespace roadfix {
 namespace {
@@ -54,48 +52,6 @@ double full_opacity(GDALRasterBand& alpha) {
       return 32767.0;
     default:
       return 1.0;
-  }
-}
-
-std::optional<double> nodata_of(GDALRasterBand& band) {
-  int has = FALSE;
-  const double value = band.GetNoDataValue(&has);
-  return has == TRUE ? std::optional(value) : std::nullopt;
-}
-
-/// Overviews made before a value was marked as nodata, or kept beside a file whose mask lies within, hide less.
-bool hides_as_much(GDALRasterBand& overview, GDALRasterBand& band) {
-  const auto masked = [](GDALRasterBand& of) { return (of.GetMaskFlags() & GMF_PER_DATASET) != 0; };
-  const std::optional<double> wanted = nodata_of(band);
-  const std::optional<double> own = nodata_of(overview);
-  const bool same = wanted == own || (wanted && own && std::isnan(*wanted) && std::isnan(*own));
-  return same && (masked(overview) || !masked(band));
-}
-
-/// A pixel holds nothing where every band that declares a nodata value has it, or where any value is no number.
-template <typename Value>
-void clear_nodata(const cv::Mat& values, const std::vector<std::optional<double>>& nodata, cv::Mat& valid) {
-  const bool declared = std::ranges::any_of(nodata, [](const auto& value) { return value.has_value(); });
-  if (!declared && std::is_integral_v<Value>) return;
-  std::vector<std::pair<int, Value>> empty;
-  bool reachable = declared;  // -9999 declared for a byte band marks nothing
-  for (std::size_t i = 0; i < nodata.size(); ++i) {
-    if (!nodata[i] || std::isnan(*nodata[i])) continue;
-    const double value = *nodata[i];
-    if (std::is_integral_v<Value> && (value < 0.0 || value > 255.0 || value != std::floor(value))) reachable = false;
-    if (reachable) empty.emplace_back(static_cast<int>(i), static_cast<Value>(value));
-  }
-  for (int row = 0; row < values.rows; ++row) {
-    for (int col = 0; col < values.cols; ++col) {
-      const Value* pixel = values.ptr<Value>(row, col);
-      const bool gone = reachable && !empty.empty() &&
-                        std::ranges::all_of(empty, [pixel](const auto& e) { return pixel[e.first] == e.second; });
-      bool number = true;
-      if constexpr (!std::is_integral_v<Value>) {
-        for (int c = 0; c < values.channels(); ++c) number = number && std::isfinite(pixel[c]);
-      }
-      if (gone || !number) valid.at<std::uint8_t>(row, col) = 0;
-    }
   }
 }
 
@@ -256,11 +212,7 @@ cv::Mat RasterFile::read_opacity(cv::Rect window) {
 cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
   if (alpha_band_ > 0 || has_mask_) valid = read_opacity(window) >= 0.5;
-  if (values.depth() == CV_8U) {
-    clear_nodata<std::uint8_t>(values, nodata_, valid);
-  } else {
-    clear_nodata<float>(values, nodata_, valid);
-  }
+  clear_nodata(values, nodata_, valid);
   return valid;
 }
 

@@ -73,7 +73,7 @@ class IngestCommand : public ::testing::Test {
 };
 
 TEST_F(IngestCommand, KilledAtManyPointsItEndsWithTheSameTiles) {
-  const std::vector<std::string> source{picture(3000, 1.0), "--detector", "tree", "--seed", "3",
+  const std::vector<std::string> source{picture(2000, 1.0), "--detector", "tree", "--seed", "3",
                                         "--jobs",           "2",          "--map"};
   const auto with_map = [&](const std::string& path) {
     std::vector<std::string> arguments = source;
@@ -85,7 +85,7 @@ TEST_F(IngestCommand, KilledAtManyPointsItEndsWithTheSameTiles) {
   ASSERT_EQ(whole.code, 0) << whole.err;
   const auto duration = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
   const auto expected = tiles(map("whole.gpkg"));
-  ASSERT_GT(expected.size(), 36U);
+  ASSERT_GT(expected.size(), 25U);
 
   std::mt19937_64 random(11);
   int kills = 0;
@@ -107,8 +107,9 @@ TEST_F(IngestCommand, KilledAtManyPointsItEndsWithTheSameTiles) {
 }
 
 TEST_F(IngestCommand, CtrlCStopsCleanlyAndSaysHowToGoOn) {
-  const std::string image = picture(4000, 1.0);
-  const std::vector<std::string> arguments{image, "--detector", "tree", "--map", map("a.gpkg")};
+  // Some seconds of work, on any machine.
+  const std::vector<std::string> arguments{picture(1600, 1.0), "--detector", "tree", "--jobs", "1", "--map",
+                                           map("a.gpkg")};
   const ChildResult stopped = ingest(arguments, 1500ms, SIGINT);
   EXPECT_FALSE(stopped.killed);
   if (stopped.code == 0) GTEST_SKIP() << "it was done before the signal came";

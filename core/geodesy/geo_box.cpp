@@ -15,23 +15,17 @@ struct NearBox {
 };
 
 NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
-  constexpr double kMarginDeg = 0.1;  // more than the sides of the place curve between its corners
+  constexpr double kMarginDeg = 0.1;
   const double meridian = central_meridian_deg(zone);
-  NearBox bounds{90.0, -90.0, 360.0, -360.0};
-  for (const double east_m : {place.min.east_m, place.max.east_m}) {
-    for (const double north_m : {place.min.north_m, place.max.north_m}) {
-      const LatLon at = zone.unproject({east_m, north_m});
-      const double lon = std::remainder(at.lon_deg - meridian, 360.0);
-      bounds = {std::min(bounds.south, at.lat_deg), std::max(bounds.north, at.lat_deg), std::min(bounds.west, lon),
-                std::max(bounds.east, lon)};
-    }
-  }
+  const GeoBox around = geo_box_around(zone, place);
+  const double first = std::remainder(around.south_west.lon_deg - meridian, 360.0);
+  const double last = first + around.north_east.lon_deg - around.south_west.lon_deg;
   double west = std::remainder(box.south_west.lon_deg - meridian, 360.0);
-  if (west > bounds.east + kMarginDeg) west -= 360.0;  // it may reach the place around the Earth
+  if (west > last + kMarginDeg) west -= 360.0;  // it may reach the place around the Earth
   const double east = west + box.north_east.lon_deg - box.south_west.lon_deg;
-  return {std::max(box.south_west.lat_deg, bounds.south - kMarginDeg),
-          std::min(box.north_east.lat_deg, bounds.north + kMarginDeg), std::max(west, bounds.west - kMarginDeg),
-          std::min(east, bounds.east + kMarginDeg)};
+  return {std::max(box.south_west.lat_deg, around.south_west.lat_deg - kMarginDeg),
+          std::min(box.north_east.lat_deg, around.north_east.lat_deg + kMarginDeg), std::max(west, first - kMarginDeg),
+          std::min(east, last + kMarginDeg)};
 }
 
 }  // namespace

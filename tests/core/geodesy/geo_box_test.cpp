@@ -46,6 +46,14 @@ TEST(GridBoxAround, HoldsAllOfAWideBoxThoughItsSidesAreCurves) {
   expect_same(grid_box_around(zone_of(32737), both_hemispheres, equator), walked(zone_of(32737), both_hemispheres));
 }
 
+TEST(GridBoxAround, HoldsABoxAtTheMiddleOfALongSideOfThePlace) {
+  const UtmZone zone = zone_of(32637);
+  const GridBox place{{1'000.0, 5'000'000.0}, {999'000.0, 5'100'000.0}};
+  const LatLon middle = zone.unproject({500'000.0, 5'099'000.0});
+  const GeoBox box{{middle.lat_deg - 0.004, middle.lon_deg - 0.01}, {middle.lat_deg + 0.004, middle.lon_deg + 0.01}};
+  expect_same(grid_box_around(zone, box, place), walked(zone, box));
+}
+
 TEST(GridBoxAround, IsEmptyWhereTheBoxIsFarFromThePlaceOrThereIsNone) {
   const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
   EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 100.0}, {42.0, 120.0}}, city).empty());

@@ -28,8 +28,10 @@ class LruCache {
   void insert(const Key& key, Value value, std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     if (places_.contains(key)) return;
-    entries_.push_front({key, std::move(value), bytes});
-    places_.emplace(key, entries_.begin());
+    std::list<Entry> fresh;  // until nothing can fail any more
+    fresh.push_front({key, std::move(value), bytes});
+    places_.emplace(key, fresh.begin());
+    entries_.splice(entries_.begin(), fresh);
     bytes_ += bytes;
     while (bytes_ > max_bytes_) {
       bytes_ -= entries_.back().bytes;

@@ -49,10 +49,15 @@ void refuse_other_content(const Connection& map, SourceTable& sources, const Sou
   const auto unfinished = sources.find(record.name, false);
   const auto same = [&](const auto& entry) { return entry && entry->fingerprint == record.fingerprint; };
   if ((!in_force && !unfinished) || same(in_force) || same(unfinished)) return;
-  throw InvalidInput("source-exists",
-                     fmt::format("{}: a source named '{}' with other content or settings is in the map already. "
-                                 "Replace it with --replace, or give this one another name",
-                                 map.path().string(), record.name));
+  // An update of roadfix brings another detector: the same command is refused then, and should say why.
+  const std::string& made_by = (unfinished ? unfinished : in_force)->method;
+  const bool detected_otherwise = record.kind == "imagery" && made_by != record.method;
+  throw InvalidInput(
+      "source-exists",
+      fmt::format("{}: a source named '{}' with other content or settings is in the map already{}. "
+                  "Replace it with --replace, or give this one another name",
+                  map.path().string(), record.name,
+                  detected_otherwise ? fmt::format(" (made by {}; now it is {})", made_by, record.method) : ""));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 
 using testing::code_of;
 using testing::ingest;
+using testing::message_of;
 using testing::put_block;
 using testing::random_cells;
 using testing::settings_37n;
@@ -156,6 +157,20 @@ TEST(MapWriter, TheFusedMapDependsOnNoOrderOfIngestion) {
   const TileIndex shared = some_blocks(1, 1).front();
   EXPECT_EQ(MapReader(folder / "0.gpkg").tile(0, shared),
             fused(std::vector{random_cells(1, shared), random_cells(2, shared), random_cells(3, shared)}));
+}
+
+TEST(MapWriter, SaysThatTheSameSourceWasMadeByAnotherDetector) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  const TestSource source{"a", 1, some_blocks(2)};
+  ingest(writer, source);
+  SourceRecord updated = source.record();
+  updated.fingerprint = "of today's detector";
+  updated.method = "neural 2";
+  const auto message = [&] { return message_of([&] { writer.begin_source(updated, source.blocks, false); }); };
+  EXPECT_THAT(message(), ::testing::HasSubstr("(made by tree; now it is neural 2)"));
+  updated.method = source.record().method;
+  EXPECT_THAT(message(), ::testing::Not(::testing::HasSubstr("made by")));
 }
 
 TEST(MapWriter, AReplacedSourceStaysInForceUntilTheNewOneIsComplete) {

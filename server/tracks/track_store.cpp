@@ -1,8 +1,11 @@
 #include "server/tracks/track_store.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <exception>
 #include <mutex>
 #include <string_view>
@@ -19,6 +22,19 @@ constexpr int kEndedKept = 100;
 constexpr int kVersion = 3;  // of what the blobs hold, too: particles have had a scale since 3
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
+IoFailure not_writable(const std::filesystem::path& path) {
+  return {"track-store-read-only",
+          fmt::format("{}: the tracks cannot be written to: start the service with --tracks FILE where it may write",
+                      path.string())};
+}
+
+/// SQLite would only say that the file is not there.
+void require_writable_folder(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0) return;
+  if (errno == EACCES || errno == EROFS) throw not_writable(path);
+}
+
 /// What a refusal of SQLite means for this store.
 std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail) {
   using sqlite::Failure;
@@ -30,10 +46,7 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
           "track-store-full",
           fmt::format("{}: no space left for the tracks: nothing was changed; send the request again later", file)));
     case Failure::kNotWritable:
-      return make_exception_ptr(IoFailure(
-          "track-store-read-only",
-          fmt::format("{}: the tracks cannot be written to: start the service with --tracks FILE where it may write",
-                      file)));
+      return make_exception_ptr(not_writable(path));
     case Failure::kDamaged:
     case Failure::kNotADatabase:
     case Failure::kOtherTables:
@@ -82,6 +95,7 @@ class TrackStore::Impl {
  public:
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
     const std::int64_t version = with([&] {
+      require_writable_folder(path_);
       connection_.emplace(path_, sqlite::Access::kCreate, store_error);
       // Who holds the file holds it as long as it runs, and others ask in the meantime.
       connection_->execute("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE");

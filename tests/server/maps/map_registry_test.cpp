@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -12,12 +11,14 @@
 #include <thread>
 
 #include "core/units/error.hpp"
+#include "tests/support/as_another_user.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix::server {
 namespace {
 
 namespace fs = std::filesystem;
+using roadfix::testing::AsAnotherUser;
 using roadfix::testing::TemporaryFolder;
 
 constexpr std::size_t kCache = std::size_t{1} << 20;
@@ -96,19 +97,6 @@ TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   EXPECT_EQ(registry.find("broken")->name, "broken") << "a repaired map is served";
 }
 
-/// The rights of root, who may read everything, are laid down for as long as this lives.
-class AsAnotherUser {
- public:
-  AsAnotherUser() { is_root_ = geteuid() == 0 && seteuid(65534) == 0; }
-  ~AsAnotherUser() { EXPECT_TRUE(!is_root_ || seteuid(0) == 0); }
-  AsAnotherUser(const AsAnotherUser&) = delete;
-  AsAnotherUser& operator=(const AsAnotherUser&) = delete;
-  bool reads_everything() const { return geteuid() == 0; }  // where there is no other user
-
- private:
-  bool is_root_ = false;
-};
-
 TEST(MapRegistry, ServesAMapOnceItMayReadIt) {
   const TemporaryFolder folder;
   make_map(folder / "city.gpkg", 1);
@@ -117,7 +105,7 @@ TEST(MapRegistry, ServesAMapOnceItMayReadIt) {
   std::optional<MapRegistry> registry;
   {
     const AsAnotherUser reader;
-    if (reader.reads_everything()) GTEST_SKIP();
+    if (reader.may_do_everything()) GTEST_SKIP();
     registry.emplace(folder.path(), kCache);
   }
   ASSERT_EQ(registry->unreadable().size(), 1U);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/as_another_user.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/sqlite_file.hpp"
@@ -134,6 +135,15 @@ TEST(TrackStore, SaysThatItMayNotBeWrittenTo) {
     file.put(3);
   }
   EXPECT_EQ(code_of([&] { const TrackStore store(folder / "tracks.sqlite", kPlenty); }), "track-store-read-only");
+}
+
+TEST(TrackStore, SaysThatItsFolderMayNotBeWrittenTo) {
+  const testing::TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms{0555});
+  const testing::AsAnotherUser service;
+  if (service.may_do_everything()) GTEST_SKIP();
+  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "tracks.sqlite", kPlenty); }), "track-store-read-only")
+      << "no such file, says SQLite";
 }
 
 std::string bytes_of(const std::filesystem::path& path) {

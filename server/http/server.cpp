@@ -52,6 +52,7 @@ class Server::Impl : public httplib::Server {
   void stop_and_join();
 
  private:
+  std::unique_ptr<WorkerPool> new_pool() const;
   void accept_connections();
   bool process_and_close_socket(socket_t socket) override;
   bool wait_for_request(Connection& connection, bool first) const;
@@ -104,7 +105,20 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
   set_logger([this](const auto& head, const auto& out) { finished(head, out); });
 }
 
+std::unique_ptr<WorkerPool> Server::Impl::new_pool() const {
+  try {
+    return std::make_unique<WorkerPool>(static_cast<std::size_t>(settings_.threads),
+                                        static_cast<std::size_t>(settings_.max_waiting_connections));
+  } catch (const std::system_error& error) {
+    throw IoFailure("threads-not-available",
+                    fmt::format("cannot run {} threads for connections ({}): give fewer with serve --threads, or allow "
+                                "the process more (ulimit -u, TasksMax of systemd)",
+                                settings_.threads, error.code().message()));
+  }
+}
+
 int Server::Impl::start() {
+  pool_ = new_pool();
   const int port = settings_.port == 0 ? bind_to_any_port(settings_.host)
                                        : (bind_to_port(settings_.host, settings_.port) ? settings_.port : -1);
   if (port < 0) {
@@ -113,8 +127,6 @@ int Server::Impl::start() {
                                 settings_.host, settings_.port));
   }
   ::listen(svr_sock_, kListenBacklog);
-  pool_ = std::make_unique<WorkerPool>(static_cast<std::size_t>(settings_.threads),
-                                       static_cast<std::size_t>(settings_.max_waiting_connections));
   listener_ = std::jthread([this] { accept_connections(); });
   return port;
 }

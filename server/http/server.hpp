@@ -52,7 +52,7 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Listens from now on; returns the port. Throws IoFailure ("address-not-available").
+  /// Listens from now on; returns the port. Throws IoFailure ("address-not-available", "threads-not-available").
   int start();
   /// Accepts nothing more, answers the requests that have begun, closes.
   void stop();

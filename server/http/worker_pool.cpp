@@ -10,7 +10,12 @@ thread_local bool t_overflow = false;
 }  // namespace
 
 WorkerPool::WorkerPool(std::size_t threads, std::size_t max_waiting) : max_waiting_(max_waiting) {
-  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  try {
+    for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+  } catch (...) {
+    shutdown();  // those that run wait for work, and would be waited for
+    throw;
+  }
 }
 
 WorkerPool::~WorkerPool() { shutdown(); }

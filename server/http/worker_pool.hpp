@@ -13,6 +13,7 @@ namespace roadfix::http {
 
 class WorkerPool {
  public:
+  /// Throws std::system_error where the system gives fewer threads.
   WorkerPool(std::size_t threads, std::size_t max_waiting);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;

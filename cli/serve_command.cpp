@@ -16,6 +16,7 @@
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/open_files.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "server/application.hpp"
@@ -138,6 +139,7 @@ void add_resources(CLI::App& command, ServeOptions& o) {
 
 void run_serve(const ServeOptions& options) {
   const std::stop_token stop = stop_on_signals();
+  allow_all_open_files();
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("roadfix", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ [%l] %v", spdlog::pattern_time_type::utc);  // as the access log's times

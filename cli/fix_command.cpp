@@ -84,10 +84,10 @@ void print_text(const Fix& fix) {
 
 void run_fix(const FixArguments& options) {
   const MapView view = view_of_file(options.map);
-  const FeatureInput input = read_feature_input(options.input, view.cell_m);
+  FeatureInput input = read_feature_input(options.input, view.cell_m);
+  if (options.nadir_sigma_m) input.features.nadir_sigma_m = *options.nadir_sigma_m;
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
-  fix_options.nadir_sigma_m = options.nadir_sigma_m.value_or(expected_nadir_sigma_m(options.input.frame));
   fix_options.stop = stop_on_signals();
   fix_options.time_limit = milliseconds(options.time_limit_s);
   fix_options.proof_time = milliseconds(options.proof_s);
@@ -139,7 +139,7 @@ void add_fix_command(CLI::App& app) {
       ->add_option(
           "--nadir-sigma", o->nadir_sigma_m,
           "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
-          "the error of roll and pitch (default: 1 degree at --agl, otherwise 0)")
+          "the error of roll and pitch (default with --agl: 1 degree, 5 without --roll and --pitch; otherwise 0)")
       ->check(not_negative(1000.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")

@@ -66,18 +66,17 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
   write_file(options.geojson_file, json_text({{"type", "FeatureCollection"}, {"features", features}}));
 }
 
-fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const Ground& ground,
-                                    const std::stop_token& stop) {
+fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
   if (options.server.empty()) {
     for (const std::string& filter : options.filters) fly::filter_named(filter, options.particles);
-    return fly::library_localizers(map, options.particles, options.measure_every, vehicle_of(options, ground), stop);
+    return fly::library_localizers(map, options.particles, options.measure_every, vehicle_of(options), stop);
   }
   fly::ServicePlan plan;
   plan.base = options.server;
   plan.map = options.served_map.empty() ? std::filesystem::path(options.map).stem().string() : options.served_map;
   plan.particles = options.particles;
   plan.measure_every = options.measure_every;
-  plan.vehicle = vehicle_of(options, ground);
+  plan.vehicle = vehicle_of(options);
   plan.patience = std::chrono::seconds(options.patience_s);
   plan.keeps_tracks = options.keep_tracks;
   plan.stop = stop;
@@ -89,7 +88,7 @@ fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const G
   fly::Campaign campaign;
   campaign.flights = flights_of(options, map, ground, plan);
   campaign.stop = stop_on_signals();
-  campaign.localizer = localizers_of(options, map, ground, campaign.stop);
+  campaign.localizer = localizers_of(options, map, campaign.stop);
   campaign.filters = options.filters;
   campaign.seed = options.seed;
   campaign.jobs = options.vehicles > 0 ? options.vehicles : options.jobs;

@@ -80,11 +80,6 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
   ground.footprint = ground.recordings.front().frames.front().footprint;
-  for (const fly::Recording& recording : ground.recordings) {
-    for (const fly::RecordedFrame& frame : recording.frames) {
-      ground.nadir_sigma_m = std::max(ground.nadir_sigma_m, frame.nadir_sigma_m);
-    }
-  }
 }
 
 /// Where the whole footprint lies on the map and on what is flown over, whatever the heading.
@@ -218,11 +213,10 @@ fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Gro
                         : simulated_flights(options, map, ground, plan, number);
 }
 
-VehicleNoise vehicle_of(const FlyOptions& options, const Ground& ground) {
+VehicleNoise vehicle_of(const FlyOptions& options) {
   VehicleNoise vehicle;
   vehicle.wind = Wind::of(options.wind_sigma_m_s, options.wind_walk);
   vehicle.scale_range = options.scale_range;
-  vehicle.nadir_sigma_m = ground.nadir_sigma_m;
   if (!options.no_odometry) return vehicle;
   const fly::Handling handling = handling_of(options);
   vehicle.planar =

@@ -23,8 +23,7 @@ struct Ground {
   std::unique_ptr<fly::Sensor> sensor;     ///< null where flights were recorded
   std::vector<fly::Recording> recordings;  ///< empty where flights are simulated
   GridBox box;
-  Footprint footprint;         ///< of a recorded flight that of its first frame
-  double nadir_sigma_m = 0.0;  ///< see VehicleNoise; of recorded camera frames the highest
+  Footprint footprint;  ///< of a recorded flight that of its first frame
   std::string what;
 };
 
@@ -37,6 +36,6 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
 fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Ground& ground,
                         const fly::FlightPlan& plan);
 
-VehicleNoise vehicle_of(const FlyOptions& options, const Ground& ground);
+VehicleNoise vehicle_of(const FlyOptions& options);
 
 }  // namespace roadfix::cli

@@ -41,16 +41,13 @@ FrameCamera camera_of(const FrameOptions& options) {
   if (options.fisheye) camera.lens = LensModel::kFisheye;
   camera.distortion = options.distortion;
   camera.agl_m = options.agl_m;
-  camera.roll = Angle::degrees(options.roll_deg);
-  camera.pitch = Angle::degrees(options.pitch_deg);
+  camera.roll = Angle::degrees(options.roll_deg.value_or(0.0));
+  camera.pitch = Angle::degrees(options.pitch_deg.value_or(0.0));
+  if (options.roll_deg || options.pitch_deg) camera.attitude_sigma = kToldAttitudeSigma;
   return camera;
 }
 
 }  // namespace
-
-double expected_nadir_sigma_m(const FrameOptions& options) {
-  return options.camera() ? nadir_sigma_m(camera_of(options), kAttitudeSigma) : 0.0;
-}
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
   auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")

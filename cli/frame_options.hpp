@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,8 @@ struct FrameOptions {
   bool fisheye = false;
   std::vector<double> distortion;
   double agl_m = 0.0;
-  double roll_deg = 0.0;
-  double pitch_deg = 0.0;
+  std::optional<double> roll_deg;
+  std::optional<double> pitch_deg;
   bool black_unseen = false;
 
   bool given() const { return gsd_m > 0.0 || camera(); }
@@ -31,10 +32,6 @@ struct FrameOptions {
 /// Adds --gsd, the camera's --fov or --focal-px and what goes with them, and --black-unseen; `options` must live as
 /// long as the command. Returns those of which one says that there is a frame.
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
-
-/// How well the nadir of a frame is known, 1 sigma per axis: by kAttitudeSigma if it is described by its camera. 0 if
-/// it is seen straight from above, or no frame.
-double expected_nadir_sigma_m(const FrameOptions& options);
 
 /// The ground that the frame (see decode_image) shows, in pixels that the detector makes use of.
 /// Throws what frame_image and rectify throw. options.given() must hold.

@@ -82,6 +82,7 @@ FrameCamera camera_of(const Row& row) {
   }
   camera.roll = row.optional_angle("roll_deg").value_or(Angle());
   camera.pitch = row.optional_angle("pitch_deg").value_or(Angle());
+  if (row.has("roll_deg") || row.has("pitch_deg")) camera.attitude_sigma = kToldAttitudeSigma;
   if (row.has("principal_px")) {
     const std::vector<double> principal = row.numbers("principal_px");
     if (principal.size() != 2) row.refuse("principal_px must be two numbers with a blank between");

@@ -205,7 +205,6 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Ro
     query.id = frame.file.string();
     if (!set.elsewhere) query.truth = frame.pose;
     query.view = seen_in(frame, set, detector);
-    if (frame.camera) query.nadir_sigma_m = nadir_sigma_m(*frame.camera, kAttitudeSigma);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                                frame.pose.heading, set, map, random);
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;

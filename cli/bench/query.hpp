@@ -27,7 +27,6 @@ struct Query {
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
   std::vector<EarlierFrame> earlier;  ///< to be laid together with `view`
-  double nadir_sigma_m = 0.0;         ///< see FixOptions
 };
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's

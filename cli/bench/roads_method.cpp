@@ -17,9 +17,7 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
     const FeatureMap features = features_of(query);
-    FixOptions options = options_.fix;
-    options.nadir_sigma_m = query.nadir_sigma_m;
-    const Fix fix = locate(map_, features, query.prior, options);
+    const Fix fix = locate(map_, features, query.prior, options_.fix);
     Answer answer;
     answer.status = fix.status;
     answer.reason = fix.reason;

@@ -58,7 +58,6 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
   frame.truth = on_grid(truth.pose, zone);
   frame.time_s = time_s;
   frame.footprint = bench::footprint_of(picture, truth);
-  if (truth.camera) frame.nadir_sigma_m = nadir_sigma_m(*truth.camera, kAttitudeSigma);
   if (options.detector != nullptr) {
     const GroundView view = bench::view_of(picture, truth, *options.detector);
     frame.observation.features = detect_features(*options.detector, view, options.cell_m, options.seed);

@@ -15,9 +15,8 @@ namespace roadfix::fly {
 
 struct RecordedFrame {
   GridPose truth;
-  double time_s = 0.0;         ///< since a step before the first frame
-  Footprint footprint;         ///< of a camera as if it looked straight down
-  double nadir_sigma_m = 0.0;  ///< see FixOptions
+  double time_s = 0.0;  ///< since a step before the first frame
+  Footprint footprint;  ///< of a camera as if it looked straight down
   Observation observation;
 };
 

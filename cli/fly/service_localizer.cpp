@@ -101,8 +101,7 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
                {"odometry_share", plan.vehicle.odometry_share},
                {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
                {"wind_walk", plan.vehicle.wind.walk},
-               {"scale_range", plan.vehicle.scale_range},
-               {"nadir_sigma_m", plan.vehicle.nadir_sigma_m}};
+               {"scale_range", plan.vehicle.scale_range}};
   if (plan.vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
     request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;
@@ -121,14 +120,21 @@ struct Picture {
 
 Picture picture_of(const FeatureMap& features) {
   const auto png = encode_feature_map(features.cells);
-  return {{{"cell_m", features.cell_m}, {"nadir_col", features.nadir.col}, {"nadir_row", features.nadir.row}},
+  return {{{"cell_m", features.cell_m},
+           {"nadir_col", features.nadir.col},
+           {"nadir_row", features.nadir.row},
+           {"nadir_sigma_m", features.nadir_sigma_m}},
           {png.begin(), png.end()}};
 }
 
 std::string with_commas(const std::vector<double>& numbers) { return fmt::format("{}", fmt::join(numbers, ",")); }
 
 json camera_fields(const FrameCamera& camera) {
-  json fields{{"agl_m", camera.agl_m}, {"roll_deg", camera.roll.degrees()}, {"pitch_deg", camera.pitch.degrees()}};
+  json fields{{"agl_m", camera.agl_m}};
+  if (camera.attitude_sigma != kUntoldAttitudeSigma) {
+    fields["roll_deg"] = camera.roll.degrees();
+    fields["pitch_deg"] = camera.pitch.degrees();
+  }
   if (camera.horizontal_fov) fields["fov_deg"] = camera.horizontal_fov->degrees();
   if (camera.focal_px) fields["focal_px"] = *camera.focal_px;
   if (camera.principal_px) fields["principal_px"] = with_commas({camera.principal_px->x, camera.principal_px->y});

@@ -124,6 +124,7 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
   GroundView view;
   view.image = {cv::Mat(size, frame.type()), cv::Mat(size, CV_8UC1), gsd_m};
   view.nadir_px = {-box.x / gsd_m, -box.y / gsd_m};
+  view.nadir_sigma_m = nadir_sigma_m(camera);
   for (int first = 0; first < size.height; first += kStripRows) {
     const cv::Range rows(first, std::min(first + kStripRows, size.height));
     cv::Mat places(rows.size(), size.width, CV_32FC2);
@@ -171,12 +172,13 @@ FeatureMap detect_features(const RoadDetector& detector, const GroundView& view,
   const double cells_per_px = view.image.gsd_m / cell_m;
   return {detector.detect(view.image, cell_m, seed, stop),
           cell_m,
-          {view.nadir_px.x * cells_per_px, view.nadir_px.y * cells_per_px}};
+          {view.nadir_px.x * cells_per_px, view.nadir_px.y * cells_per_px},
+          view.nadir_sigma_m};
 }
 
 GroundView rectified(GroundImage image) {
   const cv::Point2d centre(image.pixels.cols / 2.0, image.pixels.rows / 2.0);
-  return {std::move(image), centre};
+  return {std::move(image), centre, 0.0};
 }
 
 }  // namespace roadfix

@@ -13,6 +13,7 @@ namespace roadfix {
 struct GroundView {
   GroundImage image;
   cv::Point2d nadir_px;  ///< the point below the UAV in continuous pixels ((0, 0) = outer corner), may lie outside
+  double nadir_sigma_m = 0.0;  ///< see FeatureMap
 };
 
 /// The part of the ground the frame shows, at most `max_range_m` from the nadir point (beyond it a tilted view is all

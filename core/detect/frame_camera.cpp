@@ -90,10 +90,10 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
   return camera.agl_m / lens_of(camera, frame).focal_px();
 }
 
-double nadir_sigma_m(const FrameCamera& camera, Angle attitude) {
+double nadir_sigma_m(const FrameCamera& camera) {
   // The ground on the optical axis is agl tan(angle) from the nadir.
   const double steepness = std::max(down(camera), cos(kFlattestView));
-  return camera.agl_m * attitude.radians() / (steepness * steepness);
+  return camera.agl_m * camera.attitude_sigma.radians() / (steepness * steepness);
 }
 
 }  // namespace roadfix

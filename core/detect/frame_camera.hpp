@@ -14,6 +14,11 @@
 
 namespace roadfix {
 
+/// Of roll and pitch as a gimbal or an autopilot tells them.
+inline constexpr Angle kToldAttitudeSigma = Angle::degrees(1.0);
+/// Where nobody tells them, and straight down is assumed: a multirotor without a gimbal leans that far in a breeze.
+inline constexpr Angle kUntoldAttitudeSigma = Angle::degrees(5.0);
+
 /// What is known about the camera when the frame was taken.
 struct FrameCamera {
   /// One of the two: field of view across the columns of a lens without distortion, in (0, 180) degrees, or focal
@@ -28,6 +33,7 @@ struct FrameCamera {
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
   Angle roll;
   Angle pitch;
+  Angle attitude_sigma = kUntoldAttitudeSigma;  ///< how well both are known, 1 sigma each
 };
 
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
@@ -49,11 +55,8 @@ void require_looking_down(const FrameCamera& camera);
 /// Ground sample distance straight below the UAV with the camera level.
 double nominal_gsd_m(const FrameCamera& camera, cv::Size frame);
 
-/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres, where roll and
-/// pitch are known to `attitude`: that many times the height, more in oblique views.
-double nadir_sigma_m(const FrameCamera& camera, Angle attitude);
-
-/// What is expected of a gimbal or an autopilot that says nothing of its own attitude.
-inline constexpr Angle kAttitudeSigma = Angle::degrees(1.0);
+/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres: attitude_sigma
+/// times the height, more in oblique views.
+double nadir_sigma_m(const FrameCamera& camera);
 
 }  // namespace roadfix

@@ -14,10 +14,12 @@ struct FeatureMap {
   double cell_m = 1.0;
   /// The point below the UAV in continuous cell coordinates ((0, 0) = outer corner of the first cell).
   GridGeometry::CellPosition nadir;
+  /// How well that point is known, as far as roll and pitch are: 1 sigma per axis.
+  double nadir_sigma_m = 0.0;
 
   static FeatureMap centred(CellArray cells, double cell_m) {
     const GridGeometry::CellPosition centre{cells.cols() / 2.0, cells.rows() / 2.0};
-    return {std::move(cells), cell_m, centre};
+    return {std::move(cells), cell_m, centre, 0.0};
   }
 
   friend bool operator==(const FeatureMap&, const FeatureMap&) = default;

@@ -71,7 +71,7 @@ bool shows_less_than_a_road_across(const FeatureMap& features) {
 }
 
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
-                      const Calibration& calibration, double nadir_sigma_m) {
+                      const Calibration& calibration) {
   const Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
   FixMode result;
   result.pose = on_earth(mode.pose, map.zone);
@@ -79,7 +79,7 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
   result.weight = weight;
   result.rho = rho_at(map, resampled(cells, cells.cell_m, mode.scale), mode.pose).value_or(0.0);
   for (std::size_t axis : {0U, 1U}) {
-    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], nadir_sigma_m);
+    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], cells.nadir_sigma_m);
   }
   result.ellipse_heading = ellipse.heading;
   result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]));
@@ -149,8 +149,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   }
   fix.probability = decision.probability;
   for (std::size_t i = 0; i < decision.weights.size(); ++i) {
-    fix.modes.push_back(
-        to_geographic(map, cells, found.modes[i], decision.weights[i], calibration, options.nadir_sigma_m));
+    fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
   fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();

@@ -24,9 +24,6 @@ struct FixOptions {
   /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
   /// [0, kMaxScaleRange].
   double scale_range = 0.0;
-  /// 1 sigma per axis of where the nadir of the feature map really is, as far as the attitude was known: part of the
-  /// standard deviations of the position.
-  double nadir_sigma_m = 0.0;
   double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
   std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.

@@ -23,7 +23,7 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
 /// the modes, since particles move on before they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);
 
-/// The ellipse and the radius hold the registration error of the map and that of the nadir (see VehicleNoise).
+/// The ellipse and the radius hold the registration error of the map and that of the nadir.
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m);
 
 }  // namespace roadfix

@@ -51,9 +51,9 @@ struct VehicleNoise {
   /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
   /// that stays much the same from step to step; in [0, kMaxScaleRange].
   double scale_range = 0.0;
-  /// 1 sigma per axis of where the nadir of the feature maps really is, as far as the attitude is known. Part of the
-  /// standard deviations of the position, since a camera that is mounted askew errs alike in all frames.
-  double nadir_sigma_m = 0.0;
+  /// Of all feature maps, in place of what they say (FeatureMap::nadir_sigma_m). Part of the standard deviations of the
+  /// position, since a camera that is mounted askew errs alike in all frames.
+  std::optional<double> nadir_sigma_m;
 };
 
 enum class TrackStart { kSearch, kUniform };
@@ -103,6 +103,7 @@ struct TrackerState {
   std::int64_t time_us = 0;
   std::int64_t measured = 0;     ///< feature maps so far
   std::int64_t last_search = 0;  ///< `measured` at the last search
+  double nadir_sigma_m = 0.0;    ///< of the last feature map
   TrackClaim claim;
   std::optional<std::int64_t> accepted_time_us;  ///< time of the last accepted measurement
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen

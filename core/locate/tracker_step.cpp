@@ -40,7 +40,11 @@ Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const St
 
 StepResult Tracker::Step::run() {
   require_in_order();
-  if (input_.features) features_ = in_cells_of(tracker_.map_, *input_.features);
+  if (input_.features) {
+    features_ = in_cells_of(tracker_.map_, *input_.features);
+    // What the particles do not know is added to what they say, once.
+    state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
+  }
   if (state_.started) {
     estimate_.missed_steps = input_.sequence - state_.sequence - 1;
     move();
@@ -210,8 +214,9 @@ void Tracker::Step::fill_estimate() {
   estimate_.time_us = state_.time_us;
   const std::vector<Cluster> clusters = clusters_of(filter_.particles(), settings_.clusters);
   estimate_.cluster_count = clusters.size();
+  const double nadir_sigma_m = settings_.vehicle.nadir_sigma_m.value_or(state_.nadir_sigma_m);
   for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {
-    estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i], settings_.vehicle.nadir_sigma_m));
+    estimate_.clusters.push_back(to_geographic(tracker_.map_, clusters[i], nadir_sigma_m));
   }
   estimate_.particles = filter_.particles().size();
   estimate_.resets = filter_.state().resets;

@@ -88,8 +88,11 @@ FrameCamera camera_of(const Fields& fields) {
   }
   camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
   camera.agl_m = fields.number("agl_m", {0.0, 20'000.0, true});
-  camera.roll = Angle::degrees(fields.optional_number("roll_deg", {-90.0, 90.0}).value_or(0.0));
-  camera.pitch = Angle::degrees(fields.optional_number("pitch_deg", {-90.0, 90.0}).value_or(0.0));
+  const auto roll_deg = fields.optional_number("roll_deg", {-90.0, 90.0});
+  const auto pitch_deg = fields.optional_number("pitch_deg", {-90.0, 90.0});
+  camera.roll = Angle::degrees(roll_deg.value_or(0.0));
+  camera.pitch = Angle::degrees(pitch_deg.value_or(0.0));
+  if (roll_deg || pitch_deg) camera.attitude_sigma = kToldAttitudeSigma;
   return camera;
 }
 
@@ -131,6 +134,24 @@ void require_few_pixels(const GroundImage& image, const RoadDetector& detector, 
                   detector.preferred_gsd_m(), limits.pixels));
 }
 
+void require_no_place_of_the_nadir(const Fields& fields) {
+  for (const char* name : {"nadir_col", "nadir_row"}) {
+    if (!fields.has(name)) continue;
+    throw InvalidField("bad-parameter", name,
+                       fmt::format("'{}' describes a feature map; of a frame the point below the UAV follows from "
+                                   "roll_deg and pitch_deg: leave it out",
+                                   name));
+  }
+}
+
+void require_feature_map(const Fields& fields) {
+  for (const std::string& name : frame_fields()) {
+    if (name == "cell_m" || !fields.has(name)) continue;
+    throw InvalidField("bad-parameter", name,
+                       fmt::format("'{}' describes a frame; add kind=frame, or leave it out for a feature map", name));
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
@@ -149,27 +170,22 @@ const std::vector<std::string>& picture_members() {
   return kMembers;
 }
 
+std::optional<double> told_nadir_sigma_m(const Fields& fields) {
+  return fields.optional_number("nadir_sigma_m", {0.0, 1000.0});
+}
+
 Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                      const std::stop_token& stop) {
-  if (content.fields.word("kind", kKinds) == "frame") {
-    for (const char* name : {"nadir_col", "nadir_row"}) {
-      if (content.fields.has(name)) {
-        throw InvalidField("bad-parameter", name,
-                           fmt::format("'{}' describes a feature map; of a frame the point below the UAV follows from "
-                                       "roll_deg and pitch_deg: leave it out",
-                                       name));
-      }
-    }
-    return detected(content, detector, default_cell_m, limits, stop);
+  const bool is_frame = content.fields.word("kind", kKinds) == "frame";
+  if (is_frame) {
+    require_no_place_of_the_nadir(content.fields);
+  } else {
+    require_feature_map(content.fields);
   }
-  for (const std::string& name : frame_fields()) {
-    if (name != "cell_m" && content.fields.has(name)) {
-      throw InvalidField(
-          "bad-parameter", name,
-          fmt::format("'{}' describes a frame; add kind=frame, or leave it out for a feature map", name));
-    }
-  }
-  return {given_map(content, limits), std::nullopt};
+  Features features = is_frame ? detected(content, detector, default_cell_m, limits, stop)
+                               : Features{given_map(content, limits), std::nullopt};
+  if (const auto told = told_nadir_sigma_m(content.fields)) features.map.nadir_sigma_m = *told;
+  return features;
 }
 
 Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
@@ -187,11 +203,6 @@ Features detected(const Content& content, const RoadDetector& detector, double d
   const auto start = std::chrono::steady_clock::now();
   FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed), stop);
   return {std::move(map), std::chrono::steady_clock::now() - start};
-}
-
-double expected_nadir_sigma_m(const Fields& fields) {
-  const bool camera = fields.word("kind", kKinds) == "frame" && !fields.has("gsd_m");
-  return camera ? nadir_sigma_m(camera_of(fields), kAttitudeSigma) : 0.0;
 }
 
 }  // namespace roadfix::api

@@ -39,15 +39,14 @@ struct Features {
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
 };
 
+/// How well the nadir is known as the client says, 1 sigma per axis: it knows more than a camera's description tells.
+std::optional<double> told_nadir_sigma_m(const Fields& fields);
+
 /// The feature map, detected if it is a frame. `default_cell_m` is the cell size for frames that name none. Detection
 /// ends with Interrupted when a stop is requested.
 Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                      const std::stop_token& stop);
 Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                   const std::stop_token& stop);
-
-/// How well the nadir of what is posted is known if the request does not say, 1 sigma per axis: by kAttitudeSigma in a
-/// frame that its camera describes; 0 in all else, of which nobody but the client knows.
-double expected_nadir_sigma_m(const Fields& fields);
 
 }  // namespace roadfix::api

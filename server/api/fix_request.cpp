@@ -55,8 +55,8 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 
 const std::vector<std::string>& prior_fields() {
   static const std::vector<std::string> kFields{
-      "lat",        "lon",       "radius_m",    "bbox",    "heading_deg",  "heading_range_deg",
-      "confidence", "max_modes", "scale_range", "proof_s", "time_limit_s", "nadir_sigma_m"};
+      "lat",        "lon",       "radius_m",    "bbox",    "heading_deg", "heading_range_deg",
+      "confidence", "max_modes", "scale_range", "proof_s", "time_limit_s"};
   return kFields;
 }
 
@@ -92,8 +92,6 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   options.max_modes = fields.optional_integer("max_modes", 1, limits.modes).value_or(options.max_modes);
   options.max_search_km2 = limits.search_km2;
   options.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(0.0);
-  const auto nadir_sigma_m = fields.optional_number("nadir_sigma_m", {0.0, 1000.0});
-  options.nadir_sigma_m = nadir_sigma_m ? *nadir_sigma_m : expected_nadir_sigma_m(fields);
   const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
   options.proof_time = milliseconds_of(proof_s);
   if (const auto limit_s = fields.optional_number("time_limit_s", {0.0, 3600.0, true})) {

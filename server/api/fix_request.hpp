@@ -18,7 +18,7 @@ const std::vector<std::string>& prior_fields();
 /// them = the whole map.
 Prior parse_prior(const Fields& fields);
 
-/// confidence, max_modes, scale_range, nadir_sigma_m, proof_s and time_limit_s, and the limit of the search area.
+/// confidence, max_modes, scale_range, proof_s and time_limit_s, and the limit of the search area.
 FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
 
 /// Ends the search early enough before the deadline to answer with what it has. Throws as time_left().

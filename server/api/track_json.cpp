@@ -106,7 +106,8 @@ json counters_json(const TrackerState& state) {
           {"evidence", state.claim.log_odds},
           {"accepted_time_us", json_of(state.accepted_time_us)},
           {"looked_time_us", json_of(state.looked_time_us)},
-          {"drifts", state.drifts}};
+          {"drifts", state.drifts},
+          {"nadir_sigma_m", state.nadir_sigma_m}};
 }
 
 TrackerState state_of(const json& counters, FilterState filter) {
@@ -123,9 +124,10 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.claim.supported = whole(counters.at("supported"));
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
-    // Programs from before did not look around.
+    // Programs from before did not look around, and told no nadir_sigma_m of frames.
     state.looked_time_us = time_of(counters.value("looked_time_us", json()));
     state.drifts = counters.value("drifts", false);
+    state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
                                                  error.what() + "): delete the track and begin a new one");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/units/error.hpp"
+#include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/http/errors.hpp"
 
@@ -37,7 +38,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
   noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),
                         fields.optional_number("wind_walk", {0.0, 10.0}));
   noise.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(noise.scale_range);
-  noise.nadir_sigma_m = fields.optional_number("nadir_sigma_m", {0.0, 1000.0}).value_or(0.0);
+  noise.nadir_sigma_m = told_nadir_sigma_m(fields);
   return noise;
 }
 
@@ -98,8 +99,8 @@ TrackRequest parse_track(const Fields& fields, const Limits& limits) {
 }
 
 const std::vector<std::string>& step_fields() {
-  static const std::vector<std::string> kFields{"sequence", "time_us",  "forward_m",
-                                                "right_m",  "turn_deg", "covariance"};
+  static const std::vector<std::string> kFields{"sequence", "time_us",    "forward_m",    "right_m",
+                                                "turn_deg", "covariance", "nadir_sigma_m"};
   return kFields;
 }
 

@@ -135,7 +135,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   std::set<std::string> match = fix;
   fix.insert(api::prior_fields().begin(), api::prior_fields().end());
   fix.insert(api::position_fields().begin(), api::position_fields().end());
-  fix.insert("time_us");
+  fix.insert({"time_us", "nadir_sigma_m"});
   match.insert({"heading_step_deg", "poses"});
   std::set<std::string> detect(api::frame_fields().begin(), api::frame_fields().end());
   detect.insert({"image", "format"});
@@ -193,9 +193,10 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   fix.update(prior);
   expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
     api::Fields fields;
-    fields.add(body, api::prior_fields());
+    fields.add(body, api::joined(api::prior_fields(), {"nadir_sigma_m"}));
     api::parse_prior(fields);
     api::parse_fix_options(fields, limits_);
+    api::told_nadir_sigma_m(fields);
   });
   json track{{"map", "m"},
              {"particles", 1000},
@@ -215,11 +216,13 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     fields.add(body, api::track_members());
     api::parse_track(fields, limits_);
   });
-  const json step{{"sequence", 1}, {"time_us", 1}, {"forward_m", 0}, {"right_m", 0}, {"turn_deg", 0}};
+  const json step{{"sequence", 1}, {"time_us", 1},  {"forward_m", 0},
+                  {"right_m", 0},  {"turn_deg", 0}, {"nadir_sigma_m", 0}};
   expect_ranges(schemas.at("StepRequest"), step, [&](const json& body) {
     api::Fields fields;
     fields.add(body, api::step_fields());
     api::parse_step(fields);
+    api::told_nadir_sigma_m(fields);
   });
 }
 

@@ -196,7 +196,7 @@ TEST_F(BenchRun, PlacesTheUavOfFramesThatTheirCameraDescribes) {
     EXPECT_LT(outcome.error_m.value(), 3.0) << result.method;
     EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << result.method;
     if (result.method != "roads") continue;
-    EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 250.0 * std::tan(kAttitudeSigma.radians()))
+    EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
         << "how well the attitude is known is part of the accuracy";
   }
 }

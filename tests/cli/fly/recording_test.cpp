@@ -133,8 +133,9 @@ TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
   const RecordedFrame seen = read();
   EXPECT_EQ(seen.footprint.width_m, 20 * 100.0 / 50.0);
   EXPECT_EQ(seen.footprint.height_m, 30 * 100.0 / 50.0);
-  EXPECT_GT(seen.nadir_sigma_m, 100.0 * kAttitudeSigma.radians());
   const FeatureMap& features = seen.observation.features.value();
+  EXPECT_GT(features.nadir_sigma_m, 100.0 * kToldAttitudeSigma.radians());
+  EXPECT_LT(features.nadir_sigma_m, 100.0 * kUntoldAttitudeSigma.radians());
   const double ahead_m = (features.nadir.row - features.cells.rows() / 2.0) * features.cell_m;
   EXPECT_GT(ahead_m, 100.0 * std::tan(Angle::degrees(30).radians())) << "the nose is up, so it looks ahead";
 

@@ -53,13 +53,16 @@ TEST(NadirSigma, IsWhatASmallErrorOfPitchOrRollMovesTheGroundInViewBy) {
     FrameCamera turned = camera;
     turned.pitch += little;
     const double moved_m = std::abs(ground_at(turned, middle)->y - ground_at(camera, middle)->y);
-    EXPECT_NEAR(nadir_sigma_m(camera, Angle::degrees(1.0)), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
+    camera.attitude_sigma = kToldAttitudeSigma;
+    EXPECT_NEAR(nadir_sigma_m(camera), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
+    camera.attitude_sigma = kUntoldAttitudeSigma;
+    EXPECT_NEAR(nadir_sigma_m(camera), 500.0 * moved_m, 0.002 * 500.0 * moved_m) << pitch_deg;
   }
   FrameCamera rolled = level();
   rolled.roll = Angle::degrees(60.0);
-  EXPECT_NEAR(nadir_sigma_m(rolled, Angle::degrees(1.0)), 4.0 * nadir_sigma_m(level(), Angle::degrees(1.0)), 1e-9);
+  EXPECT_NEAR(nadir_sigma_m(rolled), 4.0 * nadir_sigma_m(level()), 1e-9);
   rolled.roll = Angle::degrees(90.0);
-  EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled, Angle::degrees(1.0))));
+  EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled)));
 }
 
 TEST(GroundOf, NothingLiesAboveTheHorizon) {

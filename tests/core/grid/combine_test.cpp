@@ -28,6 +28,14 @@ TEST(Combined, OneFrameStaysAsItIs) {
   EXPECT_EQ(result.nadir.row, 1.5);
 }
 
+TEST(Combined, KnowsTheNadirAsWellAsTheReferenceDoes) {
+  PlacedFeatures exact{FeatureMap::centred(CellArray(2, 2, kRoad), 1.0), {}};
+  PlacedFeatures tilted = exact;
+  tilted.features.nadir_sigma_m = 7.0;
+  EXPECT_EQ(combined(std::vector{tilted, exact}, 1e3).nadir_sigma_m, 7.0);
+  EXPECT_EQ(combined(std::vector{exact, tilted}, 1e3).nadir_sigma_m, 0.0);
+}
+
 TEST(Combined, AFrameFromAheadExtendsTheReferenceForward) {
   const PlacedFeatures parts[] = {{map_of("#.. #.. #.."), {}}, {map_of("### ... ..."), {4.0, 0.0, {}}}};
   const FeatureMap result = combined(parts, kPlenty);

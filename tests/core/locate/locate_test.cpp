@@ -114,11 +114,10 @@ TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {
 
 TEST_F(Locate, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
-  const FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.1, 0.1}, random_);
+  FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.1, 0.1}, random_);
   const Fix exact = locate(view_, features, {}, {});
-  FixOptions options;
-  options.nadir_sigma_m = 7.0;
-  const Fix fix = locate(view_, features, {}, options);
+  features.nadir_sigma_m = 7.0;
+  const Fix fix = locate(view_, features, {}, {});
   ASSERT_FALSE(fix.modes.empty());
   for (const std::size_t axis : {0U, 1U}) {
     EXPECT_NEAR(fix.modes[0].sigma_m[axis], std::hypot(exact.modes.at(0).sigma_m[axis], 7.0), 1e-9);

@@ -45,6 +45,24 @@ TEST_F(Track, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   }
 }
 
+TEST_F(Track, CountsHowWellTheNadirOfTheLastFrameIsKnownUnlessItIsToldForAll) {
+  Flight flight(map_, start_, 1);
+  const auto sigma_after = [&](const TrackSettings& settings, StepInput step) {
+    state_ = Tracker(view_, settings).advance(state_, step).state;
+    step.features.reset();
+    ++step.sequence;
+    ++step.time_us;
+    return Tracker(view_, settings).advance(state_, step).estimate.clusters.at(0).sigma_m[1];
+  };
+  StepInput step = flight.step();
+  step.features->nadir_sigma_m = 300.0;
+  EXPECT_NEAR(sigma_after(settings(), step), 300.0, 5.0);
+  state_ = {};
+  TrackSettings told = settings();
+  told.vehicle.nadir_sigma_m = 100.0;
+  EXPECT_NEAR(sigma_after(told, step), 100.0, 5.0);
+}
+
 TEST_F(Track, ConvergesFromAUniformBeliefWithoutSearch) {
   TrackSettings uniform = settings();
   uniform.start = TrackStart::kUniform;

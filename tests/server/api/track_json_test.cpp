@@ -23,6 +23,7 @@ TrackerState flown() {
   state.accepted_time_us = 42'000'000;
   state.looked_time_us = 40'000'000;
   state.drifts = true;
+  state.nadir_sigma_m = 5.25;
   return state;
 }
 
@@ -38,9 +39,11 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   nlohmann::json before = counters_json(flown());
   before.erase("looked_time_us");
   before.erase("drifts");
+  before.erase("nadir_sigma_m");
   const TrackerState state = state_of(before, {});
   EXPECT_FALSE(state.looked_time_us);
   EXPECT_FALSE(state.drifts);
+  EXPECT_EQ(state.nadir_sigma_m, 0.0);
   EXPECT_EQ(state.sequence, 41);
 }
 

@@ -1,0 +1,40 @@
+// What a user writes for roadfix bench and fly: any bytes are a manifest, a table of frames, or InvalidInput.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "cli/bench/frames_csv.hpp"
+#include "cli/bench/manifest.hpp"
+#include "core/units/error.hpp"
+
+namespace {
+
+void read_manifest(std::string_view text) {
+  try {
+    const auto manifest = roadfix::bench::parse_manifest(text, ".");
+    if (manifest.queries.empty() || manifest.methods.empty()) std::abort();
+  } catch (const roadfix::InvalidInput&) {
+    return;
+  }
+}
+
+void read_frames(std::string_view text) {
+  try {
+    for (const auto& frame : roadfix::bench::parse_frames_csv(text)) {
+      const double size_m = frame.camera ? frame.camera->agl_m : frame.gsd_m;
+      if (frame.file.empty() || !(size_m >= 0.0)) std::abort();
+    }
+  } catch (const roadfix::InvalidInput&) {
+    return;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  read_manifest(text);
+  read_frames(text);
+  return 0;
+}

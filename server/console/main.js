@@ -101,7 +101,7 @@ function questionOf(form) {
   const names = { gsd: ['gsd_m'], camera: ['fov_deg', 'agl_m', 'roll_deg', 'pitch_deg'], cells: ['cell_m'] }[form.get('what')];
   const query = new URLSearchParams({ confidence: form.get('confidence') });
   query.set('kind', form.get('what') === 'cells' ? 'feature_map' : 'frame');
-  for (const name of names) query.set(name, form.get(name));
+  for (const name of names) if (form.get(name) !== '') query.set(name, form.get(name));
   if (form.get('prior') === 'circle') {
     const { lat, lng } = view.getCenter().wrap();
     query.set('lat', lat);

@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <string>
+
+#include "server/http/errors.hpp"
+#include "server/http/server_impl.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kIdlePoll = 50ms;
+/// A connection keeps its thread for so many requests even when others wait for one.
+constexpr int kTurnRequests = 32;
+constexpr auto kFirstByteGrace = 1s;
+
+}  // namespace
+
+bool Server::Impl::process_and_close_socket(socket_t socket) {
+  const Counted open(metrics_.connections);
+  ConnectionLimits limits{settings_.head_time, settings_.body_time, settings_.write_time, settings_.head_bytes};
+  limits.grace = settings_.crowded_time;
+  limits.others_wait = [this] { return pool_->waiting() > 0; };
+  Connection connection(socket, limits);
+  if (WorkerPool::overflow()) {
+    refuse_connection(connection);
+    return false;
+  }
+  for (int served = 1; wait_for_request(connection, served == 1); ++served) {
+    const bool last =
+        stopping_ || served >= settings_.keep_alive_requests || (served >= kTurnRequests && pool_->waiting() > 0);
+    if (!serve_request(connection, last)) break;
+  }
+  return true;
+}
+
+bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
+  const auto begin = Clock::now();
+  while (!stopping_) {
+    if (connection.wait(kIdlePoll)) return true;
+    const auto idle = Clock::now() - begin;
+    const bool others_wait = pool_->waiting() > 0 && (!first || idle > kFirstByteGrace);
+    if (connection.at_end() || idle > settings_.idle_time || others_wait) return false;
+  }
+  return connection.wait(0ms);
+}
+
+void Server::Impl::refuse_connection(Connection& connection) const {
+  const Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});
+  const std::string text = fmt::format(
+      "HTTP/1.1 {} Service Unavailable\r\nContent-Type: {}\r\nRetry-After: 1\r\nConnection: close\r\n"
+      "Content-Length: {}\r\n\r\n{}",
+      response.status, response.content_type, response.body.size(), response.body);
+  connection.write(text.data(), text.size());
+}
+
+}  // namespace roadfix::http

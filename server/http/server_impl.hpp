@@ -1,0 +1,60 @@
+// What a server is made of: the socket loop, the life of one connection, and that of one request.
+#pragma once
+
+#include <httplib.h>
+
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <thread>
+
+#include "server/http/access_log.hpp"
+#include "server/http/admission.hpp"
+#include "server/http/connection.hpp"
+#include "server/http/cors.hpp"
+#include "server/http/exchange.hpp"
+#include "server/http/server.hpp"
+#include "server/http/worker_pool.hpp"
+
+namespace roadfix::http {
+
+class Server::Impl : public httplib::Server {
+ public:
+  Impl(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics);
+
+  int start();
+  void stop_and_join();
+
+ private:
+  std::unique_ptr<WorkerPool> new_pool() const;
+  void accept_connections();
+
+  // server_connection.cpp
+  bool process_and_close_socket(socket_t socket) override;
+  bool wait_for_request(Connection& connection, bool first) const;
+  void refuse_connection(Connection& connection) const;
+
+  // server_request.cpp
+  void set_callbacks();
+  bool serve_request(Connection& connection, bool last);
+  HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
+  void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
+  Response answered(Exchange& exchange);
+  Response failed(const Exchange& exchange, std::exception_ptr thrown) const;
+  void reply(Exchange& exchange, httplib::Response& out, Response response) const;
+  HandlerResponse complete_error(httplib::Response& out);
+  void finished(const httplib::Request& head, const httplib::Response& out);
+
+  const ServerSettings settings_;
+  const Router router_;
+  const ErrorResponse on_error_;
+  Metrics& metrics_;
+  const Cors cors_;
+  Admission admission_;
+  AccessLog access_log_;
+  std::atomic<bool> stopping_ = false;
+  std::unique_ptr<WorkerPool> pool_;  ///< from start() on
+  std::jthread listener_;
+};
+
+}  // namespace roadfix::http

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "server/http/errors.hpp"
+#include "server/http/server_impl.hpp"
+
+namespace roadfix::http {
+namespace {
+
+using HandlerResponse = httplib::Server::HandlerResponse;
+
+/// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
+thread_local Exchange* t_exchange = nullptr;
+
+LimitExceeded url_too_long(std::size_t limit) {
+  return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
+}
+
+}  // namespace
+
+void Server::Impl::set_callbacks() {
+  set_pre_routing_handler([this](const auto& head, auto& out) { return before_body(head, out); });
+  Post(R"([\s\S]*)", [this](const auto& head, auto& out, const auto& reader) { with_body(head, out, reader); });
+  set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
+  set_post_routing_handler([](const auto&, auto& out) { correct_head(out); });
+  set_logger([this](const auto& head, const auto& out) { finished(head, out); });
+}
+
+/// Returns whether the connection may serve another one.
+bool Server::Impl::serve_request(Connection& connection, bool last) {
+  connection.begin_head();
+  Exchange exchange(connection);
+  t_exchange = &exchange;
+  bool closed_by_client = false;
+  const bool written =
+      process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
+  t_exchange = nullptr;
+  const bool unread = exchange.must_close || !exchange.head_read;
+  if (unread) connection.linger([this] { return stopping_ || pool_->waiting() > 0; });
+  return written && !last && !closed_by_client && !exchange.asked_to_close && !unread;
+}
+
+HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib::Response& out) {
+  Exchange& exchange = *t_exchange;
+  exchange.request = translated(head, exchange, settings_.proxies);
+  Request& request = exchange.request;
+  exchange.must_close =
+      announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
+                                  head.method != "POST" && head.method != "DELETE");
+  try {
+    const bool close = std::exchange(exchange.must_close, true);
+    check_headers(head);
+    exchange.must_close = close;
+    if (head.target.size() > settings_.target_bytes) throw url_too_long(settings_.target_bytes);
+    exchange.target = parse_target(head.target);
+    request.path = exchange.target.path;
+    request.query = exchange.target.query;
+    if (!exchange.target.authority.empty()) request.headers["host"] = exchange.target.authority;
+    if (request.method == "OPTIONS") {
+      const std::string allowed = router_.allowed_methods(exchange.target.segments);
+      if (allowed.empty()) router_.find(request.method, exchange.target.segments);
+      reply(exchange, out, preflight(allowed));
+      return HandlerResponse::Handled;
+    }
+    exchange.match = router_.find(request.method, exchange.target.segments);
+    request.path_parameters = exchange.match.path_parameters;
+    check_parameter_names(*exchange.match.route, request.query);
+    if (request.method == "POST") {
+      check_body_headers(request, settings_.body_bytes);
+      exchange.must_close = false;
+      return HandlerResponse::Unhandled;
+    }
+  } catch (...) {
+    reply(exchange, out, failed(exchange, std::current_exception()));
+    return HandlerResponse::Handled;
+  }
+  reply(exchange, out, answered(exchange));
+  return HandlerResponse::Handled;
+}
+
+void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
+  Exchange& exchange = *t_exchange;
+  try {
+    read_body(exchange, reader, settings_.body_bytes, settings_.body_time);
+  } catch (...) {
+    exchange.must_close = true;
+    reply(exchange, out, failed(exchange, std::current_exception()));
+    return;
+  }
+  reply(exchange, out, answered(exchange));
+}
+
+Response Server::Impl::answered(Exchange& exchange) {
+  const Counted in_flight(metrics_.in_flight);
+  try {
+    const Route& route = *exchange.match.route;
+    Request& request = exchange.request;
+    request.received = Clock::now();
+    request.deadline = request.received + settings_.request_time;
+    request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
+    if (route.load == Load::kLight) return route.handler(request);
+    const auto prepared = route.prepare ? route.prepare(request) : nullptr;
+    const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
+    const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time, given_up);
+    request.deadline = Clock::now() + settings_.request_time;
+    return prepared ? prepared() : route.handler(request);
+  } catch (const Interrupted&) {
+    const bool gone = exchange.request.abandoned();
+    return failed(exchange, gone ? std::make_exception_ptr(ClientGone()) : std::current_exception());
+  } catch (...) {
+    return failed(exchange, std::current_exception());
+  }
+}
+
+Response Server::Impl::failed(const Exchange& exchange, std::exception_ptr thrown) const {
+  return on_error_(std::move(thrown), exchange.request);
+}
+
+void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
+  response.headers.emplace_back("X-Request-Id", exchange.request.id);
+  cors_.open(response);
+  if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
+  if (exchange.must_close) response.headers.emplace_back("Connection", "close");
+  exchange.problem = response.problem;
+  fill(out, std::move(response));
+}
+
+/// What cpp-httplib answers by itself (a broken request line or header) gets the body that all errors have.
+HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
+  if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
+  Exchange& exchange = *t_exchange;
+  if (exchange.request.id.empty()) {
+    exchange.request = translated({}, exchange, settings_.proxies);
+    int port = 0;
+    exchange.connection->get_remote_ip_and_port(exchange.request.client, port);
+  }
+  exchange.must_close = true;
+  const bool long_line = out.status == 414;
+  const auto thrown = long_line ? std::make_exception_ptr(url_too_long(settings_.target_bytes))
+                                : failure_of_head(exchange, settings_.head_bytes);
+  reply(exchange, out, failed(exchange, thrown));
+  return HandlerResponse::Handled;
+}
+
+void Server::Impl::finished(const httplib::Request& head, const httplib::Response& out) {
+  Exchange& exchange = *t_exchange;
+  if (std::exchange(exchange.logged, true)) return;
+  const auto time = Clock::now() - exchange.started;
+  const std::string route = exchange.match.route != nullptr ? exchange.match.route->path : "";
+  metrics_.count(exchange.match.route != nullptr ? head.method : "-", route.empty() ? "-" : route, out.status, time,
+                 out.body.size());
+  access_log_.write({std::chrono::system_clock::now(), exchange.request.id, exchange.request.client, head.method,
+                     head.target, route, out.status, out.body.size(),
+                     std::chrono::duration<double, std::milli>(time).count(), exchange.problem});
+}
+
+}  // namespace roadfix::http

@@ -22,7 +22,8 @@ std::optional<std::string> FailureLog::line(const std::exception_ptr& thrown, in
     if (dynamic_cast<const Interrupted*>(&error) != nullptr) return std::nullopt;  // too much work: metrics tell of it
     return throttled(error.code(), text, now);
   } catch (const std::exception& error) {
-    return fmt::format("request {} failed: {}", request_id, error.what());
+    const std::string text = fmt::format("request {} failed: {}", request_id, error.what());
+    return status == 500 ? text : throttled(error.what(), text, now);
   }
 }
 

@@ -72,6 +72,7 @@ void Connection::begin_head() {
   in_head_ = true;
   head_bytes_ = 0;
   failure_ = Failure::kNone;
+  has_written_ = false;
   begin(limits_.head);
 }
 
@@ -145,6 +146,7 @@ ssize_t Connection::write(const char* data, std::size_t size) {
     const ssize_t n = ::send(socket_, data + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n > 0) {
       sent += static_cast<std::size_t>(n);
+      has_written_ = true;
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
       if (!wait_for(POLLOUT, limits_.write, begun, sent)) return -1;
     } else if (errno != EINTR) {

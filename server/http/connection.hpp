@@ -41,6 +41,8 @@ class Connection : public httplib::Stream {
   void begin_head();
   void begin_body();
   Failure failure() const { return failure_; }
+  /// Since begin_head().
+  bool has_written() const { return has_written_; }
 
   /// Lets the peer read what was written although bytes of it were not read: were it closed at once, those that it
   /// still sends would break the connection first. Listens as long as a body may take, but not to silence, and only
@@ -75,6 +77,7 @@ class Connection : public httplib::Stream {
   std::size_t received_ = 0;                ///< since then
   Clock::time_point deadline_ = Clock::time_point::max();
   Failure failure_ = Failure::kNone;
+  bool has_written_ = false;
 };
 
 }  // namespace roadfix::http

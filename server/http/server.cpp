@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -75,19 +76,40 @@ int Server::Impl::start() {
 
 /// Instead of cpp-httplib's own loop, which ends when one connection cannot be accepted, and the service with it.
 void Server::Impl::accept_connections() {
-  auto complained = Clock::now() - kComplaintPause;
   while (!stopping_) {
-    const int socket = ::accept(svr_sock_, nullptr, nullptr);
-    const int reason = errno;
-    if (socket >= 0) {
-      pool_->enqueue([this, socket] { process_and_close_socket(socket); });
-    } else if (!stopping_ && reason != EINTR) {
-      if (Clock::now() - complained >= kComplaintPause) {
-        spdlog::warn("a connection cannot be accepted: {}", std::generic_category().message(reason));
-        complained = Clock::now();
-      }
+    try {
+      accept_connection();
+    } catch (const std::exception& error) {
+      complain("a connection cannot be accepted", error.what());
       std::this_thread::sleep_for(kAcceptPause);  // until a descriptor or some memory is free
     }
+  }
+}
+
+void Server::Impl::accept_connection() {
+  const int socket = ::accept(svr_sock_, nullptr, nullptr);
+  if (socket < 0) {
+    const int reason = errno;
+    if (stopping_ || reason == EINTR) return;
+    throw std::system_error(reason, std::generic_category());
+  }
+  try {
+    pool_->enqueue([this, socket] { process_and_close_socket(socket); });
+  } catch (...) {  // no memory to let it wait for a thread
+    ::close(socket);
+    throw;
+  }
+}
+
+/// At most once in a while, since what hinders one connection hinders the next ones too.
+void Server::Impl::complain(const char* what, const char* why) noexcept {
+  const auto now = Clock::now();
+  auto silent_until = silent_until_.load();
+  if (now < silent_until || !silent_until_.compare_exchange_strong(silent_until, now + kComplaintPause)) return;
+  try {
+    spdlog::warn("{}: {}", what, why);
+  } catch (const std::exception&) {  // no memory to say so either
+    silent_until_ = now;
   }
 }
 

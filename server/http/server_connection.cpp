@@ -3,6 +3,7 @@
 #include <chrono>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "server/http/errors.hpp"
 #include "server/http/server_impl.hpp"
@@ -16,6 +17,9 @@ constexpr auto kIdlePoll = 50ms;
 /// A connection keeps its thread for so many requests even when others wait for one.
 constexpr int kTurnRequests = 32;
 constexpr auto kFirstByteGrace = 1s;
+/// Where there is no memory for an answer of our own.
+constexpr std::string_view kUnavailable =
+    "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 5\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
 
 }  // namespace
 
@@ -25,16 +29,25 @@ bool Server::Impl::process_and_close_socket(socket_t socket) {
   limits.grace = settings_.crowded_time;
   limits.others_wait = [this] { return pool_->waiting() > 0; };
   Connection connection(socket, limits);
+  try {
+    serve_connection(connection);
+  } catch (const std::exception& error) {  // it would end the process
+    if (!connection.has_written()) connection.write(kUnavailable.data(), kUnavailable.size());
+    complain("a connection was closed", error.what());
+  }
+  return true;
+}
+
+void Server::Impl::serve_connection(Connection& connection) {
   if (WorkerPool::overflow()) {
     refuse_connection(connection);
-    return false;
+    return;
   }
   for (int served = 1; wait_for_request(connection, served == 1); ++served) {
     const bool last =
         stopping_ || served >= settings_.keep_alive_requests || (served >= kTurnRequests && pool_->waiting() > 0);
     if (!serve_request(connection, last)) break;
   }
-  return true;
 }
 
 bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
@@ -49,11 +62,18 @@ bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
 }
 
 void Server::Impl::refuse_connection(Connection& connection) const {
-  const Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});
-  const std::string text = fmt::format(
-      "HTTP/1.1 {} Service Unavailable\r\nContent-Type: {}\r\nRetry-After: 1\r\nConnection: close\r\n"
-      "Content-Length: {}\r\n\r\n{}",
-      response.status, response.content_type, response.body.size(), response.body);
+  Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});
+  response.headers.emplace_back("Connection", "close");
+  write_directly(connection, response);
+}
+
+/// What is not answered through cpp-httplib: no request was read, or it gave up.
+void Server::Impl::write_directly(Connection& connection, const Response& response) const {
+  std::string text = fmt::format("HTTP/1.1 {} {}\r\n", response.status,
+                                 response.status == 503 ? "Service Unavailable" : "Internal Server Error");
+  for (const auto& [name, value] : response.headers) text += fmt::format("{}: {}\r\n", name, value);
+  text += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n\r\n{}", response.content_type, response.body.size(),
+                      response.body);
   connection.write(text.data(), text.size());
 }
 

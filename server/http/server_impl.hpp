@@ -28,19 +28,26 @@ class Server::Impl : public httplib::Server {
  private:
   std::unique_ptr<WorkerPool> new_pool() const;
   void accept_connections();
+  void accept_connection();
+  void complain(const char* what, const char* why) noexcept;
 
   // server_connection.cpp
   bool process_and_close_socket(socket_t socket) override;
+  void serve_connection(Connection& connection);
   bool wait_for_request(Connection& connection, bool first) const;
   void refuse_connection(Connection& connection) const;
+  void write_directly(Connection& connection, const Response& response) const;
 
   // server_request.cpp
   void set_callbacks();
   bool serve_request(Connection& connection, bool last);
+  void end_request(Exchange& exchange, std::exception_ptr thrown);
+  void identify(Exchange& exchange) const;
   HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
   void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
   Response answered(Exchange& exchange);
   Response failed(const Exchange& exchange, std::exception_ptr thrown) const;
+  void complete_headers(Exchange& exchange, Response& response) const;
   void reply(Exchange& exchange, httplib::Response& out, Response response) const;
   HandlerResponse complete_error(httplib::Response& out);
   void finished(const httplib::Request& head, const httplib::Response& out);
@@ -53,7 +60,8 @@ class Server::Impl : public httplib::Server {
   Admission admission_;
   AccessLog access_log_;
   std::atomic<bool> stopping_ = false;
-  std::unique_ptr<WorkerPool> pool_;  ///< from start() on
+  std::atomic<Clock::time_point> silent_until_{};  ///< after a complaint
+  std::unique_ptr<WorkerPool> pool_;               ///< from start() on
   std::jthread listener_;
 };
 

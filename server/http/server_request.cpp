@@ -17,6 +17,14 @@ using HandlerResponse = httplib::Server::HandlerResponse;
 /// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
 thread_local Exchange* t_exchange = nullptr;
 
+class Passing {
+ public:
+  explicit Passing(Exchange& exchange) { t_exchange = &exchange; }
+  ~Passing() { t_exchange = nullptr; }
+  Passing(const Passing&) = delete;
+  Passing& operator=(const Passing&) = delete;
+};
+
 LimitExceeded url_too_long(std::size_t limit) {
   return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
 }
@@ -28,6 +36,8 @@ void Server::Impl::set_callbacks() {
   Post(R"([\s\S]*)", [this](const auto& head, auto& out, const auto& reader) { with_body(head, out, reader); });
   set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
   set_post_routing_handler([](const auto&, auto& out) { correct_head(out); });
+  // To serve_request(): the library would answer 500 with the text of the error.
+  set_exception_handler([](const auto&, auto&, std::exception_ptr thrown) { std::rethrow_exception(thrown); });
   set_logger([this](const auto& head, const auto& out) { finished(head, out); });
 }
 
@@ -35,14 +45,40 @@ void Server::Impl::set_callbacks() {
 bool Server::Impl::serve_request(Connection& connection, bool last) {
   connection.begin_head();
   Exchange exchange(connection);
-  t_exchange = &exchange;
+  const Passing passing(exchange);
   bool closed_by_client = false;
-  const bool written =
-      process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
-  t_exchange = nullptr;
+  bool written = false;
+  try {
+    written =
+        process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
+  } catch (...) {
+    end_request(exchange, std::current_exception());
+  }
   const bool unread = exchange.must_close || !exchange.head_read;
   if (unread) connection.linger([this] { return stopping_ || pool_->waiting() > 0; });
   return written && !last && !closed_by_client && !exchange.asked_to_close && !unread;
+}
+
+/// By what was thrown outside of handlers: mostly that there is no memory.
+void Server::Impl::end_request(Exchange& exchange, std::exception_ptr thrown) {
+  identify(exchange);
+  exchange.must_close = true;
+  Response response = failed(exchange, std::move(thrown));
+  complete_headers(exchange, response);
+  if (!exchange.connection->has_written()) write_directly(*exchange.connection, response);
+  httplib::Request head;
+  head.method = exchange.request.method;
+  head.target = exchange.request.path;
+  httplib::Response out;
+  out.status = response.status;
+  finished(head, out);
+}
+
+void Server::Impl::identify(Exchange& exchange) const {
+  if (!exchange.request.id.empty()) return;
+  exchange.request = translated({}, exchange, settings_.proxies);
+  int port = 0;
+  exchange.connection->get_remote_ip_and_port(exchange.request.client, port);
 }
 
 HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib::Response& out) {
@@ -121,12 +157,16 @@ Response Server::Impl::failed(const Exchange& exchange, std::exception_ptr throw
   return on_error_(std::move(thrown), exchange.request);
 }
 
-void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
+void Server::Impl::complete_headers(Exchange& exchange, Response& response) const {
   response.headers.emplace_back("X-Request-Id", exchange.request.id);
   cors_.open(response);
   if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
   if (exchange.must_close) response.headers.emplace_back("Connection", "close");
   exchange.problem = response.problem;
+}
+
+void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
+  complete_headers(exchange, response);
   fill(out, std::move(response));
 }
 
@@ -134,11 +174,7 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
 HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
   Exchange& exchange = *t_exchange;
-  if (exchange.request.id.empty()) {
-    exchange.request = translated({}, exchange, settings_.proxies);
-    int port = 0;
-    exchange.connection->get_remote_ip_and_port(exchange.request.client, port);
-  }
+  identify(exchange);
   exchange.must_close = true;
   const bool long_line = out.status == 414;
   const auto thrown = long_line ? std::make_exception_ptr(url_too_long(settings_.target_bytes))

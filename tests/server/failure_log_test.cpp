@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
+
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
 
@@ -32,6 +34,15 @@ TEST(FailureLog, TellsOfAFullDiskNowAndThen) {
   EXPECT_EQ(log.line(full, 503, "e", start + 11s),
             "request e failed: no space left [track-store-full] (2 more like it before)");
   EXPECT_EQ(log.line(full, 503, "f", start + 30s), "request f failed: no space left [track-store-full]");
+}
+
+TEST(FailureLog, TellsOfMissingMemoryNowAndThen) {
+  FailureLog log;
+  const FailureLog::Clock::time_point start{};
+  EXPECT_EQ(log.line(thrown(std::bad_alloc()), 503, "a", start), "request a failed: std::bad_alloc");
+  EXPECT_EQ(log.line(thrown(std::bad_alloc()), 503, "b", start + 9s), std::nullopt);
+  EXPECT_EQ(log.line(thrown(std::bad_alloc()), 503, "c", start + 11s),
+            "request c failed: std::bad_alloc (1 more like it before)");
 }
 
 TEST(FailureLog, LeavesOutWhatIsTheClientsOrOnlyTooMuch) {

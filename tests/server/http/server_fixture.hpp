@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
@@ -22,9 +23,13 @@ namespace roadfix::testing {
 inline http::Response plain_error(std::exception_ptr thrown, const http::Request& request) {
   try {
     std::rethrow_exception(std::move(thrown));
+  } catch (const http::Busy& busy) {
+    return {503, "text/plain", busy.code(), {{"Retry-After", std::to_string(busy.retry_after().count())}}};
   } catch (const Error& error) {
     if (error.code() == "client-gone") return {499, "text/plain", error.code()};
-    return {error.code() == "server-busy" ? 503 : 400, "text/plain", error.code()};
+    return {400, "text/plain", error.code()};
+  } catch (const std::bad_alloc&) {
+    return {503, "text/plain", "no-memory"};
   } catch (const std::exception&) {
     return {500, "text/plain", "unexpected " + request.id};
   }

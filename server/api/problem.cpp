@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 
 #include "server/api/json_body.hpp"
 #include "server/http/errors.hpp"
@@ -14,6 +16,8 @@ namespace roadfix::api {
 namespace {
 
 using nlohmann::json;
+
+constexpr std::chrono::seconds kRetryAfter{5};
 
 const std::map<std::string, int, std::less<>>& statuses() {
   static const std::map<std::string, int, std::less<>> kByCode{
@@ -119,11 +123,27 @@ http::Response of_error(const Error& error) {
   if (const auto* busy = dynamic_cast<const http::Busy*>(&error)) {
     headers.emplace_back("Retry-After", std::to_string(busy->retry_after().count()));
   } else if (status == 503 || status == 429) {
-    headers.emplace_back("Retry-After", "5");
+    headers.emplace_back("Retry-After", std::to_string(kRetryAfter.count()));
   }
   http::Response response = rendered(status, std::move(members));
   response.headers = std::move(headers);
   return response;
+}
+
+/// Written out: nlohmann's json takes memory to be destroyed, and ends the process where there is none.
+http::Response out_of_memory() {
+  http::Response response{
+      503, "application/problem+json",
+      R"({"code":"server-busy","detail":"there is not enough memory for this request now","status":503,)"
+      R"("title":"Service unavailable","type":"urn:roadfix:problem:server-busy"})"};
+  response.headers.emplace_back("Retry-After", std::to_string(kRetryAfter.count()));
+  response.problem = "server-busy";
+  return response;
+}
+
+http::Response internal_error() {
+  return rendered(
+      500, {{"code", "internal-error"}, {"detail", "the service failed; its log says how, under the request id"}});
 }
 
 }  // namespace
@@ -145,10 +165,14 @@ http::Response problem(std::exception_ptr thrown) {
   } catch (const Error& error) {
     return of_error(error);
   } catch (const std::bad_alloc&) {
-    return of_error(http::Busy("there is not enough memory for this request now", std::chrono::seconds(5)));
+    return out_of_memory();
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again) {
+      return of_error(http::Busy("the system gives the service no more threads for this request now", kRetryAfter));
+    }
+    return internal_error();
   } catch (const std::exception&) {
-    return rendered(
-        500, {{"code", "internal-error"}, {"detail", "the service failed; its log says how, under the request id"}});
+    return internal_error();
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "server/http/errors.hpp"
 
@@ -55,6 +56,24 @@ TEST(Problem, KeepsTheTextOfUnexpectedErrorsFromTheClient) {
   EXPECT_EQ(response.status, 500);
   EXPECT_EQ(response.body.find("secret"), std::string::npos);
   EXPECT_EQ(of(std::bad_alloc()).status, 503);
+}
+
+TEST(Problem, OfMissingMemoryLooksLikeTheOthers) {
+  const auto response = of(std::bad_alloc());
+  const auto other = of(http::Busy("there is not enough memory for this request now", std::chrono::seconds(5)));
+  EXPECT_EQ(response.status, other.status);
+  EXPECT_EQ(response.content_type, other.content_type);
+  EXPECT_EQ(response.headers, other.headers);
+  EXPECT_EQ(response.body, other.body);
+  EXPECT_EQ(response.problem, other.problem);
+}
+
+TEST(Problem, SaysThatThreadsAreShortAndWhenToComeBack) {
+  const auto no_thread = of(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again)));
+  EXPECT_EQ(no_thread.status, 503);
+  EXPECT_EQ(no_thread.headers, (http::Parameters{{"Retry-After", "5"}}));
+  EXPECT_NE(no_thread.body.find("threads"), std::string::npos);
+  EXPECT_EQ(of(std::system_error(std::make_error_code(std::errc::io_error))).status, 500);
 }
 
 TEST(Problem, IsValidJsonWhateverBytesTheMessageHolds) {

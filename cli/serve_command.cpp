@@ -32,6 +32,7 @@ constexpr double kMaxThreads = 10'000;
 struct ServeOptions {
   server::Configuration service;
   std::size_t body_mib = service.http.body_bytes / kMiB;
+  std::size_t all_bodies_mib = service.http.all_bodies_bytes / kMiB;
   std::size_t map_cache_mib = service.map_cache_bytes / kMiB;
   std::size_t search_cache_mib = service.search_cache_bytes / kMiB;
   std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
@@ -53,6 +54,7 @@ server::Configuration configuration(const ServeOptions& options) {
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
   result.http.proxies = http::Proxies(options.proxies);
   result.http.body_bytes = options.body_mib * kMiB;
+  result.http.all_bodies_bytes = options.all_bodies_mib * kMiB;
   result.map_cache_bytes = options.map_cache_mib * kMiB;
   result.search_cache_bytes = options.search_cache_mib * kMiB;
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
@@ -124,6 +126,8 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--searches", http.heavy_running, "Searches and detections at the same time");
   add("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
   add("--search-threads", o.service.search_threads, "Threads of one search", kMaxThreads);
+  add("--body-memory", o.all_bodies_mib,
+      "Bodies of all requests at once, MiB; further ones get 503. At least --max-body", kMaxMiB);
   add("--idle-time", o.idle_time_s, "Seconds after which an idle connection is closed", kMaxSeconds);
   add("--map-cache", o.map_cache_mib, "Decoded tiles in memory per map, MiB", kMaxMiB);
   add("--search-cache", o.search_cache_mib, "Search data kept for later searches, per map, MiB", kMaxMiB);

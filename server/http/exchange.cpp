@@ -14,9 +14,12 @@
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "server/http/errors.hpp"
 
 namespace roadfix::http {
 namespace {
+
+using namespace std::chrono_literals;
 
 constexpr std::size_t kMaxIdLength = 128;
 
@@ -64,6 +67,10 @@ bool is_token(const std::string& name) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
            kMarks.find(c) != std::string_view::npos;
   });
+}
+
+LimitExceeded body_too_large(std::size_t max_bytes) {
+  return {"body-too-large", fmt::format("the body is larger than the limit of {} bytes", max_bytes)};
 }
 
 std::string new_id() {
@@ -147,30 +154,29 @@ void check_body_headers(const Request& request, std::size_t max_bytes) {
   else if (error != std::errc{} || end != length.data() + length.size()) {
     throw InvalidInput("bad-content-length", fmt::format("Content-Length '{}' is not a number of bytes", length));
   }
-  if (bytes > max_bytes) {
-    throw LimitExceeded("body-too-large", fmt::format("the body is larger than the limit of {} bytes", max_bytes));
-  }
+  if (bytes > max_bytes) throw body_too_large(max_bytes);
 }
 
-void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes,
-               std::chrono::milliseconds time) {
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, const BodyLimits& limits) {
   std::string& body = exchange.request.body;
   bool too_large = false;
+  bool no_room = false;
   const bool whole = reader([&](const char* data, std::size_t size) {
-    too_large = body.size() + size > max_bytes;
-    if (!too_large) body.append(data, size);
-    return !too_large;
+    too_large = body.size() + size > limits.bytes;
+    no_room = !too_large && !exchange.body_memory.take(*limits.memory, size);
+    if (too_large || no_room) return false;
+    body.append(data, size);
+    return true;
   });
   if (whole) return;
-  if (too_large) {
-    throw LimitExceeded("body-too-large", fmt::format("the body is larger than the limit of {} bytes", max_bytes));
-  }
+  if (too_large) throw body_too_large(limits.bytes);
+  if (no_room) throw Busy("the bodies of other requests take all memory that is for them; try again", 1s);
   switch (exchange.connection->failure()) {
     case Connection::Failure::kTimeout:
       throw Interrupted("request-timeout",
                         fmt::format("{} bytes of the body came within {} s, and then it was not whole: send less, or "
                                     "raise serve --body-time",
-                                    body.size(), std::chrono::duration<double>(time).count()));
+                                    body.size(), std::chrono::duration<double>(limits.time).count()));
     case Connection::Failure::kLetGo:
       throw Interrupted("request-timeout",
                         "the body came slower than 4 KiB/s while other clients waited: send it again, or send less");

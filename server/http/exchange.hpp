@@ -8,6 +8,7 @@
 #include <exception>
 #include <string>
 
+#include "server/http/byte_budget.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/message.hpp"
 #include "server/http/proxies.hpp"
@@ -20,6 +21,7 @@ struct Exchange {
 
   Connection* connection;
   Request request;
+  ByteBudget::Share body_memory;
   Target target;
   RouteMatch match;
   std::string content_type;
@@ -47,10 +49,14 @@ void check_headers(const httplib::Request& head);
 
 bool announces_body(const Request& request);
 
-/// Throws LimitExceeded "body-too-large" beyond so many bytes after unpacking, Interrupted "request-timeout" (`time` is
-/// what the connection allows) or InvalidInput ("body-cut-off", "bad-body-encoding").
-void read_body(Exchange& exchange, const httplib::ContentReader& reader, std::size_t max_bytes,
-               std::chrono::milliseconds time);
+struct BodyLimits {
+  std::size_t bytes = 0;              ///< after unpacking
+  std::chrono::milliseconds time{0};  ///< what the connection allows, to tell of it
+  ByteBudget* memory = nullptr;       ///< of the bodies of all requests
+};
+/// Throws LimitExceeded "body-too-large", Busy where the bodies of others take the memory, Interrupted
+/// "request-timeout" or InvalidInput ("body-cut-off", "bad-body-encoding").
+void read_body(Exchange& exchange, const httplib::ContentReader& reader, const BodyLimits& limits);
 
 /// Why no head could be read: LimitExceeded "head-too-large", Interrupted "request-timeout", InvalidInput
 /// "bad-request".

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <exception>
@@ -32,6 +33,7 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
       metrics_(metrics),
       cors_(settings_.cors_origin),
       admission_(settings_.heavy_running, settings_.heavy_waiting),
+      body_memory_(std::max(settings_.all_bodies_bytes, settings_.body_bytes)),
       access_log_(settings_.access_log) {
   metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
   metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",

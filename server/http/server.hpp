@@ -32,7 +32,8 @@ struct ServerSettings {
   std::chrono::milliseconds turn_time{30'000};  ///< that a heavy request waits for its turn
   std::size_t head_bytes = 64 << 10;
   std::size_t target_bytes = 4096;
-  std::size_t body_bytes = std::size_t{64} << 20;  ///< after unpacking
+  std::size_t body_bytes = std::size_t{64} << 20;         ///< after unpacking
+  std::size_t all_bodies_bytes = std::size_t{512} << 20;  ///< of all requests at once; at least body_bytes
   int heavy_running = 2;
   int heavy_waiting = 32;
   std::string cors_origin = {};  ///< see Cors

@@ -10,6 +10,7 @@
 
 #include "server/http/access_log.hpp"
 #include "server/http/admission.hpp"
+#include "server/http/byte_budget.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/cors.hpp"
 #include "server/http/exchange.hpp"
@@ -58,6 +59,7 @@ class Server::Impl : public httplib::Server {
   Metrics& metrics_;
   const Cors cors_;
   Admission admission_;
+  ByteBudget body_memory_;
   AccessLog access_log_;
   std::atomic<bool> stopping_ = false;
   std::atomic<Clock::time_point> silent_until_{};  ///< after a complaint

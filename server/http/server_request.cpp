@@ -122,7 +122,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
 void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
   Exchange& exchange = *t_exchange;
   try {
-    read_body(exchange, reader, settings_.body_bytes, settings_.body_time);
+    read_body(exchange, reader, {settings_.body_bytes, settings_.body_time, &body_memory_});
   } catch (...) {
     exchange.must_close = true;
     reply(exchange, out, failed(exchange, std::current_exception()));

@@ -57,6 +57,30 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
 }
 
+TEST_F(HttpServerTimes, SendsABodyAwayForWhichOthersLeaveNoMemoryAndTakesItLater) {
+  settings_.body_bytes = 50'000;
+  settings_.all_bodies_bytes = 60'000;
+  settings_.body_time = 10min;
+  const auto server = started();
+  const std::string body(40'000, 'x');
+  {
+    testing::RawConnection slow(port_);
+    slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 50000\r\n\r\n" + body);
+    auto answer = client().Post("/length", body, "text/plain");
+    for (int tries = 0; answer && answer->status == 200 && tries < 1000; ++tries) {  // until the slow one has sent it
+      answer = client().Post("/length", body, "text/plain");
+    }
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 503);
+  }
+  auto later = client().Post("/length", body, "text/plain");
+  for (int tries = 0; later && later->status == 503 && tries < 1000; ++tries) {  // until the slow one is noticed gone
+    later = client().Post("/length", body, "text/plain");
+  }
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->body, "40000");
+}
+
 TEST_F(HttpServerTimes, ListensToARefusedBodySoThatItsSlowSenderLearnsWhy) {
   const auto server = started();
   const auto slowly = [](std::size_t, std::size_t, httplib::DataSink& sink) {

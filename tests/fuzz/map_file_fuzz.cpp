@@ -16,10 +16,10 @@
 #include "tiles/store/map_verifier.hpp"
 #include "tiles/store/map_writer.hpp"
 
+namespace roadfix {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace roadfix;
 
 fs::path scratch() {
   return fs::temp_directory_path() / ("roadfix-map-file-fuzz-" + std::to_string(getpid()) + ".gpkg");
@@ -69,9 +69,7 @@ void read_everything(const fs::path& path) {
   map.read({map.info().settings.cell_m, {100 * 256, -1000 * 256}, 300, 300});
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+void try_every_use(const std::uint8_t* data, std::size_t size) {
   static const std::string whole = small_map();
   const fs::path path = scratch();
   std::ofstream(path, std::ios::binary | std::ios::trunc) << changed(whole, data, size);
@@ -85,5 +83,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   std::error_code ignored;
   fs::remove(path, ignored);
+}
+
+}  // namespace
+}  // namespace roadfix
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  roadfix::try_every_use(data, size);
   return 0;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
@@ -87,8 +88,9 @@ TEST(LensOf, TakesThePrincipalPointFromTheCentreOfTheFirstPixel) {
 }
 
 TEST(FrameCamera, IsRefusedWithACalibrationOfFramesOfAnotherSize) {
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   FrameCamera camera = calibrated();
-  for (const cv::Point2d far : {cv::Point2d(630, 470), {150, 240}, {320, 361}, {NAN, 240}}) {
+  for (const cv::Point2d far : {cv::Point2d(630, 470), {150, 240}, {320, 361}, {kNoNumber, 240}}) {
     camera.principal_px = far;
     EXPECT_THAT(testing::message_of([&] { validate(camera, kFrame); }), ::testing::HasSubstr("for frames of this size"))
         << far;

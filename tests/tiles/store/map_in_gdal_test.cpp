@@ -50,7 +50,7 @@ TEST_P(MapInGdal, IsARasterOfProbabilitiesInPlaceWithNoData) {
   int has_no_data = 0;
   const auto no_data = static_cast<float>(band->GetNoDataValue(&has_no_data));
   ASSERT_NE(has_no_data, 0);
-  std::vector<float> values(256 * 246);
+  std::vector<float> values(std::size_t{256} * 246);
   ASSERT_EQ(band->RasterIO(GF_Read, 0, 0, 256, 246, values.data(), 256, 246, GDT_Float32, 0, 0), CE_None);
   for (int row = 0; row < 246; ++row) {
     for (int col = 0; col < 256; ++col) {

@@ -6,7 +6,7 @@
 
 namespace roadfix {
 
-/// Calls work(first, last) for ranges that cover 0..count once. The work must not throw.
+/// Calls work(first, last) for ranges that cover 0..count once. The first exception of the work is thrown here.
 void for_ranges(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& work);
 
 }  // namespace roadfix

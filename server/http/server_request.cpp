@@ -37,7 +37,8 @@ void Server::Impl::set_callbacks() {
   set_error_handler(HandlerWithResponse([this](const auto&, auto& out) { return complete_error(out); }));
   set_post_routing_handler([](const auto&, auto& out) { correct_head(out); });
   // To serve_request(): the library would answer 500 with the text of the error.
-  set_exception_handler([](const auto&, auto&, std::exception_ptr thrown) { std::rethrow_exception(thrown); });
+  set_exception_handler(
+      [](const auto&, auto&, std::exception_ptr thrown) { std::rethrow_exception(std::move(thrown)); });
   set_logger([this](const auto& head, const auto& out) { finished(head, out); });
 }
 

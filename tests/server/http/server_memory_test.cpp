@@ -50,8 +50,8 @@ std::string get(const std::string& target) {
 
 class HttpServerMemory : public testing::HttpServerTest, public ::testing::WithParamInterface<Fails> {
  protected:
-  HttpServerMemory() { t_is_spared = true; }
-  ~HttpServerMemory() override { t_is_spared = false; }
+  void SetUp() override { t_is_spared = true; }
+  void TearDown() override { t_is_spared = false; }
 
   /// What is answered where the server is given memory so many times, and then once not or no more.
   std::string answer_after(int allocations, const std::string& request) {

@@ -36,8 +36,9 @@ class Row {
       : names_(names), cells_(split(text, ',')), line_(line) {}
 
   std::string_view text(std::string_view name) const {
-    const auto column = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
-    return column < cells_.size() ? cells_[column] : std::string_view();
+    const auto found = std::ranges::find(names_, name);
+    const auto column = static_cast<std::size_t>(found - names_.begin());
+    return found != names_.end() && column < cells_.size() ? cells_[column] : std::string_view();
   }
   bool has(std::string_view name) const { return !text(name).empty(); }
 

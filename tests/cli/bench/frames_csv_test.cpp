@@ -33,6 +33,13 @@ TEST(FramesCsv, KnowsTheTimeWhereThereIsOne) {
   EXPECT_FALSE(frames.at(2).time_s);
 }
 
+TEST(FramesCsv, TakesNoCellBeyondTheHeaderForAColumnThatIsNotThere) {
+  const auto frames = parse_frames_csv("file,lat,lon,heading_deg,gsd_m\na,1,1,0,1,12,13\n");
+  EXPECT_EQ(frames.at(0).sequence, "");
+  EXPECT_FALSE(frames.at(0).time_s);
+  EXPECT_FALSE(frames.at(0).camera);
+}
+
 TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {
   const auto frames = parse_frames_csv(
       "\xef\xbb\xbf"

@@ -89,6 +89,7 @@ void run_detect(const DetectOptions& options) {
                         {"cols", cells.cols()},
                         {"rows", cells.rows()},
                         {"nadir_cell", {map.nadir.col, map.nadir.row}},
+                        {"nadir_sigma_m", map.nadir_sigma_m},
                         {"observed_cells", cells.observed_count()},
                         {"mean_probability", mean_probability(cells)},
                         {"detector", detector->describe()},

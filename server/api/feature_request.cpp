@@ -160,7 +160,8 @@ const std::vector<std::string>& frame_fields() {
 }
 
 const std::vector<std::string>& feature_fields() {
-  static const std::vector<std::string> kFields = joined({"kind", "nadir_col", "nadir_row"}, frame_fields());
+  static const std::vector<std::string> kFields =
+      joined({"kind", "nadir_col", "nadir_row", "nadir_sigma_m"}, frame_fields());
   return kFields;
 }
 

@@ -99,8 +99,8 @@ TrackRequest parse_track(const Fields& fields, const Limits& limits) {
 }
 
 const std::vector<std::string>& step_fields() {
-  static const std::vector<std::string> kFields{"sequence", "time_us",    "forward_m",    "right_m",
-                                                "turn_deg", "covariance", "nadir_sigma_m"};
+  static const std::vector<std::string> kFields{"sequence", "time_us",  "forward_m",
+                                                "right_m",  "turn_deg", "covariance"};
   return kFields;
 }
 

@@ -135,9 +135,13 @@ std::array<double, 6> geotransform(const Window& window) {
 }
 
 json to_json(const FeatureMap& features) {
-  return {{"cols", features.cells.cols()},   {"rows", features.cells.rows()},
-          {"cell_m", features.cell_m},       {"nadir_col", features.nadir.col},
-          {"nadir_row", features.nadir.row}, {"cells", base64_encoded(features.cells.cells())}};
+  return {{"cols", features.cells.cols()},
+          {"rows", features.cells.rows()},
+          {"cell_m", features.cell_m},
+          {"nadir_col", features.nadir.col},
+          {"nadir_row", features.nadir.row},
+          {"nadir_sigma_m", features.nadir_sigma_m},
+          {"cells", base64_encoded(features.cells.cells())}};
 }
 
 json to_json(const Window& window) {

@@ -15,8 +15,7 @@ namespace roadfix::server {
 namespace {
 
 std::vector<std::string> fix_fields() {
-  return joined(joined(api::feature_fields(), api::prior_fields()),
-                joined(api::position_fields(), {"time_us", "nadir_sigma_m"}));
+  return joined(joined(api::feature_fields(), api::prior_fields()), joined(api::position_fields(), {"time_us"}));
 }
 
 /// The frame was captured at time_us, or when the request came.

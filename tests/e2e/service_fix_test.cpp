@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
 #include "server/api/base64.hpp"
@@ -190,6 +191,14 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
   const json features = testing::json_of(
       client_.Post("/v1/detect?fov_deg=60&agl_m=200&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
   EXPECT_GT(features["cols"], 50);
+  EXPECT_NEAR(features["nadir_sigma_m"], 200.0 * std::numbers::pi / 180.0, 0.3) << "a degree at 200 m";
+  json posted_back = features;
+  for (const char* name : {"detector", "time_ms"}) posted_back.erase(name);
+  const auto located = client_.Post("/v1/maps/town/fix", posted_back.dump(), "application/json");
+  EXPECT_EQ(located->status, 200) << located->body;
+  posted_back["poses"] = {{{"lat", 0}, {"lon", 0}, {"heading_deg", 0}}};
+  const auto matched = client_.Post("/v1/maps/town/match", posted_back.dump(), "application/json");
+  EXPECT_EQ(matched->status, 200) << matched->body;
   const std::string focal = "/v1/detect?focal_px=200&agl_m=100&format=json";
   const auto cols = [&](const std::string& lens) {
     return testing::json_of(client_.Post(focal + lens, testing::text_of(png), "image/png"))["cols"].get<int>();

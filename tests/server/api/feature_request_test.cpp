@@ -24,7 +24,7 @@ class NoRoads : public RoadDetector {
 
 double nadir_sigma_m_of(const nlohmann::json& request) {
   Content content;
-  content.fields.add(request, joined(feature_fields(), {"nadir_sigma_m"}));
+  content.fields.add(request, feature_fields());
   content.image = encode_feature_map(CellArray(20, 20, kNoRoad));
   return features_of(content, NoRoads(), 2.0, Limits{}, {}).map.nadir_sigma_m;
 }

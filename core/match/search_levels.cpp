@@ -64,7 +64,6 @@ double side_seen_m(const FeatureMap& features) {
 SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
                            const PoseRegion& region, const SearchOptions& options)
     : region_(region),
-      finest_cell_m_(finest_cell_m),
       side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())),
       seen_m_(side_seen_m(features)) {
   const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region);
@@ -72,16 +71,13 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
   const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
-  for (int k = finest_level(finest_cell_m, seen_m_, coarsest); k <= coarsest; ++k) {
+  finest_ = finest_level(finest_cell_m, seen_m_, coarsest);
+  for (int k = finest_; k <= coarsest; ++k) {
     const double cell_m = std::ldexp(finest_cell_m, k);
     levels_.push_back({read, features, LevelFeatures(resampled(features, cell_m), options.min_observed_share),
                        options.min_observed_share, HeadingBins(bins.count() << (coarsest - k)),
                        scales.finer(1 << (coarsest - k)), options.threads});
   }
-}
-
-int SearchLevels::halvings(int index) const {
-  return static_cast<int>(std::lround(std::log2(at(index).cell_m() / finest_cell_m_)));
 }
 
 std::size_t SearchLevels::followed(int index) const {

@@ -26,7 +26,7 @@ class SearchLevels {
   const Level& coarse() const { return levels_.back(); }
   const Level& finest() const { return levels_.front(); }
   /// From the finest cells that were given to those of a level. Large footprints leave the finest levels out.
-  int halvings(int index) const;
+  int halvings(int index) const { return finest_ + index; }
   const PoseRegion& region() const { return region_; }
   /// The longer side of the feature map.
   double side_m() const { return side_m_; }
@@ -42,9 +42,9 @@ class SearchLevels {
 
  private:
   const PoseRegion& region_;
-  double finest_cell_m_;
   double side_m_;
   double seen_m_;              ///< side of a square as large as the ground that was seen
+  int finest_ = 0;             ///< halvings() of the finest level
   std::vector<Level> levels_;  ///< finest first
 };
 

@@ -20,16 +20,19 @@ Orthoimage textured(unsigned seed) {
   return {{picture, cv::Mat(800, 800, CV_8UC1, cv::Scalar(255)), 0.5}, kZone.project({37.76, 38.28})};
 }
 
-class FeatureMethods : public ::testing::TestWithParam<FeatureKind> {};
+class FeatureMethods : public ::testing::TestWithParam<FeatureKind> {
+ protected:
+  const Orthoimage ortho_ = textured(1);
+  const std::unique_ptr<Method> method_ = make_feature_method(GetParam(), {ortho_}, kZone);
+  const GridPoint place_{ortho_.north_west.east_m + 210.0, ortho_.north_west.north_m - 190.0};
+};
 
 TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
-  const Orthoimage ortho = textured(1);
-  const auto method = make_feature_method(GetParam(), {ortho}, kZone);
-  const GridPose truth{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(37)};
+  const GridPose truth{place_, Angle::degrees(37)};
   Query query;
-  query.view = rectified(cut_out(ortho, truth, {150, 150}, 0.5));
+  query.view = rectified(cut_out(ortho_, truth, {150, 150}, 0.5));
   query.truth = GeoPose{kZone.unproject(truth.position), kZone.true_from_grid(truth.heading, truth.position)};
-  const Answer answer = method->answer(query);
+  const Answer answer = method_->answer(query);
   ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
   EXPECT_LT(distance_m(kZone.project(answer.best->position), truth.position), 0.5);
   EXPECT_LT(angular_distance(answer.best->heading, kZone.true_from_grid(truth.heading, truth.position)).degrees(), 0.3);
@@ -38,23 +41,20 @@ TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
 }
 
 TEST_P(FeatureMethods, PlaceTheUavAndNotTheMiddleOfWhatItSees) {
-  const Orthoimage ortho = textured(1);
-  const auto method = make_feature_method(GetParam(), {ortho}, kZone);
-  const GridPose middle{{ortho.north_west.east_m + 210.0, ortho.north_west.north_m - 190.0}, Angle::degrees(90)};
+  const GridPose middle{place_, Angle::degrees(90)};
   Query query;
-  query.view = rectified(cut_out(ortho, middle, {150, 150}, 0.5));
+  query.view = rectified(cut_out(ortho_, middle, {150, 150}, 0.5));
   query.view->nadir_px.y += 60.0;  // 30 m behind the middle, which is 30 m to the west
-  const Answer answer = method->answer(query);
+  const Answer answer = method_->answer(query);
   ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
   const GridPoint west{middle.position.east_m - 30.0, middle.position.north_m};
   EXPECT_LT(distance_m(kZone.project(answer.best->position), west), 0.5);
 }
 
 TEST_P(FeatureMethods, GiveNoFixOnOtherImagery) {
-  const auto method = make_feature_method(GetParam(), {textured(1)}, kZone);
   Query query;
   query.view = rectified(textured(2).image);
-  EXPECT_EQ(method->answer(query).status, FixStatus::kNoFix);
+  EXPECT_EQ(method_->answer(query).status, FixStatus::kNoFix);
 }
 
 INSTANTIATE_TEST_SUITE_P(SiftAndOrb, FeatureMethods, ::testing::Values(FeatureKind::kSift, FeatureKind::kOrb));

@@ -63,20 +63,22 @@ TEST_F(HttpServerTimes, SendsABodyAwayForWhichOthersLeaveNoMemoryAndTakesItLater
   settings_.body_time = 10min;
   const auto server = started();
   const std::string body(40'000, 'x');
+  // The slow one needs a moment to send what it holds, and its end one to be noticed.
+  const auto posted_until_it_is_not = [&](int status) {
+    auto answer = client().Post("/length", body, "text/plain");
+    for (int tries = 0; answer && answer->status == status && tries < 1000; ++tries) {
+      answer = client().Post("/length", body, "text/plain");
+    }
+    return answer;
+  };
   {
     testing::RawConnection slow(port_);
     slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 50000\r\n\r\n" + body);
-    auto answer = client().Post("/length", body, "text/plain");
-    for (int tries = 0; answer && answer->status == 200 && tries < 1000; ++tries) {  // until the slow one has sent it
-      answer = client().Post("/length", body, "text/plain");
-    }
+    const auto answer = posted_until_it_is_not(200);
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->status, 503);
   }
-  auto later = client().Post("/length", body, "text/plain");
-  for (int tries = 0; later && later->status == 503 && tries < 1000; ++tries) {  // until the slow one is noticed gone
-    later = client().Post("/length", body, "text/plain");
-  }
+  const auto later = posted_until_it_is_not(503);
   ASSERT_TRUE(later);
   EXPECT_EQ(later->body, "40000");
 }

@@ -41,9 +41,7 @@ FrameCamera camera_of(const FrameOptions& options) {
   if (options.fisheye) camera.lens = LensModel::kFisheye;
   camera.distortion = options.distortion;
   camera.agl_m = options.agl_m;
-  camera.roll = Angle::degrees(options.roll_deg.value_or(0.0));
-  camera.pitch = Angle::degrees(options.pitch_deg.value_or(0.0));
-  if (options.roll_deg || options.pitch_deg) camera.attitude_sigma = kToldAttitudeSigma;
+  set_attitude(camera, options.roll_deg, options.pitch_deg);
   return camera;
 }
 

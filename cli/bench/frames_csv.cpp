@@ -43,13 +43,9 @@ class Row {
   bool has(std::string_view name) const { return !text(name).empty(); }
 
   double number(std::string_view name, double low, double high) const { return number(name, text(name), low, high); }
-  std::optional<double> optional_number(std::string_view name) const {
+  std::optional<double> optional_number(std::string_view name, double low, double high) const {
     if (!has(name)) return std::nullopt;
-    return number(name, -kAnyNumber, kAnyNumber);
-  }
-  std::optional<Angle> optional_angle(std::string_view name) const {
-    if (!has(name)) return std::nullopt;
-    return Angle::degrees(number(name, -360.0, 360.0));
+    return number(name, low, high);
   }
   std::vector<double> numbers(std::string_view name) const {
     std::vector<double> values;
@@ -76,14 +72,15 @@ class Row {
 FrameCamera camera_of(const Row& row) {
   FrameCamera camera;
   camera.agl_m = row.number("agl_m", 0.0, kAnyNumber);
-  camera.horizontal_fov = row.optional_angle("fov_deg");
-  camera.focal_px = row.optional_number("focal_px");
+  if (const auto fov_deg = row.optional_number("fov_deg", -360.0, 360.0)) {
+    camera.horizontal_fov = Angle::degrees(*fov_deg);
+  }
+  camera.focal_px = row.optional_number("focal_px", -kAnyNumber, kAnyNumber);
   if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
     row.refuse("agl_m needs either fov_deg or focal_px");
   }
-  camera.roll = row.optional_angle("roll_deg").value_or(Angle());
-  camera.pitch = row.optional_angle("pitch_deg").value_or(Angle());
-  if (row.has("roll_deg") || row.has("pitch_deg")) camera.attitude_sigma = kToldAttitudeSigma;
+  const auto roll_deg = row.optional_number("roll_deg", -360.0, 360.0);
+  set_attitude(camera, roll_deg, row.optional_number("pitch_deg", -360.0, 360.0));
   if (row.has("principal_px")) {
     const std::vector<double> principal = row.numbers("principal_px");
     if (principal.size() != 2) row.refuse("principal_px must be two numbers with a blank between");
@@ -115,7 +112,7 @@ FrameTruth frame_of(const Row& row) {
     frame.gsd_m = row.number("gsd_m", 1e-3, 1e3);
   }
   frame.sequence = std::string(row.text("sequence"));
-  frame.time_s = row.optional_number("time_s");
+  frame.time_s = row.optional_number("time_s", -kAnyNumber, kAnyNumber);
   return frame;
 }
 

@@ -29,6 +29,12 @@ double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2);
 
 }  // namespace
 
+void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg) {
+  camera.roll = Angle::degrees(roll_deg.value_or(0.0));
+  camera.pitch = Angle::degrees(pitch_deg.value_or(0.0));
+  camera.attitude_sigma = roll_deg || pitch_deg ? kToldAttitudeSigma : kUntoldAttitudeSigma;
+}
+
 void validate(const FrameCamera& camera, cv::Size frame) {
   if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
     throw InvalidInput("frame-camera", "frame: give either the field of view or the focal length");

@@ -36,6 +36,10 @@ struct FrameCamera {
   Angle attitude_sigma = kUntoldAttitudeSigma;  ///< how well both are known, 1 sigma each
 };
 
+/// What was told of roll and pitch, and with it how well both are known: what is not told is zero, and where neither is
+/// told the camera is only taken to look straight down.
+void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg);
+
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
 void validate(const FrameCamera& camera, cv::Size frame);
 

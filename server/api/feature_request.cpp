@@ -89,10 +89,7 @@ FrameCamera camera_of(const Fields& fields) {
   camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
   camera.agl_m = fields.number("agl_m", {0.0, 20'000.0, true});
   const auto roll_deg = fields.optional_number("roll_deg", {-90.0, 90.0});
-  const auto pitch_deg = fields.optional_number("pitch_deg", {-90.0, 90.0});
-  camera.roll = Angle::degrees(roll_deg.value_or(0.0));
-  camera.pitch = Angle::degrees(pitch_deg.value_or(0.0));
-  if (roll_deg || pitch_deg) camera.attitude_sigma = kToldAttitudeSigma;
+  set_attitude(camera, roll_deg, fields.optional_number("pitch_deg", {-90.0, 90.0}));
   return camera;
 }
 
@@ -177,14 +174,14 @@ std::optional<double> told_nadir_sigma_m(const Fields& fields) {
 
 Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                      const std::stop_token& stop) {
-  const bool is_frame = content.fields.word("kind", kKinds) == "frame";
-  if (is_frame) {
+  Features features;
+  if (content.fields.word("kind", kKinds) == "frame") {
     require_no_place_of_the_nadir(content.fields);
+    features = detected(content, detector, default_cell_m, limits, stop);
   } else {
     require_feature_map(content.fields);
+    features.map = given_map(content, limits);
   }
-  Features features = is_frame ? detected(content, detector, default_cell_m, limits, stop)
-                               : Features{given_map(content, limits), std::nullopt};
   if (const auto told = told_nadir_sigma_m(content.fields)) features.map.nadir_sigma_m = *told;
   return features;
 }

@@ -150,6 +150,17 @@ void explain_cut_off(const Connection& map) {
                                 map.path().string(), missing));
 }
 
+/// Reading a map in WAL mode takes files beside it, even where nobody writes.
+void explain_wal_mode(const Connection& map) {
+  if (!map.in_wal_mode()) return;
+  throw IoFailure(
+      "map-in-wal-mode",
+      fmt::format("{}: another program left it in SQLite's WAL mode, in which it cannot be read in a folder "
+                  "that may not be written to. Close it there and run roadfix verify --repair on it where "
+                  "it may be written to",
+                  map.path().string()));
+}
+
 /// The first look into the file; undoes what a killed writer left.
 void look_into(Connection& map) {
   const Transaction no_writer_between(map, Transaction::Kind::kRead);
@@ -157,11 +168,23 @@ void look_into(Connection& map) {
   try {
     pragma(map, kLook);
   } catch (const IoFailure& error) {
-    if (error.code() != kMapNeedsRecovery) throw;
+    if (error.code() != kMapNeedsRecovery) {
+      explain_wal_mode(map);
+      throw;
+    }
     recover_map(map.path());
     pragma(map, kLook);
   }
   explain_cut_off(map);
+}
+
+/// QGIS leaves a map that it did not close in WAL mode, which is not readable in a folder without write permission.
+void leave_wal_mode(Connection& map) {
+  try {
+    Statement(map, "PRAGMA journal_mode = DELETE").run();
+  } catch (const Interrupted&) {
+    // Somebody has it open; it can be written to all the same, and the next writer tries again.
+  }
 }
 
 GridBox extent_of(Connection& map, const Statement& row) {
@@ -215,6 +238,7 @@ Connection open_map(const fs::path& path, Access access) {
   try {
     look_into(map);
     require_ours(map);
+    if (access == Access::kReadWrite) leave_wal_mode(map);
   } catch (const CorruptData&) {
     explain_cut_off(map);
     throw;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <optional>
 #include <system_error>
 
 namespace roadfix::sqlite {
@@ -31,6 +32,28 @@ Failure failure_of(int code) {
     default:
       return Failure::kOther;
   }
+}
+
+/// The header of "Database File Format", https://www.sqlite.org/fileformat2.html#the_database_header
+using Header = std::array<unsigned char, 100>;
+
+/// The database file as SQLite holds it open; nullptr where it does not.
+sqlite3_file* file_of(sqlite3* handle) {
+  sqlite3_file* file = nullptr;
+  const int code = sqlite3_file_control(handle, "main", SQLITE_FCNTL_FILE_POINTER, static_cast<void*>(&file));
+  return code == SQLITE_OK && file->pMethods != nullptr ? file : nullptr;
+}
+
+std::optional<Header> header_of(sqlite3_file* file) {
+  Header header{};
+  if (file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0) != SQLITE_OK) return {};
+  return header;
+}
+
+std::int64_t big_endian(const Header& header, std::size_t at, std::size_t bytes) {
+  std::int64_t value = 0;
+  for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | header[at + i];
+  return value;
 }
 
 }  // namespace
@@ -64,26 +87,22 @@ void Connection::execute(const char* sql) {
 }
 
 std::int64_t Connection::missing_bytes() const {
-  sqlite3_file* file = nullptr;
-  std::array<unsigned char, 100> header{};
+  sqlite3_file* const file = file_of(handle_.get());
   sqlite3_int64 size = 0;
-  if (sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_FILE_POINTER, static_cast<void*>(&file)) != SQLITE_OK ||
-      file->pMethods == nullptr || file->pMethods->xFileSize(file, &size) != SQLITE_OK) {
-    return 0;
-  }
-  const auto header_size = static_cast<sqlite3_int64>(header.size());
-  if (size < header_size) return header_size - size;
-  if (file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0) != SQLITE_OK) {
-    return 0;
-  }
-  const auto big_endian = [&](std::size_t at, std::size_t bytes) {
-    std::int64_t value = 0;
-    for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | header[at + i];
-    return value;
-  };
-  // Offsets of "Database File Format", https://www.sqlite.org/fileformat2.html#the_database_header
-  const std::int64_t page = big_endian(16, 2) == 1 ? 65536 : big_endian(16, 2);
-  return std::max<std::int64_t>(0, page * big_endian(28, 4) - size);
+  if (file == nullptr || file->pMethods->xFileSize(file, &size) != SQLITE_OK) return 0;
+  constexpr auto kHeaderSize = static_cast<sqlite3_int64>(Header{}.size());
+  if (size < kHeaderSize) return kHeaderSize - size;
+  const auto header = header_of(file);
+  if (!header) return 0;
+  const std::int64_t page = big_endian(*header, 16, 2) == 1 ? 65536 : big_endian(*header, 16, 2);
+  return std::max<std::int64_t>(0, page * big_endian(*header, 28, 4) - size);
+}
+
+bool Connection::in_wal_mode() const {
+  sqlite3_file* const file = file_of(handle_.get());
+  const auto header = file == nullptr ? std::nullopt : header_of(file);
+  constexpr std::int64_t kWal = 2;
+  return header && big_endian(*header, 19, 1) == kWal;
 }
 
 std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_.get()); }

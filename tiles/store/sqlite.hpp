@@ -46,6 +46,8 @@ class Connection {
   /// Bytes that the file lacks according to its own header; 0 for a whole file. Reads through SQLite's descriptor:
   /// closing another one would drop the locks of every connection of this process.
   std::int64_t missing_bytes() const;
+  /// Whether the file keeps a write-ahead log, for which even a reader makes files beside it. Reads as missing_bytes().
+  bool in_wal_mode() const;
   sqlite3* handle() const { return handle_.get(); }
   /// Throws what the failure of a call with this result code means.
   [[noreturn]] void fail(int code, const std::string& detail) const;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/units/error.hpp"
+#include "tests/support/as_another_user.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
@@ -100,6 +101,35 @@ TEST_F(MapFile, DamagedSettingsAreFound) {
     EXPECT_EQ(opened(), "map-corrupt") << sql;
     fs::rename(whole, path);
   }
+}
+
+TEST_F(MapFile, OneInWalModeSaysSoInAFolderThatMayNotBeWrittenTo) {
+  execute("PRAGMA journal_mode = WAL");
+  using fs::perms;
+  constexpr perms kRead = perms::owner_read | perms::group_read | perms::others_read;
+  fs::permissions(folder.path(), kRead | perms::owner_exec | perms::group_exec | perms::others_exec);
+  const testing::AsAnotherUser other;
+  if (other.may_do_everything()) GTEST_SKIP() << "there is no other user here";
+  EXPECT_EQ(opened(), "map-in-wal-mode");
+}
+
+TEST_F(MapFile, AWriterTakesItOutOfWalModeUnlessSomebodyHasItOpen) {
+  const auto in_wal_mode = [&] {
+    auto map = testing::open_sqlite(path);
+    sqlite::Statement mode(map, "PRAGMA journal_mode");
+    return mode.step() && mode.text(0) == "wal";
+  };
+  execute("PRAGMA journal_mode = WAL");
+  {
+    auto open_elsewhere = testing::open_sqlite(path);
+    open_elsewhere.execute("SELECT count(*) FROM gpkg_contents");
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"b", 2, some_blocks(1)});
+    EXPECT_TRUE(in_wal_mode());
+  }
+  MapWriter(path, settings_37n());
+  EXPECT_FALSE(in_wal_mode());
+  EXPECT_EQ(opened(), "whole");
 }
 
 TEST_F(MapFile, ACutOffOneSaysSoWhereverItEnds) {

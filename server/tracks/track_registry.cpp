@@ -110,10 +110,9 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   return track;
 }
 
-std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) {
-  expire();
+std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) const {
   std::vector<StoredTrack> tracks = store().flying();
-  std::erase_if(tracks, [&](const StoredTrack& track) { return track.client != client; });
+  std::erase_if(tracks, [&](const StoredTrack& track) { return track.client != client || !ended(track).empty(); });
   return tracks;
 }
 

@@ -50,7 +50,7 @@ class TrackRegistry {
   /// and LimitExceeded ("too-many-tracks").
   StoredTrack create(const std::string& client, const std::string& request);
   /// Of one client, newest first.
-  std::vector<StoredTrack> of_client(const std::string& client);
+  std::vector<StoredTrack> of_client(const std::string& client) const;
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
   /// Since its last step, its beginning or the start of the service.

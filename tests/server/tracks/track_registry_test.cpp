@@ -211,6 +211,7 @@ TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
   EXPECT_EQ(code_of([&] { tracks->find(id); }), "track-ended");
   EXPECT_EQ(code_of([&] { take(*tracks, id, 0); }), "track-ended");
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "track-ended");
+  EXPECT_TRUE(tracks->of_client("::1").empty());
 }
 
 TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {

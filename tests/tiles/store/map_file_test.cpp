@@ -127,7 +127,7 @@ TEST_F(MapFile, AWriterTakesItOutOfWalModeUnlessSomebodyHasItOpen) {
     ingest(writer, {"b", 2, some_blocks(1)});
     EXPECT_TRUE(in_wal_mode());
   }
-  MapWriter(path, settings_37n());
+  const MapWriter next(path, settings_37n());
   EXPECT_FALSE(in_wal_mode());
   EXPECT_EQ(opened(), "whole");
 }

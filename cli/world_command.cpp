@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,26 +22,17 @@ struct WorldArguments {
   std::vector<double> centre;
 };
 
-/// So that the frames can be asked about at once, by every method.
-void write_bench(const std::filesystem::path& folder) {
-  const nlohmann::ordered_json manifest{
-      {"maps", {{{"name", "before"}, {"sources", {{{"path", "pre.tif"}, {"as", "imagery"}}}}}}},
-      {"queries", {{{"map", "before"}, {"frames", "frames/frames.csv"}}}},
-      {"methods", {"roads", "sift", "orb"}}};
-  write_file(folder / "bench.json", manifest.dump(2) + '\n');
-}
-
 void render(const WorldArguments& options) {
   world::WorldSettings settings = options.settings;
   settings.width_m = options.size_km[0] * 1000.0;
   settings.height_m = options.size_km[1] * 1000.0;
+  require_apart({std::filesystem::path(options.folder) / "roads.geojson"}, {settings.roads});
   if (!options.centre.empty()) settings.centre = LatLon{options.centre[0], options.centre[1]};
   const std::stop_token stop = stop_on_signals();
   const world::WorldReport report = [&] {
     Progress progress("world", "MP", world::kTilePx * world::kTilePx / 1e6);
     return world::render_world(settings, options.folder, progress.updates(), stop);
   }();
-  if (report.frames > 0) write_bench(options.folder);
   fmt::print(
       "{}: pre.tif and post.tif, {} x {} pixels of {:g} m in EPSG:{}\n"
       "{:.1f} km of roads, {} buildings of which {} collapsed, {} frames (seed {})\n",
@@ -60,7 +50,7 @@ void add_world_command(CLI::App& app) {
       "          roadfix world goteborg --roads highways.geojson --centre 57.70,11.97 --size-km 2x1.5\n"
       "          roadfix world country --land country --varied\n"
       "Writes pre.tif, post.tif, roads.geojson, world.json, frames/ with frames.csv, and bench.json for roadfix "
-      "bench.");
+      "bench, in place of an earlier world's. A folder without world.json holds an unfinished one.");
   const auto options = std::make_shared<WorldArguments>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder", options->folder, "Folder to write to, created if missing")->required();

@@ -1,6 +1,7 @@
 // roadfix world as a script meets it.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <string>
 
 #include "tests/support/run_program.hpp"
@@ -24,6 +25,15 @@ TEST(WorldCommand, LeavesAManifestThatBenchRunsAsItIs) {
   for (const char* method : {"roads   before", "sift    before", "orb     before"}) {
     EXPECT_THAT(bench.out, HasSubstr(method));
   }
+}
+
+TEST(WorldCommand, KeepsTheRoadsThatItIsGiven) {
+  const testing::TemporaryFolder folder;
+  const std::string roads = (folder / "roads.geojson").string();
+  std::ofstream(roads) << "mine";
+  const ProgramResult world = run_program(folder.path(), "world " + folder.path().string() + " --roads " + roads);
+  EXPECT_THAT(world.err, HasSubstr("target-is-source"));
+  EXPECT_EQ(testing::text_of(roads), "mine");
 }
 
 TEST(WorldCommand, RendersALandThatItKnowsOnly) {

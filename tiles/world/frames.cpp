@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <regex>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/world/world_files.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -26,20 +25,6 @@ cv::Mat3b read_pixels(const std::string& picture, cv::Rect pixels) {
     throw IoFailure("world-unreadable", fmt::format("{}: cannot be read again ({})", picture, messages.text()));
   }
   return result;
-}
-
-bool is_frame(const std::filesystem::path& file) {
-  static const std::regex kName("frame_[0-9]+\\.png");
-  return std::regex_match(file.filename().string(), kName);
-}
-
-/// Frames of a world that was rendered here before show another place, or none of this table.
-void remove_frames(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (is_frame(entry.path())) old.push_back(entry.path());
-  }
-  for (const auto& file : old) std::filesystem::remove(file);
 }
 
 }  // namespace
@@ -77,11 +62,11 @@ cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, cons
 }
 
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
-                  const Placement& placement, const std::vector<GridPose>& poses) {
-  remove_frames(folder);
+                  const Placement& placement, const std::vector<GridPose>& poses, const std::stop_token& stop) {
   std::ofstream table(folder + "/frames.csv");
   table << "file,lat,lon,heading_deg,gsd_m\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
+    throw_if_stopped(stop);
     const std::string name = fmt::format("frame_{:02}.png", i + 1);
     cv::Mat bgr;
     cv::cvtColor(cut_frame(picture, placement, poses[i], settings.footprint_m), bgr, cv::COLOR_RGB2BGR);

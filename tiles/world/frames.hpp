@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ std::vector<GridPose> draw_poses(const WorldSettings& settings, const Placement&
 cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, const GridPose& pose, double footprint_m);
 
 /// FOLDER/frame_01.png ... and FOLDER/frames.csv: file, lat, lon, heading_deg (from true north), gsd_m. The folder is
-/// there; frames of an earlier world go.
+/// there. Throws IoFailure "world-unwritable", Interrupted.
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
-                  const Placement& placement, const std::vector<GridPose>& poses);
+                  const Placement& placement, const std::vector<GridPose>& poses, const std::stop_token& stop);
 
 }  // namespace roadfix::world

@@ -1,12 +1,8 @@
 #include "tiles/world/world.hpp"
 
-#include <fmt/format.h>
+#include <string>
+#include <utility>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <system_error>
-
-#include "core/units/error.hpp"
 #include "tiles/sources/road_lines.hpp"
 #include "tiles/world/conditions.hpp"
 #include "tiles/world/country.hpp"
@@ -20,6 +16,7 @@
 #include "tiles/world/real_streets.hpp"
 #include "tiles/world/road_truth.hpp"
 #include "tiles/world/street_network.hpp"
+#include "tiles/world/world_files.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -86,9 +83,7 @@ class Photographer {
     PictureFile file(path, placement_);
     for (int row = 0; row < placement_.rows; row += kTilePx) {
       for (int col = 0; col < placement_.cols; col += kTilePx) {
-        if (stop_.stop_requested()) {
-          throw Interrupted("interrupted", "stopped; nothing unfinished was left. Start the same command again");
-        }
+        throw_if_stopped(stop_);
         const cv::Rect tile = cv::Rect(col, row, kTilePx, kTilePx) & cv::Rect(0, 0, placement_.cols, placement_.rows);
         file.write(tile.tl(), paint_tile(plan, conditions, texture_, tile, placement_.gsd_m));
         if (progress_) progress_(++done_, 2 * tiles());
@@ -110,31 +105,6 @@ class Photographer {
   std::int64_t done_ = 0;
 };
 
-void write_report(const WorldReport& report, const WorldSettings& settings, const std::string& path) {
-  const LatLon centre = report.placement.zone.unproject(
-      report.placement.point_of(report.placement.cols / 2.0, report.placement.rows / 2.0));
-  const nlohmann::ordered_json json{
-      {"seed", settings.seed},
-      {"land", settings.land == Land::kCountry ? "country" : "town"},
-      {"size_m", {report.placement.cols * settings.gsd_m, report.placement.rows * settings.gsd_m}},
-      {"gsd_m", settings.gsd_m},
-      {"centre", {{"lat", centre.lat_deg}, {"lon", centre.lon_deg}}},
-      {"epsg", report.placement.zone.epsg()},
-      {"roads_from", settings.roads.empty() ? "invented" : std::filesystem::path(settings.roads).filename().string()},
-      {"road_lines", report.road_lines},
-      {"road_km", report.road_km},
-      {"blocks", report.blocks},
-      {"buildings", report.buildings},
-      {"collapsed", report.collapsed},
-      {"trees", report.trees},
-      {"varied", settings.varied},
-      {"frames", report.frames},
-      {"footprint_m", settings.footprint_m}};
-  std::ofstream out(path);
-  out << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path));
-}
-
 WorldReport report_of(const Plan& before, const Plan& after, const Placement& placement, int road_lines) {
   WorldReport report{.placement = placement, .road_lines = road_lines};
   for (const Street& street : before.streets) {
@@ -149,25 +119,16 @@ WorldReport report_of(const Plan& before, const Plan& after, const Placement& pl
   return report;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw IoFailure("world-unwritable",
-                    fmt::format("{}: no folder can be made there ({})", folder.string(), error.message()));
-  }
-}
-
 }  // namespace
 
 WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
-                         const WorldProgress& progress, std::stop_token stop) {
+                         const WorldProgress& progress, const std::stop_token& stop) {
   check(settings);
   const Placement placement = place(settings, centre_of(settings));
   const auto [before, after] = plans_of(settings, placement);
 
-  make_folder(folder / "frames");
-  Photographer photographer(placement, settings.seed, progress, std::move(stop));
+  clear_folder(folder);
+  Photographer photographer(placement, settings.seed, progress, stop);
   Random days(settings.seed, kDays);
   const Conditions day_before = settings.varied ? any_day(days, 1) : summer_before();
   const Conditions day_after = settings.varied ? any_day(days, 5) : winter_after();
@@ -176,10 +137,11 @@ WorldReport render_world(const WorldSettings& settings, const std::filesystem::p
   const int lines = write_road_truth((folder / "roads.geojson").string(), before.streets, placement);
   Random pose(settings.seed, kFrames);
   const auto poses = draw_poses(settings, placement, pose);
-  write_frames((folder / "post.tif").string(), (folder / "frames").string(), settings, placement, poses);
+  write_frames((folder / "post.tif").string(), (folder / "frames").string(), settings, placement, poses, stop);
   WorldReport report = report_of(before, after, placement, lines);
   report.frames = settings.frames;
-  write_report(report, settings, (folder / "world.json").string());
+  if (report.frames > 0) write_bench_manifest(folder);
+  write_report(report, settings, folder);
   return report;
 }
 

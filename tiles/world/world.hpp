@@ -30,9 +30,11 @@ using WorldProgress = std::function<void(std::int64_t tiles_done, std::int64_t t
 /// Pixels of one step of progress.
 inline constexpr int kTilePx = 1024;
 
-/// Writes pre.tif, post.tif, roads.geojson, world.json and frames/ into the folder, which is made where it is missing.
-/// The same settings give the same bytes. Throws InvalidInput for settings that cannot be met, IoFailure, Interrupted.
+/// Writes pre.tif, post.tif, roads.geojson, frames/, bench.json where there are frames, and at last world.json into the
+/// folder, which is made where it is missing. What an earlier world left there goes first, so that a folder without
+/// world.json holds an unfinished one and never parts of two. The same settings give the same bytes. Throws
+/// InvalidInput for settings that cannot be met, IoFailure, Interrupted.
 WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
-                         const WorldProgress& progress, std::stop_token stop);
+                         const WorldProgress& progress, const std::stop_token& stop);
 
 }  // namespace roadfix::world

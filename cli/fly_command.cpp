@@ -98,7 +98,7 @@ fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const G
 void run_fly(const FlyOptions& options) {
   require_apart({options.json_file, options.csv_file, options.geojson_file, options.pictures.film},
                 {options.map, options.over, options.course});
-  require_writable({options.json_file, options.csv_file, options.geojson_file});
+  require_writable({options.json_file, options.csv_file, options.geojson_file, options.pictures.film});
   const MapView map = map_of(options);
   const Ground ground = ground_of(options, map);
   const fly::FlightPlan plan = plan_of(options, map, ground);
@@ -110,7 +110,6 @@ void run_fly(const FlyOptions& options) {
   Progress progress("flying", "steps");
   campaign.progress = progress.updates();
   const auto results = fly::run(campaign, map.zone);
-  pictures.finish();
   const fly::Events events{plan.kidnapping, plan.outage};
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));
@@ -120,6 +119,7 @@ void run_fly(const FlyOptions& options) {
   if (!options.json_file.empty()) {
     write_file(options.json_file, json_text(document(options, ground, results, events), 1) + '\n');
   }
+  pictures.finish();
 }
 
 }  // namespace
@@ -128,7 +128,9 @@ void add_fly_command(CLI::App& app) {
   auto* command = app.add_subcommand("fly", "Flies simulated UAVs over imagery or a map and tracks them on the map");
   command->footer(
       "Columns of the table; medians over flights or steps, in brackets what 90 % (of the times 95 %) do not exceed:\n"
-      "  found        flights whose best guess comes within 25 m of the truth and stays there for 10 steps\n"
+      "  found        flights whose best guess comes within 25 m of the truth and stays there for 10 steps; this and "
+      "the\n"
+      "               next two before the kidnapping, if there is one\n"
       "  updates      frames until it is found\n"
       "  error m      of all steps from then on\n"
       "  final m      error of the last step of every flight, found or not\n"

@@ -51,7 +51,9 @@ void add_search(std::span<const Record> records, Summary& summary, Samples& samp
     samples.updates.push_back(frames_until(records, *found));
     for (const Record& record : records.subspan(*found)) samples.errors.push_back(record.error_m);
   }
-  const Record& last = records.back();
+}
+
+void add_end(const Record& last, Summary& summary, Samples& samples) {
   samples.final_errors.push_back(last.error_m);
   if (!near(last) && last.estimate.clusters.front().weight >= kMaxWeight) ++summary.wrong_at_end;
 }
@@ -125,7 +127,8 @@ Summary summary_of(std::span<const Run> runs, const Events& events) {
     if (events.kidnapping && static_cast<std::size_t>(events.kidnapping->step) < before.size()) {
       before = before.first(static_cast<std::size_t>(events.kidnapping->step));
     }
-    if (!before.empty()) add_search(before, summary, samples);
+    add_search(before, summary, samples);
+    add_end(run.records.back(), summary, samples);
     add_claims(run.records, summary, samples);
     add_event(run.records, events, summary, samples);
     for (const Record& record : run.records) {

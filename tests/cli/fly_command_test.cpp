@@ -12,6 +12,7 @@ namespace roadfix {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::ProgramResult;
 using testing::run_program;
 using testing::text_of;
@@ -107,9 +108,11 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(apart.err, HasSubstr("is no part of the map"));
   EXPECT_THAT(roadfix(eight_steps + " --black-unseen").err, HasSubstr("not-recorded"));
   EXPECT_THAT(roadfix(eight_steps + " --csv " + map()).err, HasSubstr("target-is-source"));
-  const ProgramResult lost = roadfix("fly " + map() + " --footprint-m 200 --json /no/such/folder/out.json");
-  EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
-  EXPECT_EQ(lost.out, "") << "said before the flights, not after them";
+  for (const char* output : {" --json", " --film"}) {
+    const ProgramResult lost = roadfix("fly " + map() + " --footprint-m 200" + output + " /no/such/folder/out");
+    EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
+    EXPECT_THAT(lost.err, Not(HasSubstr("flying"))) << "said before the flights, not after them";
+  }
   const std::string over_service = "fly " + map() + " --footprint-m 200 --steps 1 --vehicles 2 --map town --server ";
   EXPECT_THAT(roadfix(over_service + "127.0.0.1").err, HasSubstr("bad-url"));
   EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));

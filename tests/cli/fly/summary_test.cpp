@@ -76,6 +76,15 @@ TEST(FlightSummary, TellsHowLongAKidnappingWentUnnoticedAndUntilTheVehicleWasFou
               HasSubstr("1 of 1 found again, after 10 s"));
 }
 
+TEST(FlightSummary, JudgesTheEndOfAFlightAfterAKidnappingToo) {
+  const Events events{Kidnapping{20, 2000.0}, {}};
+  const Summary s = summary_of(std::vector<fly::Run>{run_with(joined(many(20, 5.0), many(20, -2000.0)))}, events);
+  EXPECT_EQ(s.found, 1);
+  EXPECT_THAT(s.error_median_m, Optional(5.0)) << "of the search";
+  EXPECT_EQ(s.wrong_at_end, 1);
+  EXPECT_THAT(s.final_error_median_m, Optional(2000.0));
+}
+
 TEST(FlightFiles, GiveALineForEachStepAndTheEllipseOfEachClaim) {
   const UtmZone zone = UtmZone::from_epsg(32634).value();
   const fly::Run run = run_with({300.0, -5.0, -5.0});

@@ -11,6 +11,9 @@ export function offset([lat, lon], eastM, northM) {
   return [lat + northM / METRES_PER_DEGREE, lon + eastM / (METRES_PER_DEGREE * Math.cos(radians(lat)))];
 }
 
+/// The longitude of the same place that lies nearest to another one: maps may cross the 180th meridian.
+export const towards = (lon, other) => lon + 360 * Math.round((other - lon) / 360);
+
 /// Axes in metres; `headingDeg` of the long one, clockwise from north.
 export function ellipse95(centre, [longSigma, shortSigma], headingDeg) {
   const s = Math.sin(radians(headingDeg));

@@ -2,7 +2,7 @@
 // is what the HTTP interface offers to any program.
 import { square } from './geometry.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
-import { drawModes, element, LastQuestion, request, showFix, showProblem, showStatus } from './show.js';
+import { drawModes, element, inView, LastQuestion, request, showFix, showProblem, showStatus } from './show.js';
 import { Tracks } from './tracks.js';
 
 const by = (id) => document.getElementById(id);
@@ -97,16 +97,22 @@ async function refreshMaps() {
   if (list) await attempt(by('about'), () => showMaps(list));
 }
 
+/// Only numbers of the chosen kind of picture and place count: a mistake in one that is not shown must not hold up others.
+function enableChosen(form) {
+  const { what, prior } = form.elements;
+  for (const input of form.querySelectorAll('[class^=of-] input')) {
+    input.disabled = ![what.value, prior.value].some((chosen) => input.parentElement.className === `of-${chosen}`);
+  }
+}
+
 function questionOf(form) {
-  const names = { gsd: ['gsd_m'], camera: ['fov_deg', 'agl_m', 'roll_deg', 'pitch_deg'], cells: ['cell_m'] }[form.get('what')];
-  const query = new URLSearchParams({ confidence: form.get('confidence') });
-  query.set('kind', form.get('what') === 'cells' ? 'feature_map' : 'frame');
-  for (const name of names) if (form.get(name) !== '') query.set(name, form.get(name));
-  if (form.get('prior') === 'circle') {
+  const { picture, what, prior, ...numbers } = Object.fromEntries(form);
+  const told = Object.entries(numbers).filter(([, value]) => value !== '');
+  const query = new URLSearchParams([['kind', what === 'cells' ? 'feature_map' : 'frame'], ...told]);
+  if (prior === 'circle') {
     const { lat, lng } = view.getCenter().wrap();
     query.set('lat', lat);
     query.set('lon', lng);
-    query.set('radius_m', form.get('radius_m'));
   }
   return query;
 }
@@ -122,8 +128,8 @@ async function ask(event) {
     const fix = await request(`${mapUrl()}/fix?${questionOf(form)}`,
       { method: 'POST', body: picture, headers: { 'Content-Type': picture.type }, signal });
     showFix(by('answer'), fix);
-    drawModes(answers, fix.modes, fix.status);
-    if (fix.pose) view.flyTo([fix.pose.lat, fix.pose.lon], Math.max(view.getZoom(), 16));
+    drawModes(view, answers, fix.modes, fix.status);
+    if (fix.pose) view.flyTo(inView(view, fix.pose), Math.max(view.getZoom(), 16));
   });
 }
 
@@ -133,7 +139,7 @@ async function showLocalizability({ latlng }) {
   const at = latlng.wrap();
   const signal = placeQuestions.next();
   localizability.clearLayers();
-  const frame = L.polygon(square([at.lat, at.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(localizability);
+  const frame = L.polygon(square([latlng.lat, latlng.lng], side), { color: '#8ab4f8', weight: 2, fill: false }).addTo(localizability);
   showStatus(by('place'), 'looking …', []);
   await attempt(by('place'), async () => {
     const query = new URLSearchParams({ lat: at.lat, lon: at.lng, footprint_m: side });
@@ -142,7 +148,7 @@ async function showLocalizability({ latlng }) {
       place.explanation ?? place.reason,
       `probability ${place.probability.toFixed(3)}, ${(100 * place.road_share).toFixed(0)} % road, ${(100 * place.observed_share).toFixed(0)} % of the ground is on the map`]);
     frame.setStyle({ color: { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' }[place.status] });
-    if (place.alike) drawModes(localizability, place.alike, 'ambiguous');
+    if (place.alike) drawModes(view, localizability, place.alike, 'ambiguous');
   });
 }
 
@@ -164,7 +170,8 @@ async function drawLayer() {
   const tileset = await request(`${mapUrl()}/localizability/tilejson.json?${query}`, { signal });
   const [west, south, east, north] = tileset.bounds;
   layer = L.tileLayer(`${mapUrl()}/localizability/tiles/{z}/{x}/{y}.png?${query}`, {
-    minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom: tiles.options.maxZoom, bounds: [[south, west], [north, east]],
+    minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom: tiles.options.maxZoom,
+    bounds: east > 180 ? null : [[south, west], [north, east]],  // Leaflet would leave out what lies beyond the 180th meridian
   }).on('tileerror', askAgain).addTo(view);
   if (view.getZoom() < tileset.minzoom) view.setZoom(tileset.minzoom);
 }
@@ -181,7 +188,12 @@ function acceptDrops(target, input) {
 
 by('maps').addEventListener('change', () => attempt(by('about'), openMap));
 by('ask').addEventListener('submit', ask);
+by('ask').addEventListener('change', () => enableChosen(by('ask')));
+enableChosen(by('ask'));
 view.on('click', showLocalizability);
+view.on('keypress', ({ originalEvent }) => {
+  if (originalEvent.key === 'Enter') showLocalizability({ latlng: view.getCenter() });
+});
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', () => attempt(by('place'), drawLayer));
 acceptDrops(by('drop'), by('ask').elements.picture);
 attempt(by('about'), async () => showMaps(await request('/v1/maps')));

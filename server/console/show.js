@@ -1,5 +1,5 @@
 // Answers of the service as text in the panel and as figures on the map.
-import { arrow, ellipse95 } from './geometry.js';
+import { arrow, ellipse95, towards } from './geometry.js';
 
 const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
 
@@ -45,6 +45,11 @@ export function table(rows) {
 const degrees = (value, digits) => `${value.toFixed(digits)}°`;
 const place = (pose) => `${pose.lat.toFixed(6)}, ${pose.lon.toFixed(6)}`;
 
+/// Where to draw a place, on the side of the 180th meridian that is shown.
+export function inView(view, { lat, lon }) {
+  return [lat, towards(lon, view.getCenter().lng)];
+}
+
 function modeText(mode) {
   const [long, short] = mode.sigma_m;
   return `${place(mode.pose)}, heading ${degrees(mode.pose.heading_deg, 1)}, σ ${long.toFixed(1)} × ${short.toFixed(1)} m, weight ${mode.weight.toFixed(3)}`;
@@ -62,11 +67,11 @@ export function showProblem(output, problem) {
 
 /// Modes of a no_fix are drawn faint: they are hints, not answers. Of a fix the first one is the answer, the others are
 /// its rivals. What weighs next to nothing is left out.
-export function drawModes(layer, modes, status) {
+export function drawModes(view, layer, modes, status) {
   for (const mode of modes.filter((m) => m.weight >= 0.01 * modes[0].weight)) {
     const answer = status === 'fix' && mode === modes[0];
     const colour = COLOURS[status === 'fix' && !answer ? 'ambiguous' : status];
-    const at = [mode.pose.lat, mode.pose.lon];
+    const at = inView(view, mode.pose);
     const opacity = status === 'no_fix' ? 0.35 : 0.4 + 0.6 * Math.min(1, mode.weight);
     const style = { color: colour, opacity, fillOpacity: 0.15 * opacity, weight: 2, dashArray: answer ? null : '4 4' };
     L.polygon(ellipse95(at, mode.sigma_m, mode.ellipse_heading_deg), style).addTo(layer);

@@ -1,12 +1,13 @@
 // Tracks as they fly: a line of the places they were sure of, the last estimate with its ellipse, and how old it is.
 // What cannot be kept up to date is drawn faint and said to be old.
-import { drawModes, element, request, showStatus, table } from './show.js';
+import { drawModes, element, inView, request, showStatus, table } from './show.js';
 
 const REFRESH_MS = 5000;
 const STATUS = { converged: 'fix', searching: 'ambiguous' };
 
 export class Tracks {
   constructor(view, list, output) {
+    this.view = view;
     this.list = list;
     this.output = output;
     this.path = L.polyline([], { color: '#8ab4f8', weight: 2 }).addTo(view);
@@ -68,13 +69,13 @@ export class Tracks {
       ['resets', String(step.resets)],
       ['odometry', step.drifts ? 'drifts: tell its covariance, or a wind' : 'as it says'],
     ]));
-    if (step.pose) this.path.addLatLng([step.pose.lat, step.pose.lon]);
+    if (step.pose) this.path.addLatLng(inView(this.view, step.pose));
     this.draw(step);
   }
 
   draw(step) {
     const old = this.output.classList.contains('cut-off');
     this.estimate.clearLayers();
-    drawModes(this.estimate, step.clusters, old ? 'no_fix' : STATUS[step.status] ?? 'no_fix');
+    drawModes(this.view, this.estimate, step.clusters, old ? 'no_fix' : STATUS[step.status] ?? 'no_fix');
   }
 }

@@ -13,7 +13,7 @@ process.on('exit', () => rmSync(folder, { recursive: true }));
 let drawn = [];
 const figure = (kind) => (at, style = {}) => {
   const made = {
-    addTo() { drawn.push({ kind, ...style }); return made; }, bindTooltip: () => made, setLatLngs() {}, addLatLng() {},
+    addTo() { drawn.push({ kind, at, ...style }); return made; }, bindTooltip: () => made, setLatLngs() {}, addLatLng() {},
   };
   return made;
 };
@@ -59,9 +59,11 @@ const converged = {
 const colours = () => drawn.filter(({ kind }) => kind === 'ellipse').map(({ color }) => color);
 const [green, yellow, red] = ['#7ee0a1', '#f4c95d', '#f28b82'];
 
+let middle = 38;
 const list = node();
 const output = node();
-const tracks = new Tracks(null, list, output);
+const view = { getCenter: () => ({ lat: 37, lng: middle }) };
+const tracks = new Tracks(view, list, output);
 const cases = {
   'only the place that a track is sure of is drawn as one'() {
     tracks.follow('one');
@@ -81,6 +83,16 @@ const cases = {
     tracks.follow('two');
     assert.ok(!output.classList.contains('cut-off'));
     assert.deepEqual(colours(), []);
+  },
+  'a place beyond the 180th meridian is drawn on the side that is shown'() {
+    tracks.follow('one');
+    middle = 180.01;
+    const [east, west] = [cluster(37, 0.9), cluster(37, 0.1)];
+    east.pose.lon = -179.98;
+    west.pose.lon = 179.99;
+    stream.send({ ...converged, clusters: [east, west] });
+    const longitudes = drawn.filter(({ kind }) => kind === 'point').map(({ at }) => at[1]);
+    assert.deepEqual(longitudes.map((lon) => lon.toFixed(2)), ['180.02', '179.99']);
   },
   async 'a service that does not answer takes no track off the list'() {
     await tracks.refresh();

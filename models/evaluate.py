@@ -44,10 +44,14 @@ def main():
     gsd_m, fit = description["gsd_m"], description["calibration"]
     held_out = [p for s in read_sets(options.sets, options.data) for p in load_pairs(s, options.data)[1]]
     foreign = [p for s in read_sets(options.evaluation_sets, options.data) for part in load_pairs(s, options.data) for p in part]
+    if not held_out and not foreign:
+        raise SystemExit(f"no pairs found below {options.data}")
     how = f"(tolerance {options.tolerance:g} m, threshold {options.threshold:g})"
     for title, pairs in ((f"Held-out pairs {how}", held_out), (f"Places of other sets {how}", foreign)):
         if pairs:
             table(title, evaluate_pairs(predict, pairs, gsd_m, options.threshold, options.tolerance, fit["scale"], fit["bias"]))
+    if not held_out:
+        return
     logits, labels = logits_and_labels(predict, held_out, gsd_m)
     rows, error = reliability(logits, labels, fit["scale"], fit["bias"])
     print(f"\nReliability on the held-out pairs, expected calibration error {error:.3f}\n\n| probability | road | pixels |\n|---|---|---|")

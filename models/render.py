@@ -35,7 +35,9 @@ def render(options, seed, folder):
                "--land", options.land, "--collapsed", f"{collapsed:.2f}", "--frames", "0", "--varied"]
     command += ["--roads", options.roads] if options.roads else []
     command += ["--centre", options.centre] if options.centre else []
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    done = subprocess.run(command, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        raise SystemExit(done.stderr)
 
 
 def carriageways(truth, picture):

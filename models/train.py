@@ -56,6 +56,9 @@ def own_sets(texts):
             raise SystemExit(f"--pairs {text}: write DIR=GSD_M or DIR=GSD_M:SHARE, for example my-pairs=0.5")
         gsd, _, share = rest.partition(":")
         folder = Path(folder).resolve()
+        for part in ("images", "masks"):
+            if not (folder / part).is_dir():
+                raise SystemExit(f"--pairs {text}: there is no folder {folder / part}")
         yield SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd),
                          share=float(share or 1.0), ignore_band_m=1.0)
 

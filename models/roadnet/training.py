@@ -1,4 +1,5 @@
-"""The training loop: deterministic crops, AdamW, averaged weights, checkpoints that a later run resumes from."""
+"""The training loop: deterministic crops, AdamW, averaged weights, checkpoints from which a later run goes on as if there had
+been no stop."""
 import math
 import time
 from pathlib import Path
@@ -54,6 +55,13 @@ def save(path, **state):
     partial.replace(path)
 
 
+def require_same_run(state, checkpoint, wanted):
+    for name, value in wanted.items():
+        if state[name] != value:
+            raise SystemExit(f"{checkpoint} is of a run with {name} {state[name]:g}, not {value:g}: name another folder with --out, "
+                             "or begin anew with --restart")
+
+
 def train(crops, options):
     torch.manual_seed(options.seed)
     device = torch.device(options.device)
@@ -68,12 +76,13 @@ def train(crops, options):
     checkpoint = Path(options.out) / "checkpoint.pt"
     if checkpoint.exists() and not options.restart:
         state = torch.load(checkpoint, map_location=device)
+        require_same_run(state, checkpoint, {"gsd_m": crops.gsd_m, "seed": options.seed})
         model.load_state_dict(state["model"])
         averaged.load_state_dict(state["averaged"])
         optimizer.load_state_dict(state["optimizer"])
         first = state["step"]
         print(f"resume from {checkpoint} at step {first}", flush=True)
-    turns = torch.Generator().manual_seed(options.seed + first)
+    turns = torch.Generator()
     batches = Consecutive(first * options.batch, options.steps * options.batch)
     loader = DataLoader(crops, options.batch, sampler=batches, num_workers=options.workers)
     started, running = time.time(), None
@@ -82,6 +91,7 @@ def train(crops, options):
         model.train()
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(step, share_done(step, started, options), options.rate, options.cool)
+        turns.manual_seed(options.seed + step)
         picture = image.to(device, memory_format=torch.channels_last)
         with torch.autocast(device.type, torch.bfloat16, enabled=options.bf16):
             logits = model(picture).float()

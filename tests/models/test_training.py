@@ -40,9 +40,12 @@ def draw_pairs(folder, count=8, size=160):
         cv2.imwrite(str(folder / "masks" / f"{number}.png"), mask)
 
 
-def run(script, *arguments):
-    command = [sys.executable, str(MODELS / script), *map(str, arguments)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+def arguments_of(script, *arguments):
+    return [sys.executable, str(MODELS / script), *map(str, arguments)]
+
+
+def run(*command):
+    return subprocess.run(arguments_of(*command), check=True, capture_output=True, text=True).stdout
 
 
 def f1_of(checkpoint, folder):
@@ -61,9 +64,18 @@ class Training(unittest.TestCase):
         self.folder = Path(place.name)
         draw_pairs(self.folder / "pairs")
 
+    def command(self, pairs, out, *more):
+        return ("train.py", "--pairs", f"{self.folder / pairs}=1.0", "--only-pairs", "--out", self.folder / out, "--size", 96,
+                "--batch", 4, "--save-every", 10, "--validate-every", 1000, "--threads", 1, "--device", "cpu", *more)
+
     def train(self, pairs, out, *more):
-        return run("train.py", "--pairs", f"{self.folder / pairs}=1.0", "--only-pairs", "--out", self.folder / out, "--size", 96,
-                   "--batch", 4, "--save-every", 10, "--validate-every", 1000, "--threads", 1, "--device", "cpu", *more)
+        return run(*self.command(pairs, out, *more))
+
+    def kill_after(self, step, *command):
+        with subprocess.Popen(arguments_of(*command), stdout=subprocess.PIPE, text=True) as process:
+            for line in process.stdout:
+                if line.startswith(f"step {step}/"):
+                    process.kill()
 
     def test_a_users_own_pairs_become_a_network_that_opencv_runs(self):
         self.train("pairs", "run", "--steps", 30)
@@ -80,6 +92,25 @@ class Training(unittest.TestCase):
         self.assertGreater(f1_of(self.folder / "pupil/checkpoint.pt", self.folder), 0.5)
         self.train("unlabelled", "heir", "--steps", 1, "--begin-with", teacher)
         self.assertGreater(f1_of(self.folder / "heir/checkpoint.pt", self.folder), 0.5)
+
+
+    def test_a_killed_run_ends_as_if_it_had_not_been_killed(self):
+        teacher = self.folder / "teacher/checkpoint.pt"
+        self.train("pairs", "teacher", "--steps", 10)
+        options = ("--steps", 20, "--report", 1, "--teacher", teacher)
+        self.train("pairs", "whole", *options)
+        self.kill_after(13, *self.command("pairs", "killed", *options))
+        self.assertIn("at step 10", self.train("pairs", "killed", *options))
+        whole, killed = (torch.load(self.folder / out / "checkpoint.pt") for out in ("whole", "killed"))
+        for name, value in whole["averaged"].items():
+            torch.testing.assert_close(killed["averaged"][name], value, rtol=0, atol=0)
+
+    def test_a_run_of_another_seed_or_scale_is_not_gone_on_with(self):
+        self.train("pairs", "run", "--steps", 1)
+        for option in (("--seed", 2), ("--gsd", 0.8)):
+            done = subprocess.run(arguments_of(*self.command("pairs", "run", "--steps", 2, *option)), capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("--restart", done.stderr)
 
 
 class Parts(unittest.TestCase):

@@ -49,9 +49,14 @@ def read_frames(table):
         ]
 
 
-def free_port():
+def free_port(wanted):
+    """Any where none is wanted. Whoever holds the wanted one would be asked in place of the service."""
     with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", wanted))
+        except (OSError, OverflowError) as problem:
+            raise DemoError(f"--port {wanted} cannot be taken: {problem}") from None
         return probe.getsockname()[1]
 
 
@@ -204,16 +209,20 @@ def prepare(arguments, work):
         source = arguments.after or arguments.images[0]
         if not arguments.after:
             print("the frames are cut from the map's own imagery: this shows the chain, not how well it does on another day")
-        frames = [Frame(*cut) for cut in cut_frames(source, work / "frames", arguments.frames, arguments.seed)]
+        try:
+            frames = [Frame(*cut) for cut in cut_frames(source, work / "frames", arguments.frames, arguments.seed)]
+        except (ValueError, RuntimeError) as problem:  # the second is GDAL's
+            raise DemoError(f"no frames can be cut ({problem}): name a georeferenced image with --after, or give "
+                            "frames of yours with --frame and --gsd") from None
     return arguments.images, frames
 
 
 def demo(arguments, work):
+    port = free_port(arguments.port or 0)
     sources, frames = prepare(arguments, work)
     maps = work / "maps"
     maps.mkdir(exist_ok=True)
     run(arguments.roadfix, "ingest", *sources, "--map", maps / "demo.gpkg")
-    port = arguments.port or free_port()
     with service(arguments.roadfix, maps, port, work / "serve.log") as process:
         host = f"http://127.0.0.1:{port}"
         right = ask_all(f"{host}/v1/maps/demo", frames)

@@ -1,6 +1,6 @@
 // Tracks as they fly: a line of the places they were sure of, the last estimate with its ellipse, and how old it is.
 // What cannot be kept up to date is drawn faint and said to be old.
-import { drawModes, element, inView, request, showStatus, table } from './show.js';
+import { drawModes, inView, request, showStatus, table } from './show.js';
 
 const REFRESH_MS = 5000;
 const STATUS = { converged: 'fix', searching: 'ambiguous' };
@@ -38,7 +38,7 @@ export class Tracks {
     this.path.setLatLngs([]);
     this.estimate.clearLayers();
     this.output.replaceChildren();
-    this.output.classList.remove('cut-off', 'stale');
+    this.output.classList.remove('cut-off', 'ended', 'stale');
     if (!id) return;
     this.events = new EventSource(`/v1/tracks/${encodeURIComponent(id)}/events`);
     this.events.addEventListener('step', (event) => this.show(JSON.parse(event.data)));
@@ -46,7 +46,8 @@ export class Tracks {
     this.events.addEventListener('error', () => this.setConnected(false));
     this.events.addEventListener('end', () => {
       this.events.close();
-      this.output.prepend(element('div', 'The track has ended.'));
+      this.output.classList.add('ended');
+      if (this.last) this.draw(this.last);
     });
   }
 
@@ -74,7 +75,7 @@ export class Tracks {
   }
 
   draw(step) {
-    const old = this.output.classList.contains('cut-off');
+    const old = ['cut-off', 'ended'].some((name) => this.output.classList.contains(name));
     this.estimate.clearLayers();
     drawModes(this.view, this.estimate, step.clusters, old ? 'no_fix' : STATUS[step.status] ?? 'no_fix');
   }

@@ -25,7 +25,7 @@ function node() {
   return {
     text: '', options: [], value: '',
     classList: {
-      contains: (name) => classes.has(name), remove: (...names) => names.forEach((name) => classes.delete(name)),
+      add: (name) => classes.add(name), contains: (name) => classes.has(name), remove: (...names) => names.forEach((name) => classes.delete(name)),
       toggle: (name, on) => (on ? classes.add(name) : classes.delete(name)),
     },
     replaceChildren() {}, append() {}, prepend() {}, addEventListener() {}, insertRow: node, insertCell: node,
@@ -78,9 +78,17 @@ const cases = {
     assert.ok(!output.classList.contains('cut-off'));
     assert.deepEqual(colours(), [green, yellow]);
   },
+  'an ended track is an old one for good'() {
+    tracks.follow('one');
+    stream.send(converged);
+    stream.dispatchEvent(new Event('end'));
+    assert.ok(output.classList.contains('ended'));
+    assert.deepEqual(colours(), [red, red]);
+  },
   'another track begins without what was lost of the one before'() {
     stream.dispatchEvent(new Event('error'));
     tracks.follow('two');
+    assert.ok(!output.classList.contains('ended'));
     assert.ok(!output.classList.contains('cut-off'));
     assert.deepEqual(colours(), []);
   },

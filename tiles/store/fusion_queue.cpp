@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <vector>
+#include <algorithm>
+#include <thread>
 
 #include "core/units/error.hpp"
+#include "core/units/parallel_for.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
+#include "tiles/store/tile_png.hpp"
 
 namespace roadfix {
 
@@ -38,12 +41,31 @@ std::int64_t FusionQueue::size() {
   return statement.integer(0);
 }
 
-void FusionQueue::fuse(int zoom, TileIndex index) {
+/// The tile as it is stored; empty where nothing was observed.
+std::vector<std::byte> FusionQueue::fused(Tile tile) {
+  const auto [zoom, index] = tile;
   const auto cells = zoom == tiles_.finest_zoom() ? tiles_.fused_evidence(index) : tiles_.overview(zoom, index);
-  tiles_.put(zoom, index, cells ? *cells : CellArray(kTileCells, kTileCells));
+  if (!cells || cells->observed_count() == 0) return {};
+  return encode_tile(*cells, TileDepth::kFused);
 }
 
-std::pair<int, TileIndex> FusionQueue::pending_tile(const Statement& row) const {
+/// Tiles of one level, on all processors: most of the work is to pack them.
+void FusionQueue::fuse(std::span<const Tile> tiles) {
+  std::vector<std::vector<std::byte>> pngs(tiles.size());
+  const auto processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  parallel_for(static_cast<int>(tiles.size()), processors, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    pngs[at] = fused(tiles[at]);
+  });
+  Statement done(map_, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const auto [zoom, index] = tiles[i];
+    tiles_.put(zoom, index, pngs[i]);
+    done.with(zoom, tile_row(index, zoom), index.col).run();
+  }
+}
+
+FusionQueue::Tile FusionQueue::pending_tile(const Statement& row) const {
   const std::int64_t zoom = row.integer(0);
   if (zoom >= kCoarsestZoom && zoom <= tiles_.finest_zoom()) {
     const int level = static_cast<int>(zoom);
@@ -62,13 +84,14 @@ std::int64_t FusionQueue::fuse_some() {
   Statement next(map_,
                  "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending ORDER BY zoom_level DESC, tile_row, "
                  "tile_column LIMIT ?1");
-  std::vector<std::pair<int, TileIndex>> batch;
+  std::vector<Tile> batch;
   next.with(kTilesPerTransaction);
   while (next.step()) batch.push_back(pending_tile(next));
-  Statement fused(map_, "DELETE FROM roadfix_pending WHERE zoom_level = ?1 AND tile_row = ?2 AND tile_column = ?3");
-  for (const auto& [zoom, index] : batch) {
-    fuse(zoom, index);
-    fused.with(zoom, tile_row(index, zoom), index.col).run();
+  for (auto first = batch.begin(); first != batch.end();) {
+    // An overview follows from the tiles of the level before it, which have to be there.
+    const auto end = std::find_if(first, batch.end(), [&](const Tile& tile) { return tile.first != first->first; });
+    fuse({first, end});
+    first = end;
   }
   if (!batch.empty() && size() == 0) update_extent();
   transaction.commit();

@@ -2,9 +2,12 @@
 // them. For the writer; not for other modules.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <stop_token>
 #include <utility>
+#include <vector>
 
 #include "tiles/store/progress.hpp"
 #include "tiles/store/sqlite.hpp"
@@ -28,9 +31,12 @@ class FusionQueue {
   std::int64_t size();
 
  private:
-  std::pair<int, TileIndex> pending_tile(const sqlite::Statement& row) const;
+  using Tile = std::pair<int, TileIndex>;  ///< zoom and place
+
+  Tile pending_tile(const sqlite::Statement& row) const;
   std::int64_t fuse_some();
-  void fuse(int zoom, TileIndex index);
+  void fuse(std::span<const Tile> tiles);
+  std::vector<std::byte> fused(Tile tile);
 
   sqlite::Connection& map_;
   TileTable& tiles_;

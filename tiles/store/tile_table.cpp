@@ -41,6 +41,8 @@ struct ObservedCells {
   }
 };
 
+std::vector<std::byte> copy_of(std::span<const std::byte> bytes) { return {bytes.begin(), bytes.end()}; }
+
 }  // namespace
 
 TileTable::TileTable(sqlite::Connection& map, const MapSettings& settings)
@@ -64,10 +66,15 @@ TileTable::TileTable(sqlite::Connection& map, const MapSettings& settings)
       set_version_(map, "UPDATE roadfix_meta SET value = ?1 WHERE key = 'version'") {}
 
 std::optional<CellArray> TileTable::tile(int zoom, TileIndex index) {
-  const sqlite::ResetAtEnd reset(select_);
-  if (!select_.with(zoom, index.col, tile_row(index, zoom)).step()) return std::nullopt;
+  std::vector<std::byte> png;
+  {
+    const std::lock_guard lock(mutex_);
+    const sqlite::ResetAtEnd reset(select_);
+    if (!select_.with(zoom, index.col, tile_row(index, zoom)).step()) return std::nullopt;
+    png = copy_of(select_.blob(0));
+  }
   try {
-    return decode_tile(select_.blob(0), TileDepth::kFused);
+    return decode_tile(png, TileDepth::kFused);
   } catch (const CorruptData& error) {
     throw CorruptData(error.code(),
                       fmt::format("{}: tile zoom {} column {} row {} is damaged: {}", map_.path().string(), zoom,
@@ -75,9 +82,8 @@ std::optional<CellArray> TileTable::tile(int zoom, TileIndex index) {
   }
 }
 
-void TileTable::put(int zoom, TileIndex index, const CellArray& cells) {
+void TileTable::put(int zoom, TileIndex index, std::span<const std::byte> png) {
   const int row = tile_row(index, zoom);
-  const auto png = cells.observed_count() == 0 ? std::vector<std::byte>() : encode_tile(cells, TileDepth::kFused);
   std::uint64_t difference = png.empty() ? 0 : content_hash(index, png);
   if (select_.with(zoom, index.col, row).step()) {
     if (std::ranges::equal(select_.blob(0), png)) return select_.reset();
@@ -88,11 +94,11 @@ void TileTable::put(int zoom, TileIndex index, const CellArray& cells) {
       remove_ancillary_.with(id).run();
       remove_.with(id).run();
     } else {
-      update_.with(id, std::span(png)).run();
+      update_.with(id, png).run();
     }
   } else {
     if (png.empty()) return;
-    insert_.with(zoom, index.col, row, std::span(png)).run();
+    insert_.with(zoom, index.col, row, png).run();
     insert_ancillary_.with(map_.last_insert_id()).run();
   }
   if (zoom == finest_) add_to_version(difference);
@@ -106,18 +112,26 @@ void TileTable::add_to_version(std::uint64_t difference) {
 }
 
 std::optional<CellArray> TileTable::fused_evidence(TileIndex index) {
+  struct Witness {
+    std::vector<std::byte> png;
+    std::string source;
+  };
+  std::vector<Witness> witnesses;
+  {
+    const std::lock_guard lock(mutex_);
+    const sqlite::ResetAtEnd reset(evidence_);
+    evidence_.with(index.col, tile_row(index, finest_));
+    while (evidence_.step()) witnesses.push_back({copy_of(evidence_.blob(0)), evidence_.text(1)});
+  }
   std::vector<CellArray> sources;
-  const sqlite::ResetAtEnd reset(evidence_);
-  evidence_.with(index.col, tile_row(index, finest_));
-  while (evidence_.step()) {
+  for (const auto& [png, source] : witnesses) {
     try {
-      sources.push_back(decode_tile(evidence_.blob(0), TileDepth::kEvidence));
+      sources.push_back(decode_tile(png, TileDepth::kEvidence));
     } catch (const CorruptData& error) {
-      throw CorruptData(
-          error.code(),
-          fmt::format("{}: evidence of source '{}' column {} row {} is damaged: {}. Ingest the source "
-                      "again with --replace",
-                      map_.path().string(), evidence_.text(1), index.col, tile_row(index, finest_), error.what()));
+      throw CorruptData(error.code(),
+                        fmt::format("{}: evidence of source '{}' column {} row {} is damaged: {}. Ingest the source "
+                                    "again with --replace",
+                                    map_.path().string(), source, index.col, tile_row(index, finest_), error.what()));
     }
   }
   if (sources.empty()) return std::nullopt;

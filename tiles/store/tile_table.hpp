@@ -2,7 +2,10 @@
 // Shared by writer and verifier; not for other modules.
 #pragma once
 
+#include <cstddef>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/grid/cell_array.hpp"
@@ -18,12 +21,14 @@ class TileTable {
 
   int finest_zoom() const { return finest_; }
 
+  /// Stores a tile as encode_tile() makes it; where it is empty, none is there. Keeps ancillary row and version right;
+  /// an equal tile is left as it is.
+  void put(int zoom, TileIndex index, std::span<const std::byte> png);
+
+  // Those that follow may be called from several threads at once, while nothing is put.
+
   /// nullopt where there is none. Throws CorruptData naming the tile.
   std::optional<CellArray> tile(int zoom, TileIndex index);
-  /// Stores the cells; all unobserved ones are not stored. Keeps ancillary row and version right; an equal tile is left
-  /// as it is.
-  void put(int zoom, TileIndex index, const CellArray& cells);
-
   /// What the evidence in force says about a tile of the finest level; nullopt where nothing was observed.
   std::optional<CellArray> fused_evidence(TileIndex index);
   /// What the four tiles below say; nullopt where there is none.
@@ -38,6 +43,7 @@ class TileTable {
   sqlite::Connection& map_;
   double cell_m_;
   int finest_;
+  std::mutex mutex_;  ///< of select_ and evidence_
   sqlite::Statement select_;
   sqlite::Statement update_;
   sqlite::Statement insert_;

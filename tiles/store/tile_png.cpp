@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include "core/png/png_codec.hpp"
 #include "core/units/error.hpp"
@@ -54,11 +59,27 @@ std::vector<std::byte> encoded(std::span<const std::uint8_t> pixels, TileDepth d
   return plain.size() <= differences.size() ? plain : differences;
 }
 
+std::vector<std::byte> encoded(const CellArray& cells, TileDepth depth) {
+  return depth == TileDepth::kFused ? encoded(pack(cells.cells()), depth) : encoded(cells.cells(), depth);
+}
+
+/// Of cells that are all alike. Where a map is drawn from roads, up to half of its tiles show country without any.
+std::vector<std::byte> encoded_once(const CellArray& cells, TileDepth depth) {
+  static std::mutex mutex;
+  static std::map<std::pair<TileDepth, Cell>, std::vector<std::byte>> kept;
+  const std::lock_guard lock(mutex);
+  std::vector<std::byte>& png = kept[{depth, cells.cells().front()}];
+  if (png.empty()) png = encoded(cells, depth);
+  return png;
+}
+
 }  // namespace
 
 std::vector<std::byte> encode_tile(const CellArray& cells, TileDepth depth) {
   assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
-  return depth == TileDepth::kFused ? encoded(pack(cells.cells()), depth) : encoded(cells.cells(), depth);
+  const auto all = cells.cells();
+  const bool alike = std::ranges::adjacent_find(all, std::ranges::not_equal_to{}) == all.end();
+  return alike ? encoded_once(cells, depth) : encoded(cells, depth);
 }
 
 CellArray decode_tile(std::span<const std::byte> png, TileDepth depth) {

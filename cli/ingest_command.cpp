@@ -110,8 +110,7 @@ void run(const IngestArguments& arguments, bool cell_given) {
   const bool imagery =
       std::ranges::any_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; });
   const std::unique_ptr<RoadDetector> detector = imagery ? make_detector(arguments.detector) : nullptr;
-  const MapSettings settings = settings_around_equator(arguments, requests.front(), detector.get(),
-                                                       settings_of(arguments, requests.front(), cell_given));
+  const MapSettings settings = settings_of(arguments, requests.front(), detector.get(), cell_given);
   std::optional<MapWriter> writer;
   try {
     for (const SourceRequest& request : requests) {

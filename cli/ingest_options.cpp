@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
@@ -26,22 +25,6 @@ RoadRules rules_of(const IngestArguments& arguments) {
   if (!arguments.width_attribute.empty()) rules.set_width_attribute(arguments.width_attribute);
   if (arguments.width_m > 0.0) rules.set_width_m(arguments.width_m);
   return rules;
-}
-
-UtmZone zone_of(const IngestArguments& arguments, const SourceRequest& first) {
-  if (arguments.zone.empty()) return UtmZone::containing(centre_of_source(first));
-  std::string digits = arguments.zone;
-  if (digits.starts_with("EPSG:")) digits.erase(0, 5);
-  const bool number =
-      !digits.empty() && digits.size() <= 5 && std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
-  const std::optional<UtmZone> zone = number ? UtmZone::from_epsg(std::stoi(digits)) : std::nullopt;
-  if (!zone) {
-    throw InvalidInput("zone-unknown",
-                       fmt::format("--zone {}: write the EPSG code of a UTM zone on WGS 84, EPSG:32601 to "
-                                   "32660 in the north, 32701 to 32760 in the south",
-                                   arguments.zone));
-  }
-  return *zone;
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
@@ -111,14 +94,6 @@ void refuse_without_effect(const IngestArguments& a, std::span<const SourceReque
   refuse(!a.class_attribute.empty(), "--class-attribute", kPixels);
   refuse(!a.width_attribute.empty(), "--width-attribute", kPixels);
   refuse(a.width_m > 0.0, "--width", kPixels);
-}
-
-MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given) {
-  std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map);
-  if (!existing) return {zone_of(arguments, first), arguments.cell_m};
-  if (cell_given) existing->cell_m = arguments.cell_m;
-  if (!arguments.zone.empty()) existing->zone = zone_of(arguments, first);
-  return *existing;
 }
 
 CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {

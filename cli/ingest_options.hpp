@@ -45,7 +45,4 @@ SourceRequest request_of(const IngestArguments& arguments, const std::string& so
 /// way round: who gives --extent for imagery would get all of it.
 void refuse_without_effect(const IngestArguments& arguments, std::span<const SourceRequest> requests);
 
-/// Those of the map, if it is there: then --cell and --zone must not contradict.
-MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, bool cell_given);
-
 }  // namespace roadfix::cli

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cli/ingest_report.hpp"
 #include "core/geodesy/utm.hpp"
@@ -15,6 +16,21 @@ namespace roadfix::cli {
 namespace {
 
 constexpr double kFalseEastingM = 500e3;
+
+UtmZone parsed_zone(const std::string& text) {
+  std::string digits = text;
+  if (digits.starts_with("EPSG:")) digits.erase(0, 5);
+  const bool number =
+      !digits.empty() && digits.size() <= 5 && std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
+  const std::optional<UtmZone> zone = number ? UtmZone::from_epsg(std::stoi(digits)) : std::nullopt;
+  if (!zone) {
+    throw InvalidInput("zone-unknown",
+                       fmt::format("--zone {}: write the EPSG code of a UTM zone on WGS 84, EPSG:32601 to "
+                                   "32660 in the north, 32701 to 32760 in the south",
+                                   text));
+  }
+  return *zone;
+}
 
 UtmZone southern(UtmZone zone) { return *UtmZone::from_epsg(zone.epsg() + 100); }
 
@@ -61,13 +77,18 @@ void refuse_several_zones(const SourceRequest& request, const InvalidInput& erro
 
 }  // namespace
 
-MapSettings settings_around_equator(const IngestArguments& arguments, const SourceRequest& first,
-                                    const RoadDetector* detector, MapSettings settings) {
-  constexpr double kNearM = 480e3;
-  const bool free = arguments.zone.empty() && !MapWriter::settings_of(arguments.map);
-  if (!free || !settings.zone.northern() || settings.zone.project(centre_of_source(first)).north_m > kNearM) {
-    return settings;
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector,
+                        bool cell_given) {
+  if (std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map)) {
+    if (cell_given) existing->cell_m = arguments.cell_m;
+    if (!arguments.zone.empty()) existing->zone = parsed_zone(arguments.zone);
+    return *existing;
   }
+  if (!arguments.zone.empty()) return {parsed_zone(arguments.zone), arguments.cell_m};
+  constexpr double kNearM = 480e3;
+  const LatLon centre = centre_of_source(first);
+  MapSettings settings{UtmZone::containing(centre), arguments.cell_m};
+  if (!settings.zone.northern() || settings.zone.project(centre).north_m > kNearM) return settings;
   const std::unique_ptr<CellSource> source = open_source(first, settings, detector);
   if (goes_south_of(*source, settings.zone) && source->extent().max.north_m < kNearM) {
     settings.zone = southern(settings.zone);

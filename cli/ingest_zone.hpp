@@ -13,9 +13,10 @@
 
 namespace roadfix::cli {
 
-/// A new map around the equator gets the southern zone, whose cells go on for 485 km beyond it: nothing is lost there.
-MapSettings settings_around_equator(const IngestArguments& arguments, const SourceRequest& first,
-                                    const RoadDetector* detector, MapSettings settings);
+/// Those of the map, if it is there: then --cell and --zone must not contradict. A new map gets the zone of its first
+/// source; around the equator the southern one, whose cells go on for 485 km beyond it: nothing is lost there.
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector,
+                        bool cell_given);
 
 struct PlannedSource {
   std::unique_ptr<CellSource> cells;

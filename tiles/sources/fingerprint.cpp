@@ -3,9 +3,12 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <string_view>
 
 #include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
@@ -36,12 +39,19 @@ void add_content(Fnv1a64& hash, const std::string& path, vsi_l_offset size) {
   hash.add(bytes);
 }
 
+/// Formats that are one file: GDAL would read all of it, some hundred megabytes, to say so.
+bool is_alone(const std::string& path) {
+  constexpr std::array<std::string_view, 5> kEndings{".geojson", ".json", ".osm", ".pbf", ".mvt"};
+  return std::ranges::find(kEndings, lower_case(std::filesystem::path(path).extension().string())) != kEndings.end();
+}
+
 /// The file and what is read with it: world files and their .prj, .aux.xml, the parts of a Shapefile, the images of a
 /// VRT, and of the VRTs among them.
 void add_with_side_files(const std::string& path, std::set<std::string>& files) {
   if (!files.insert(path).second) return;
   files.insert(CPLResetExtension(path.c_str(), "prj"));
   files.insert(CPLResetExtension(path.c_str(), "PRJ"));
+  if (is_alone(path)) return;
   const GdalMessages messages;
   const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
   if (!dataset) return;

@@ -24,7 +24,7 @@ bool stands_for_nothing(const std::string& value) {
 /// Attributes of one feature, those packed in hstore text included.
 class FeatureTags {
  public:
-  explicit FeatureTags(const OGRFeature& feature) : feature_(feature) {}
+  FeatureTags(const OGRFeature& feature, AttributePlaces& places) : feature_(feature), places_(places) {}
 
   std::string operator()(std::string_view key) {
     std::string value = as_it_stands(key);
@@ -34,9 +34,9 @@ class FeatureTags {
 
  private:
   std::string as_it_stands(std::string_view key) {
-    const int field = feature_.GetFieldIndex(std::string(key).c_str());
+    const int field = places_(key);
     if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
-    const int packed = feature_.GetFieldIndex("other_tags");
+    const int packed = places_("other_tags");
     if (packed < 0 || feature_.IsFieldSetAndNotNull(packed) == 0) return {};
     if (!tags_) tags_ = parse_hstore(feature_.GetFieldAsString(packed));
     const auto found = tags_->find(key);
@@ -44,6 +44,7 @@ class FeatureTags {
   }
 
   const OGRFeature& feature_;
+  AttributePlaces& places_;
   std::optional<std::map<std::string, std::string, std::less<>>> tags_;
 };
 
@@ -56,12 +57,13 @@ bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRule
   constexpr int kSample = 200;
   int values = 0;
   int known = 0;
+  AttributePlaces places(layer);
   const GdalMessages messages;
   layer.ResetReading();
   for (int i = 0; i < kSample; ++i) {
     const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
     if (!feature) break;
-    const std::string value = FeatureTags(*feature)(attribute);
+    const std::string value = FeatureTags(*feature, places)(attribute);
     if (value.empty()) continue;
     ++values;
     known += rules.knows(value) ? 1 : 0;
@@ -92,8 +94,18 @@ bool holds_a_line(const OGRGeometry& geometry) {
 
 }  // namespace
 
+int AttributePlaces::operator()(std::string_view name) {
+  auto known = known_.find(name);
+  if (known == known_.end()) {
+    std::string text(name);
+    const int place = definition_->GetFieldIndex(text.c_str());
+    known = known_.emplace(std::move(text), place).first;
+  }
+  return known->second;
+}
+
 RoadLayer::RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
-    : layer_(&layer), to_plane_(std::move(to_plane)), rules_(rules) {
+    : layer_(&layer), to_plane_(std::move(to_plane)), places_(layer), rules_(rules) {
   rules_.set_class_attribute(class_attribute_of(layer, rules));
   classified_ = has_attribute(layer, rules_.class_attribute());
 }
@@ -107,8 +119,8 @@ std::string RoadLayer::attributes() const {
   return names.empty() ? "no attributes" : names;
 }
 
-std::string RoadLayer::class_of(const OGRFeature& feature) const {
-  return classified_ ? FeatureTags(feature)(rules_.class_attribute()) : std::string();
+std::string RoadLayer::class_of(const OGRFeature& feature) {
+  return classified_ ? FeatureTags(feature, places_)(rules_.class_attribute()) : std::string();
 }
 
 void RoadLayer::see(const OGRGeometry& geometry) {
@@ -123,7 +135,7 @@ std::optional<OGREnvelope> RoadLayer::extent_seen() const {
 }
 
 std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
-  FeatureTags tags(feature);
+  FeatureTags tags(feature, places_);
   if (holds_a_line(*feature.GetGeometryRef())) {
     ++lines_;
     const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();

@@ -4,14 +4,30 @@
 #include <ogrsf_frmts.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/road_rules.hpp"
 
 namespace roadfix {
+
+/// The places of a layer's attributes. OGR compares a name with those of all attributes, of which vector tiles have
+/// hundreds, and each road is asked for a dozen.
+class AttributePlaces {
+ public:
+  explicit AttributePlaces(OGRLayer& layer) : definition_(layer.GetLayerDefn()) {}
+
+  /// Negative where the layer has no such attribute.
+  int operator()(std::string_view name);
+
+ private:
+  const OGRFeatureDefn* definition_;
+  std::map<std::string, int, std::less<>> known_;
+};
 
 class RoadLayer {
  public:
@@ -36,7 +52,7 @@ class RoadLayer {
   /// Width in metres to draw the feature with, nullopt to leave it out. Its geometry must not be null.
   std::optional<double> width_of(const OGRFeature& feature);
   /// As it stands in the file; empty where the layer or the feature has none.
-  std::string class_of(const OGRFeature& feature) const;
+  std::string class_of(const OGRFeature& feature);
   /// Lines that width_of() was asked about, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
@@ -44,6 +60,7 @@ class RoadLayer {
  private:
   OGRLayer* layer_;
   TransformationPtr to_plane_;
+  AttributePlaces places_;
   RoadRules rules_;
   bool classified_ = false;
   OGREnvelope seen_;

@@ -32,8 +32,6 @@ UtmZone parsed_zone(const std::string& text) {
   return *zone;
 }
 
-UtmZone southern(UtmZone zone) { return *UtmZone::from_epsg(zone.epsg() + 100); }
-
 /// The cells of a northern zone end at the equator.
 bool goes_south_of(const CellSource& source, UtmZone zone) {
   return zone.northern() && source.extent().min.north_m < 0.0;
@@ -85,15 +83,7 @@ MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& f
     return *existing;
   }
   if (!arguments.zone.empty()) return {parsed_zone(arguments.zone), arguments.cell_m};
-  constexpr double kNearM = 480e3;
-  const LatLon centre = centre_of_source(first);
-  MapSettings settings{UtmZone::containing(centre), arguments.cell_m};
-  if (!settings.zone.northern() || settings.zone.project(centre).north_m > kNearM) return settings;
-  const std::unique_ptr<CellSource> source = open_source(first, settings, detector);
-  if (goes_south_of(*source, settings.zone) && source->extent().max.north_m < kNearM) {
-    settings.zone = southern(settings.zone);
-  }
-  return settings;
+  return settings_of_new_map(first, arguments.cell_m, detector);
 }
 
 PlannedSource plan_source(const SourceRequest& request, const MapSettings& settings, const RoadDetector* detector) {
@@ -123,7 +113,7 @@ std::vector<std::string> zone_notes(const CellSource& source, const MapSettings&
     notes.push_back(
         fmt::format("what lies south of the equator is left out, since the cells of EPSG:{} end there; a "
                     "new map with --zone EPSG:{} holds both sides",
-                    zone.epsg(), southern(zone).epsg()));
+                    zone.epsg(), zone.southern().epsg()));
   }
   const double far_m =
       std::max(std::abs(extent.min.east_m - kFalseEastingM), std::abs(extent.max.east_m - kFalseEastingM));

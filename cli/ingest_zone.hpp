@@ -13,8 +13,7 @@
 
 namespace roadfix::cli {
 
-/// Those of the map, if it is there: then --cell and --zone must not contradict. A new map gets the zone of its first
-/// source; around the equator the southern one, whose cells go on for 485 km beyond it: nothing is lost there.
+/// Those of the map, if it is there: then --cell and --zone must not contradict.
 MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector,
                         bool cell_given);
 

@@ -23,6 +23,7 @@ class UtmZone {
   int number() const { return number_; }
   bool northern() const { return northern_; }
   int epsg() const { return (northern_ ? 32600 : 32700) + number_; }
+  UtmZone southern() const { return {number_, false}; }
 
   /// Throws InvalidInput for NaN, out-of-range values and points so far off the zone that UTM is undefined.
   GridPoint project(LatLon point) const;

@@ -28,4 +28,14 @@ std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapS
   return open_road_vectors(files.paths, request.vectors, request.rules, settings.zone, settings.cell_m);
 }
 
+MapSettings settings_of_new_map(const SourceRequest& first, double cell_m, const RoadDetector* detector) {
+  constexpr double kNearM = 480e3;
+  const LatLon centre = centre_of_source(first);
+  MapSettings settings{UtmZone::containing(centre), cell_m};
+  if (!settings.zone.northern() || settings.zone.project(centre).north_m > kNearM) return settings;
+  const GridBox extent = open_source(first, settings, detector)->extent();
+  if (extent.min.north_m < 0.0 && extent.max.north_m < kNearM) settings.zone = settings.zone.southern();
+  return settings;
+}
+
 }  // namespace roadfix

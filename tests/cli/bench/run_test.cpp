@@ -294,6 +294,13 @@ TEST_F(BenchRun, KeepsMapsOfTheSameNameApart) {
   EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", "imagery"}}}, building).version);
 }
 
+TEST_F(BenchRun, MapsBothSidesOfTheEquator) {
+  std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n349.5\n";
+  const MapView map = build_map({"town", {{folder / "town.png", "imagery"}}}, options.maps);
+  EXPECT_FALSE(map.zone.northern());
+  EXPECT_NEAR(map.extent.height_m(), 700.0, 4.0);
+}
+
 TEST_F(BenchRun, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();

@@ -227,7 +227,7 @@ json parse_text(std::string_view text) {
                        fmt::format("bench manifest: '{}' is given twice in one object: remove one of them", name));
   };
   try {
-    return json::parse(text, NamesOnce(refuse_second));
+    return parse_with_names_once(text, refuse_second);
   } catch (const json::parse_error& error) {
     throw InvalidInput("manifest-json",
                        fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));

@@ -75,11 +75,19 @@ void check_tiles(const NetworkDescription& network) {
   if (2 * network.overlap_px > network.tile_px) refuse("\"overlap_px\" must be at most half of \"tile_px\"");
 }
 
+json parsed(std::string_view text) {
+  try {
+    return parse_with_names_once(text,
+                                 [](const std::string& name) { refuse(fmt::format("\"{}\" is given twice", name)); });
+  } catch (const json::exception&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 NetworkDescription parse_network_description(std::string_view text) {
-  const NamesOnce names_once([](const std::string& name) { refuse(fmt::format("\"{}\" is given twice", name)); });
-  const json object = json::parse(text, names_once, false);
+  const json object = parsed(text);
   if (!object.is_object()) refuse("it is not a JSON object");
   NetworkDescription network;
   network.name = text_of(object, "name");

@@ -39,7 +39,7 @@ Calibration::Term term(const json& terms, const std::string& name) {
 
 json parsed(std::string_view text) {
   try {
-    return json::parse(text, NamesOnce([](const std::string& name) { refuse(name, "is given twice"); }));
+    return parse_with_names_once(text, [](const std::string& name) { refuse(name, "is given twice"); });
   } catch (const json::parse_error& error) {
     throw InvalidInput("calibration-json", fmt::format("calibration file: byte {} is no JSON; write a new one with "
                                                        "roadfix bench --calibrate",

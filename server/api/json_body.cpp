@@ -55,7 +55,7 @@ std::string reason_of(const json::exception& error) {
 json parse_json(std::string_view text, const JsonLimits& limits) {
   check_shape(text, limits);
   try {
-    return json::parse(text, NamesOnce(refuse_second));
+    return parse_with_names_once(text, refuse_second);
   } catch (const json::parse_error& error) {
     throw InvalidField("bad-json", "body", fmt::format("the body is not JSON: {}", reason_of(error)), error.byte);
   } catch (const json::exception& error) {

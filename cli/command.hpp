@@ -13,6 +13,7 @@ void add_detect_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fix_command(CLI::App& app);
 void add_fly_command(CLI::App& app);
+void add_frames_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
 void add_match_command(CLI::App& app);

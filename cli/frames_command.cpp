@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/output_file.hpp"
+#include "core/units/error.hpp"
+#include "core/units/text.hpp"
+#include "tiles/sources/drone_picture.hpp"
+
+namespace roadfix::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kColumns =
+    "file,sequence,time_s,lat,lon,heading_deg,agl_m,focal_px,roll_deg,pitch_deg,principal_px,distortion\n";
+
+struct FramesOptions {
+  std::vector<std::string> pictures;
+  std::string csv;
+  std::string sequence;
+  std::optional<double> takeoff_agl_m;
+};
+
+/// A picture whose file says all that a row needs.
+struct Frame {
+  fs::path file;
+  std::string sequence;
+  DronePicture picture;
+  double agl_m = 0.0;
+};
+
+std::vector<fs::path> pictures_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string ending = lower_case(entry.path().extension().string());
+    if (entry.is_regular_file() && (ending == ".jpg" || ending == ".jpeg")) files.push_back(entry.path());
+  }
+  if (files.empty()) throw InvalidInput("no-pictures", fmt::format("{}: no JPEG in this folder", folder.string()));
+  std::ranges::sort(files);
+  return files;
+}
+
+std::vector<fs::path> files_of(const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name)) {
+      files.emplace_back(name);
+      continue;
+    }
+    const auto found = pictures_in(name);
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+std::optional<double> agl_of(const DronePicture& picture, const FramesOptions& options) {
+  if (picture.agl_m || !picture.takeoff_m) return picture.agl_m;
+  return *picture.takeoff_m + options.takeoff_agl_m.value_or(0.0);
+}
+
+/// Why no row can be made of it; empty where one can.
+std::string lacks(const DronePicture& picture, const std::optional<double>& agl_m) {
+  std::vector<std::string> missing;
+  if (!picture.place) missing.emplace_back("its place (GPSLatitude, GPSLongitude)");
+  if (!picture.heading)
+    missing.emplace_back("where its upper edge points (GimbalYawDegree and GimbalPitchDegree, or Yaw)");
+  if (!agl_m) missing.emplace_back("its height (RelativeAltitude or AboveGroundAltitude)");
+  if (!picture.focal_px) {
+    missing.emplace_back(
+        "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a picture that was not cut)");
+  }
+  if (missing.empty() && *agl_m <= 0.0) return fmt::format("it was taken {:.1f} m above ground", *agl_m);
+  return missing.empty() ? "" : fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
+}
+
+/// nullopt, said on stderr, where the file does not tell enough.
+std::optional<Frame> frame_of(const fs::path& file, const FramesOptions& options) {
+  DronePicture picture = drone_picture(read_picture_tags(file));
+  const auto agl_m = agl_of(picture, options);
+  const std::string reason =
+      file.string().find(',') == std::string::npos ? lacks(picture, agl_m) : "no CSV can hold the comma in its name";
+  if (!reason.empty()) {
+    fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
+    return std::nullopt;
+  }
+  const std::string folder = fs::absolute(file).lexically_normal().parent_path().filename();
+  return Frame{file, options.sequence.empty() ? folder : options.sequence, std::move(picture), *agl_m};
+}
+
+/// With two decimals, and without the sign of a zero.
+std::string hundredths(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", std::round(*value * 100.0) / 100.0 + 0.0) : "";
+}
+
+std::string row_of(const Frame& frame, const fs::path& folder) {
+  const DronePicture& p = frame.picture;
+  const std::string time = p.time_s ? fmt::format("{:.3f}", *p.time_s) : "";
+  const std::string principal =
+      p.principal_px ? fmt::format("{:.2f} {:.2f}", p.principal_px->x, p.principal_px->y) : "";
+  return fmt::format("{},{},{},{:.8f},{:.8f},{:.2f},{:.2f},{:.2f},{},{},{},{}\n",
+                     fs::absolute(frame.file).lexically_normal().lexically_proximate(folder).generic_string(),
+                     frame.sequence, time, p.place->lat_deg, p.place->lon_deg, p.heading->compass_degrees(),
+                     frame.agl_m, p.focal_px.value(), hundredths(p.roll_deg), hundredths(p.pitch_deg), principal,
+                     fmt::join(p.distortion, " "));
+}
+
+void run_frames(const FramesOptions& options) {
+  std::vector<Frame> frames;
+  const auto files = files_of(options.pictures);
+  for (const fs::path& file : files) {
+    require_apart({options.csv}, {file});
+    if (auto frame = frame_of(file, options)) frames.push_back(std::move(*frame));
+  }
+  if (frames.empty()) {
+    throw InvalidInput("no-drone-pictures",
+                       "none of the pictures tells where and how it was taken: programs that edit "
+                       "or shrink pictures often drop that; take them as the drone stored them");
+  }
+  std::ranges::stable_sort(frames, {}, [](const Frame& f) { return std::pair(f.sequence, f.picture.time_s); });
+  const fs::path folder =
+      options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
+  std::string table = kColumns;
+  for (const Frame& frame : frames) table += row_of(frame, folder);
+  if (options.csv.empty()) {
+    fmt::print("{}", table);
+  } else {
+    write_file(options.csv, table);
+  }
+  fmt::print(stderr, "{} of {} pictures\n", frames.size(), files.size());
+  const bool above_takeoff = std::ranges::any_of(frames, [](const Frame& f) { return !f.picture.agl_m; });
+  if (above_takeoff && !options.takeoff_agl_m) {
+    fmt::print(stderr,
+               "heights are those above the take-off: if it lay higher or lower than the ground in the pictures, "
+               "say by how much with --takeoff-agl\n");
+  }
+}
+
+}  // namespace
+
+void add_frames_command(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "frames", "Makes the table of frames for bench and fly out of pictures as a drone stored them (EXIF and XMP)");
+  command->footer(
+      "Examples: roadfix frames photos/ --csv photos/frames.csv\n"
+      "          roadfix frames DJI_0042.JPG      (prints height, focal length, roll and pitch for roadfix fix)");
+  const auto options = std::make_shared<FramesOptions>();
+  command->add_option("pictures", options->pictures, "JPEG files, or folders of them")->required();
+  command->add_option("--csv", options->csv, "File to write, from which the pictures are named; default: print");
+  command->add_option("--sequence", options->sequence, "Name of the flight; default: that of the folder");
+  command->add_option("--takeoff-agl", options->takeoff_agl_m,
+                      "How many metres the take-off lay above the ground in the pictures; default: 0");
+  command->callback([options] { run_frames(*options); });
+}
+
+}  // namespace roadfix::cli

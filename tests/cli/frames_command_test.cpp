@@ -1,0 +1,96 @@
+// roadfix frames as a script meets it: pictures with the XMP of a drone become a table that bench reads.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "cli/bench/frames_csv.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::ProgramResult;
+using testing::run_program;
+using testing::text_of;
+
+class FramesCommand : public ::testing::Test {
+ protected:
+  FramesCommand() { std::filesystem::create_directory(folder / "flight 1"); }
+
+  /// XMP stands in a segment APP1 behind the JPEG's first marker (XMP Specification, part 3).
+  void picture(const std::string& name, const std::string& tags) const {
+    std::vector<unsigned char> jpeg;
+    cv::imencode(".jpg", cv::Mat(90, 120, CV_8UC1, cv::Scalar(128)), jpeg);
+    const std::string xmp = fmt::format(
+        "http://ns.adobe.com/xap/1.0/{0}<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><r:Description xmlns:r=\"r\" "
+        "xmlns:drone-dji=\"d\" {1}/></x:xmpmeta>",
+        '\0', tags);
+    const std::size_t length = xmp.size() + 2;
+    std::ofstream file(folder / "flight 1" / name, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(jpeg.data()), 2);
+    file << "\xff\xe1" << static_cast<char>(length >> 8) << static_cast<char>(length & 0xff) << xmp;
+    file.write(reinterpret_cast<const char*>(jpeg.data()) + 2, static_cast<std::streamsize>(jpeg.size()) - 2);
+  }
+  static std::string tags(double height_m) {
+    return fmt::format(
+        "drone-dji:GpsLatitude=\"+37.76\" drone-dji:GpsLongitude=\"+38.26\" drone-dji:RelativeAltitude=\"{:+.2f}\" "
+        "drone-dji:GimbalYawDegree=\"-90.0\" drone-dji:GimbalPitchDegree=\"-87.0\" drone-dji:GimbalRollDegree=\"+0.0\" "
+        "drone-dji:CalibratedFocalLength=\"100\"",
+        height_m);
+  }
+  ProgramResult frames(const std::string& arguments) const { return run_program(folder.path(), "frames " + arguments); }
+
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(FramesCommand, MakesATableThatBenchReads) {
+  picture("0002.JPG", tags(120.0));
+  picture("0001.jpg", tags(118.0));
+  const ProgramResult result = frames(fmt::format("'{}' --csv '{}' --takeoff-agl 10", (folder / "flight 1").string(),
+                                                  (folder / "frames.csv").string()));
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto table = bench::parse_frames_csv(text_of(folder / "frames.csv"));
+  ASSERT_EQ(table.size(), 2U);
+  EXPECT_EQ(table[0].file, "flight 1/0001.jpg");
+  EXPECT_EQ(table[0].sequence, "flight 1");
+  EXPECT_DOUBLE_EQ(table[0].pose.position.lat_deg, 37.76);
+  EXPECT_DOUBLE_EQ(table[0].pose.heading.degrees(), 270.0);
+  EXPECT_DOUBLE_EQ(table[0].camera.value().agl_m, 128.0);
+  EXPECT_DOUBLE_EQ(table[1].camera.value().agl_m, 130.0);
+  EXPECT_DOUBLE_EQ(table[0].camera.value().focal_px.value(), 100.0);
+  EXPECT_DOUBLE_EQ(table[0].camera.value().pitch.degrees(), 3.0);
+}
+
+TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
+  picture("good.jpg", tags(120.0));
+  picture("bare.jpg", "");
+  picture("ground.jpg", tags(-1.0));
+  picture("a,b.jpg", tags(120.0));
+  const ProgramResult result = frames("'" + (folder / "flight 1").string() + "'");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground"))));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("bare.jpg is left out: its file does not tell its place"),
+                                HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
+                                HasSubstr("a,b.jpg is left out: no CSV can hold the comma"),
+                                HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
+}
+
+TEST_F(FramesCommand, RefusesWhereThereIsNothingToRead) {
+  const std::string place = "'" + (folder / "flight 1").string() + "'";
+  EXPECT_THAT(frames(place).err, HasSubstr("[no-pictures]"));
+  picture("bare.jpg", "");
+  EXPECT_THAT(frames(place).err, HasSubstr("[no-drone-pictures]"));
+  EXPECT_THAT(frames("missing.jpg").err, HasSubstr("[source-not-found]"));
+  const std::string file = "'" + (folder / "flight 1" / "bare.jpg").string() + "'";
+  EXPECT_THAT(frames(file + " --csv " + file).err, HasSubstr("[target-is-source]"));
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,131 @@
+#include "tiles/sources/drone_picture.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+namespace roadfix {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Optional;
+
+const cv::Size kSize{5472, 3648};
+
+auto near_to(double value) { return Optional(DoubleNear(value, 1e-6)); }
+
+DronePicture of_xmp(const Tags& xmp) { return drone_picture({{}, xmp, kSize}); }
+DronePicture of_exif(const Tags& exif, cv::Size size = kSize) { return drone_picture({exif, {}, size}); }
+
+/// Right-handed, as rotations of north, east and down (NED) are written.
+cv::Matx33d about(int axis, double degrees) {
+  const Angle angle = Angle::degrees(degrees);
+  const double c = cos(angle);
+  const double s = sin(angle);
+  if (axis == 0) return {1, 0, 0, 0, c, -s, 0, s, c};
+  if (axis == 1) return {c, 0, s, 0, 1, 0, -s, 0, c};
+  return {c, -s, 0, s, c, 0, 0, 0, 1};
+}
+
+/// Of FrameCamera: its axes right, back and down in NED.
+cv::Matx33d axes_of(const DronePicture& picture) {
+  FrameCamera camera;
+  set_attitude(camera, picture.roll_deg, picture.pitch_deg);
+  const double c = cos(picture.heading.value());
+  const double s = sin(picture.heading.value());
+  return cv::Matx33d{-s, -c, 0, c, -s, 0, 0, 0, 1} * level_from_camera(camera);
+}
+
+TEST(DronePicture, LooksWhereItsGimbalPointed) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> any(-180.0, 180.0);
+  std::uniform_real_distribution<double> down(-150.0, -30.0);
+  for (int i = 0; i < 200; ++i) {
+    const double yaw = any(random);
+    const double pitch = down(random);
+    const double roll = i % 4 == 0 ? 180.0 : any(random) / 9.0;
+    const DronePicture picture = of_xmp({{"GimbalYawDegree", fmt::format("{:+.9f}", yaw)},
+                                         {"GimbalPitchDegree", fmt::format("{:+.9f}", pitch)},
+                                         {"GimbalRollDegree", fmt::format("{:+.9f}", roll)}});
+    const cv::Matx33d gimbal = about(2, yaw) * about(1, pitch) * about(0, roll);  // ahead, right, down of the picture
+    const cv::Matx33d expected = gimbal * cv::Matx33d{0, 0, 1, 1, 0, 0, 0, 1, 0};
+    EXPECT_LT(cv::norm(axes_of(picture) - expected), 1e-6) << yaw << ' ' << pitch << ' ' << roll;
+  }
+}
+
+TEST(DronePicture, TakesTheAnglesOfPix4dAsTheyAre) {
+  const DronePicture picture = of_xmp({{"Yaw", "-92.7"}, {"Pitch", "3.1"}, {"Roll", "-1.5"}});
+  EXPECT_NEAR(picture.heading.value().degrees(), -92.7, 1e-9);
+  EXPECT_THAT(picture.pitch_deg, near_to(3.1));
+  EXPECT_THAT(picture.roll_deg, near_to(-1.5));
+}
+
+TEST(DronePicture, TellsHeightAboveGroundFromHeightAboveTheTakeOff) {
+  EXPECT_THAT(of_xmp({{"RelativeAltitude", "+98.30"}}).takeoff_m, near_to(98.3));
+  EXPECT_FALSE(of_xmp({{"RelativeAltitude", "+98.30"}}).agl_m);
+  EXPECT_THAT(of_xmp({{"AboveGroundAltitude", "81.2"}}).agl_m, near_to(81.2));
+  EXPECT_FALSE(of_xmp({{"AbsoluteAltitude", "+698.30"}}).agl_m) << "which is above the sea";
+}
+
+TEST(DronePicture, WasTakenWhereExifOrElseXmpSays) {
+  Tags exif{{"EXIF_GPSLatitude", "(33) (51) (54)"},
+            {"EXIF_GPSLatitudeRef", "S"},
+            {"EXIF_GPSLongitude", "(70) (39) (0.36)"},
+            {"EXIF_GPSLongitudeRef", "W"}};
+  const DronePicture picture = of_exif(exif);
+  EXPECT_NEAR(picture.place.value().lat_deg, -33.865, 1e-9);
+  EXPECT_NEAR(picture.place.value().lon_deg, -70.6501, 1e-9);
+  exif.erase("EXIF_GPSLongitudeRef");
+  EXPECT_FALSE(of_exif(exif).place);
+  EXPECT_NEAR(of_xmp({{"GpsLatitude", "+37.76"}, {"GpsLongitude", "-38.25"}}).place.value().lon_deg, -38.25, 1e-9);
+  EXPECT_FALSE(of_xmp({{"GpsLatitude", "0.0"}, {"GpsLongitude", "0.0"}}).place) << "no satellites were received";
+  EXPECT_FALSE(of_xmp({{"GpsLatitude", "97"}, {"GpsLongitude", "3"}}).place);
+}
+
+TEST(DronePicture, CountsTimeToTheFractionOfASecond) {
+  EXPECT_THAT(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 11:05:10"}, {"EXIF_SubSecTimeOriginal", "25"}}).time_s,
+              near_to(1675940710.25));
+  EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:31 11:05:10"}}).time_s);
+  EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:-9 11:05:10"}}).time_s);
+}
+
+TEST(DronePicture, HasTheLensOfItsCalibrationUntilItsDistortionIsTakenOut) {
+  Tags xmp{{"DewarpFlag", "0"},
+           {"DewarpData", "2021-05-11;3713.29,3712,7.5,-8.5,-0.112,0.015,0.0001,-0.0003,-0.028"},
+           {"CalibratedFocalLength", "3666.666504"}};
+  const DronePicture bent = of_xmp(xmp);
+  EXPECT_THAT(bent.focal_px, near_to(3713.29));
+  EXPECT_EQ(bent.principal_px, cv::Point2d(2743.0, 1815.0));
+  EXPECT_THAT(bent.distortion, ElementsAre(-0.112, 0.015, 0.0001, -0.0003, -0.028));
+  xmp["DewarpFlag"] = "1";
+  const DronePicture straight = of_xmp(xmp);
+  EXPECT_THAT(straight.focal_px, near_to(3666.666504));
+  EXPECT_FALSE(straight.principal_px);
+  EXPECT_THAT(straight.distortion, IsEmpty());
+}
+
+TEST(DronePicture, HasTheFocalLengthOfItsFieldOfViewInThePixelsThatItHas) {
+  Tags exif{{"EXIF_FocalLengthIn35mmFilm", "24"}};
+  EXPECT_THAT(of_exif(exif).focal_px, Optional(DoubleNear(3648.0, 1.0)));  // 8.8 mm on 13.2 x 8.8 mm
+  exif["EXIF_PixelXDimension"] = "5472";
+  exif["EXIF_PixelYDimension"] = "3648";
+  EXPECT_THAT(of_exif(exif, {1368, 912}).focal_px, Optional(DoubleNear(912.0, 0.3))) << "made smaller";
+  EXPECT_FALSE(of_exif(exif, {1000, 1000}).focal_px) << "cut";
+  const Tags xmp{{"CalibratedFocalLength", "3666"}};
+  EXPECT_THAT(drone_picture({exif, xmp, {1368, 912}}).focal_px, near_to(916.5));
+}
+
+TEST(XmpTags, AreAttributesAndElementsWithoutTheirPrefixes) {
+  const Tags tags = tags_of_xmp(
+      R"(<x:xmpmeta xmlns:x="a"><r:D xmlns:r="b" drone-dji:RelativeAltitude="+9"><Camera:Yaw>3</Camera:Yaw></r:D></x:xmpmeta>)");
+  EXPECT_EQ(tags.at("RelativeAltitude"), "+9");
+  EXPECT_EQ(tags.at("Yaw"), "3");
+  EXPECT_THAT(tags_of_xmp("no <xml"), IsEmpty());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,184 @@
+#include "tiles/sources/drone_picture.hpp"
+
+#include <cpl_minixml.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "tiles/sources/gdal_session.hpp"
+
+namespace roadfix {
+namespace {
+
+void collect(const CPLXMLNode* node, Tags& tags) {
+  for (; node != nullptr; node = node->psNext) {
+    const CPLXMLNode* child = node->psChild;
+    if (child != nullptr && child->eType == CXT_Text) tags.emplace(node->pszValue, child->pszValue);
+    collect(child, tags);
+  }
+}
+
+/// "+98.30", "(37) (45) (38.7)", "2023:02:09 11:05:10": the numbers, whatever stands between them.
+std::vector<double> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  const std::string copy(text);
+  for (const char* at = copy.c_str(); *at != '\0';) {
+    char* end = nullptr;
+    const bool starts = std::string_view("+-.0123456789").find(*at) != std::string_view::npos;
+    const double value = starts ? CPLStrtod(at, &end) : 0.0;
+    if (starts && end != at && std::isfinite(value)) {
+      numbers.push_back(value);
+      at = end;
+    } else {
+      ++at;
+    }
+  }
+  return numbers;
+}
+
+std::vector<double> numbers(const Tags& tags, const char* name) {
+  const auto found = tags.find(name);
+  return found == tags.end() ? std::vector<double>() : numbers_in(found->second);
+}
+
+std::optional<double> number(const Tags& tags, const char* name) {
+  const auto all = numbers(tags, name);
+  return all.size() == 1 ? std::optional(all.front()) : std::nullopt;
+}
+
+std::optional<double> degrees_of(const Tags& exif, const char* name, const char* reference, char negative) {
+  const auto parts = numbers(exif, name);
+  const auto side = exif.find(reference);
+  if (parts.size() != 3 || side == exif.end()) return std::nullopt;
+  const double degrees = parts[0] + parts[1] / 60.0 + parts[2] / 3600.0;
+  return side->second.starts_with(negative) ? -degrees : degrees;
+}
+
+std::optional<LatLon> place_of(const PictureTags& tags) {
+  auto lat = degrees_of(tags.exif, "EXIF_GPSLatitude", "EXIF_GPSLatitudeRef", 'S');
+  auto lon = degrees_of(tags.exif, "EXIF_GPSLongitude", "EXIF_GPSLongitudeRef", 'W');
+  if (!lat || !lon) {
+    lat = number(tags.xmp, "GpsLatitude");
+    lon = number(tags.xmp, "GpsLongitude");
+  }
+  const bool on_earth = lat && lon && std::abs(*lat) <= 90.0 && std::abs(*lon) <= 180.0;
+  const bool no_fix = lat == 0.0 && lon == 0.0;
+  return on_earth && !no_fix ? std::optional(LatLon{*lat, *lon}) : std::nullopt;
+}
+
+std::optional<double> time_of(const Tags& exif) {
+  const auto parts = numbers(exif, "EXIF_DateTimeOriginal");
+  const auto possible = [](double part) { return part >= 0.0 && part < 1e4; };
+  if (parts.size() != 6 || !std::ranges::all_of(parts, possible)) return std::nullopt;
+  namespace chrono = std::chrono;
+  const chrono::year_month_day date(chrono::year(static_cast<int>(parts[0])),
+                                    chrono::month(static_cast<unsigned>(parts[1])),
+                                    chrono::day(static_cast<unsigned>(parts[2])));
+  if (!date.ok()) return std::nullopt;
+  const auto fraction = exif.find("EXIF_SubSecTimeOriginal");
+  const auto after_point = fraction == exif.end() ? std::vector<double>() : numbers_in("0." + fraction->second);
+  const auto days = static_cast<double>(chrono::sys_days(date).time_since_epoch().count());
+  return days * 86400.0 + parts[3] * 3600.0 + parts[4] * 60.0 + parts[5] +
+         (after_point.empty() ? 0.0 : after_point.front());
+}
+
+/// The gimbal's angles turn a camera that looks ahead (NED, about z, y, x in this order); ours turn one that looks
+/// down.
+void set_gimbal(DronePicture& picture, Angle yaw, Angle pitch, Angle roll) {
+  const Angle up = pitch + Angle::degrees(90.0);
+  picture.heading = (yaw + Angle::radians(std::atan2(sin(roll), cos(up) * cos(roll)))).wrapped();
+  picture.pitch_deg = Angle::radians(std::asin(sin(up) * cos(roll))).degrees();
+  picture.roll_deg = Angle::radians(std::atan2(sin(up) * sin(roll), cos(up))).degrees();
+}
+
+void set_attitude(DronePicture& picture, const Tags& xmp) {
+  const auto gimbal_yaw = number(xmp, "GimbalYawDegree");
+  const auto gimbal_pitch = number(xmp, "GimbalPitchDegree");
+  if (gimbal_yaw && gimbal_pitch) {
+    set_gimbal(picture, Angle::degrees(*gimbal_yaw), Angle::degrees(*gimbal_pitch),
+               Angle::degrees(number(xmp, "GimbalRollDegree").value_or(0.0)));
+  } else if (const auto yaw = number(xmp, "Yaw")) {
+    picture.heading = Angle::degrees(*yaw).wrapped();
+    picture.pitch_deg = number(xmp, "Pitch");
+    picture.roll_deg = number(xmp, "Roll");
+  }
+}
+
+/// DewarpData: a date, then fx, fy, cx, cy (from the centre of the picture), k1, k2, p1, p2, k3.
+bool set_dewarp_data(DronePicture& picture, const PictureTags& tags, double scale) {
+  const auto found = tags.xmp.find("DewarpData");
+  if (found == tags.xmp.end() || number(tags.xmp, "DewarpFlag") != 0.0) return false;
+  const auto values = numbers_in(std::string_view(found->second).substr(found->second.find(';') + 1));
+  if (values.size() != 9 || values[0] <= 0.0) return false;
+  picture.focal_px = scale * values[0];
+  picture.principal_px =
+      cv::Point2d(0.5 * (tags.size.width - 1) + scale * values[2], 0.5 * (tags.size.height - 1) + scale * values[3]);
+  picture.distortion.assign(values.begin() + 4, values.end());
+  return true;
+}
+
+/// Pixels of the picture for each that the camera took; nullopt where the picture was cut, nobody knows where.
+std::optional<double> scale_of(const PictureTags& tags) {
+  const auto cols = number(tags.exif, "EXIF_PixelXDimension");
+  const auto rows = number(tags.exif, "EXIF_PixelYDimension");
+  if (!cols || !rows || *cols <= 0.0 || *rows <= 0.0) return 1.0;
+  const double scale = tags.size.width / *cols;
+  return std::abs(scale * *rows - tags.size.height) <= 2.0 ? std::optional(scale) : std::nullopt;
+}
+
+void set_lens(DronePicture& picture, const PictureTags& tags) {
+  const auto known = scale_of(tags);
+  if (!known) return;
+  const double scale = *known;
+  if (set_dewarp_data(picture, tags, scale)) return;
+  if (const auto focal = number(tags.xmp, "CalibratedFocalLength"); focal && *focal > 0.0) {
+    picture.focal_px = scale * *focal;
+  } else if (const auto on_film = number(tags.exif, "EXIF_FocalLengthIn35mmFilm"); on_film && *on_film > 0.0) {
+    constexpr double kFilmDiagonalMm = 43.2666;  // of 36 x 24 mm
+    picture.focal_px = *on_film / kFilmDiagonalMm * std::hypot(tags.size.width, tags.size.height);
+  }
+}
+
+}  // namespace
+
+Tags tags_of_xmp(const std::string& text) {
+  require_gdal();
+  const GdalMessages quiet;
+  const CPLXMLTreeCloser tree(CPLParseXMLString(text.c_str()));
+  Tags tags;
+  if (tree.get() == nullptr) return tags;
+  CPLStripXMLNamespace(tree.get(), nullptr, TRUE);
+  collect(tree.get(), tags);
+  return tags;
+}
+
+PictureTags read_picture_tags(const std::string& path) {
+  const DatasetPtr file = open_dataset(path, GDAL_OF_RASTER);
+  const GdalMessages quiet;
+  PictureTags tags;
+  tags.size = {file->GetRasterXSize(), file->GetRasterYSize()};
+  for (CSLConstList entry = file->GetMetadata(); entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string_view text(*entry);
+    const auto equals = text.find('=');
+    if (equals != std::string_view::npos) tags.exif.emplace(text.substr(0, equals), text.substr(equals + 1));
+  }
+  CSLConstList xmp = file->GetMetadata("xml:XMP");
+  if (xmp != nullptr && *xmp != nullptr) tags.xmp = tags_of_xmp(*xmp);
+  return tags;
+}
+
+DronePicture drone_picture(const PictureTags& tags) {
+  DronePicture picture;
+  picture.place = place_of(tags);
+  picture.time_s = time_of(tags.exif);
+  picture.agl_m = number(tags.xmp, "AboveGroundAltitude");
+  picture.takeoff_m = number(tags.xmp, "RelativeAltitude");
+  set_attitude(picture, tags.xmp);
+  set_lens(picture, tags);
+  return picture;
+}
+
+}  // namespace roadfix

@@ -1,7 +1,7 @@
 // Answers of the service as text in the panel and as figures on the map.
 import { arrow, ellipse95, towards } from './geometry.js';
 
-const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
+export const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
 
 /// The JSON of an answer; throws the problem (RFC 9457) of any other.
 export async function request(url, options) {
@@ -57,12 +57,30 @@ function modeText(mode) {
 
 /// `look` is a class of console.css, `word` what is read.
 export function showStatus(output, look, lines, word = look) {
+  output.classList.remove('old');
   output.replaceChildren(element('span', word.replaceAll('_', ' '), `status ${look}`));
   for (const line of lines.filter(Boolean)) output.append(element('div', line));
 }
 
+/// Says above an answer why it is one no longer, if `why` is not empty; what is left of it looks like no answer.
+export function showOld(output, why) {
+  output.classList.toggle('old', Boolean(why));
+  output.querySelector('.why')?.remove();
+  if (why) output.prepend(element('div', `${why}: this is how it was`, 'why'));
+}
+
 export function showProblem(output, problem) {
   showStatus(output, 'failed', [problem.title, problem.detail]);
+}
+
+/// Runs `work`; what goes wrong is said in `output`, but nothing of what was given up for a newer question.
+export async function attempt(output, work) {
+  try {
+    await work();
+  } catch (error) {
+    if (error.name === 'AbortError') return;
+    showProblem(output, error.title ? error : { title: 'The service gives no answer', detail: String(error.message ?? error) });
+  }
 }
 
 /// Modes of a no_fix are drawn faint: they are hints, not answers. Of a fix the first one is the answer, the others are
@@ -80,9 +98,9 @@ export function drawModes(view, layer, modes, status) {
   }
 }
 
-export function showFix(output, fix) {
+export function showFix(output, fix, picture) {
   showStatus(output, fix.status, [fix.explanation ?? fix.reason]);
-  const rows = [['probability', fix.probability.toFixed(4)]];
+  const rows = [['picture', picture], ['answered', new Date().toLocaleTimeString()], ['probability', fix.probability.toFixed(4)]];
   if (fix.pose) {
     rows.push(['position', place(fix.pose)], ['heading', `${degrees(fix.pose.heading_deg, 1)} ± ${degrees(fix.heading_sigma_deg, 1)}`]);
     rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m']);

@@ -1,82 +1,157 @@
-// Tracks as they fly: a line of the places they were sure of, the last estimate with its ellipse, and how old it is.
-// What cannot be kept up to date is drawn faint and said to be old.
-import { drawModes, inView, request, showStatus, table } from './show.js';
+// A track as the service has it now: a line of the places it was sure of, its last estimate with its ellipse, and how old
+// that is. It is asked for again and again and not read from the stream of events, in which a connection that hangs looks
+// like a vehicle that is silent, and steps that waited on a slow one look like news.
+import { drawModes, element, inView, request, showOld, showProblem, showStatus, table } from './show.js';
 
-const REFRESH_MS = 5000;
+const LIST_MS = 5000;
+const LOOK_MS = 1000;
+const PATIENCE_MS = 5000;
+/// An estimate tells where the vehicle was. Older ones are not drawn as where it is.
+const FRESH_S = 10;
+/// Places of the line that are loaded at a time.
+const LINE_STEPS = 1000;
 const STATUS = { converged: 'fix', searching: 'ambiguous' };
 
+const get = (url) => request(url, { signal: AbortSignal.timeout(PATIENCE_MS) });
+const urlOf = (id) => `/v1/tracks/${encodeURIComponent(id)}`;
+
+function textOf({ id, map, created_us, stale }) {
+  const since = new Date(created_us / 1000).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
+  return `${map.name}, ${id.slice(0, 8)}, since ${since}${stale ? ', silent' : ''}`;
+}
+
 export class Tracks {
-  constructor(view, list, output) {
+  constructor(view, list, output, details) {
     this.view = view;
     this.list = list;
     this.output = output;
+    this.details = details;
     this.path = L.polyline([], { color: '#8ab4f8', weight: 2 }).addTo(view);
     this.estimate = L.layerGroup().addTo(view);
-    this.events = null;
+    this.chosen = null;
     list.addEventListener('change', () => this.follow(list.value));
     this.refresh();
-    setInterval(() => this.refresh(), REFRESH_MS);
+    setInterval(() => this.refresh(), LIST_MS);
+    setInterval(() => this.look(), LOOK_MS);
+    document.addEventListener('visibilitychange', () => this.look());
   }
 
   /// Keeps the list as the service has it; a service that does not answer now is asked again.
   async refresh() {
-    const answer = await request('/v1/tracks').catch(() => null);
+    const answer = await get('/v1/tracks').catch(() => null);
     if (!answer) return;
-    const { tracks } = answer;
-    const known = new Set([...this.list.options].map((option) => option.value));
-    for (const { id, map, stale } of tracks) {
-      if (!known.delete(id)) this.list.add(new Option(`${map.name}, ${id.slice(0, 8)}`, id));
-      if (id === this.list.value) this.output.classList.toggle('stale', stale);
+    const gone = new Map([...this.list.options].map((option) => [option.value, option]));
+    gone.delete('');
+    for (const track of answer.tracks) {
+      const option = gone.get(track.id);
+      if (!option) this.list.add(new Option(textOf(track), track.id));
+      else if (option.text !== textOf(track)) option.text = textOf(track);
+      gone.delete(track.id);
     }
-    known.delete('');
-    for (const option of [...this.list.options]) if (known.has(option.value) && !option.selected) option.remove();
+    for (const option of gone.values()) if (!option.selected) option.remove();
   }
 
   follow(id) {
-    this.events?.close();
-    this.last = null;
     this.path.setLatLngs([]);
     this.estimate.clearLayers();
-    this.output.replaceChildren();
-    this.output.classList.remove('cut-off', 'ended', 'stale');
-    if (!id) return;
-    this.events = new EventSource(`/v1/tracks/${encodeURIComponent(id)}/events`);
-    this.events.addEventListener('step', (event) => this.show(JSON.parse(event.data)));
-    this.events.addEventListener('open', () => this.setConnected(true));
-    this.events.addEventListener('error', () => this.setConnected(false));
-    this.events.addEventListener('end', () => {
-      this.events.close();
-      this.output.classList.add('ended');
-      if (this.last) this.draw(this.last);
-    });
+    for (const part of [this.output, this.details]) {
+      part.replaceChildren();
+      part.classList.remove('old');
+    }
+    this.chosen = id ? { id, lines: [[]], after: -1 } : null;
+    return this.look();
   }
 
-  /// A browser reconnects by itself, and the service then sends the steps that were missed.
-  setConnected(connected) {
-    this.output.classList.toggle('cut-off', !connected);
-    if (this.last) this.draw(this.last);
+  /// Asks for the chosen track, unless that is under way, and shows what is known of it by then.
+  async look() {
+    const { chosen } = this;
+    if (!chosen) return;
+    this.show(chosen);
+    if (chosen.asking || chosen.ended) return;
+    chosen.asking = true;
+    const asked = Date.now();
+    try {
+      const track = await get(urlOf(chosen.id));
+      Object.assign(chosen, { track, heard: asked - 1000 * track.silent_s, trouble: null });
+    } catch (error) {
+      chosen.ended = error.status === 404 || error.status === 410;
+      chosen.trouble = error.title ? error : { title: 'The service gives no answer' };
+    }
+    chosen.asking = false;
+    if (chosen !== this.chosen) return;
+    this.show(chosen);
+    if (!chosen.trouble) await this.extend(chosen);
   }
 
-  show(step) {
-    this.last = step;
-    const status = STATUS[step.status] ?? 'no_fix';
-    showStatus(this.output, status, [], step.status);
-    this.output.append(table([
+  /// Why the last step of a track is no longer how it is; empty while it is.
+  whyOld({ trouble, ended, heard }) {
+    if (ended) return 'the track has ended';
+    if (trouble) return trouble.title;
+    return Date.now() - heard < 1000 * FRESH_S ? '' : `no step for ${FRESH_S} s`;
+  }
+
+  show(chosen) {
+    const step = chosen.track?.last;
+    if (!step) {
+      if (chosen.trouble) showProblem(this.output, chosen.trouble);
+      else if (chosen.track) showStatus(this.output, 'waiting', ['no step has come yet']);
+      return;
+    }
+    const old = this.whyOld(chosen);
+    const drawn = JSON.stringify([step.sequence, old]);
+    if (chosen.drawn !== drawn) this.draw(chosen, step, old);
+    chosen.drawn = drawn;
+    chosen.age.textContent = `${Math.max(0, (Date.now() - chosen.heard) / 1000).toFixed(0)} s ago`;
+  }
+
+  draw(chosen, step, old) {
+    const look = STATUS[step.status] ?? 'no_fix';
+    const state = JSON.stringify([step.status, old]);  // said aloud, so only when it changes
+    if (chosen.state !== state) {
+      showStatus(this.output, look, [], step.status);
+      showOld(this.output, old);
+    }
+    chosen.state = state;
+    chosen.age = element('span');
+    this.details.classList.toggle('old', Boolean(old));
+    this.details.replaceChildren(table([
+      ['last step', chosen.age],
+      ...(step.pose ? [
+        ['position', `${step.pose.lat.toFixed(6)}, ${step.pose.lon.toFixed(6)}`],
+        ['heading', `${step.pose.heading_deg.toFixed(1)}° ± ${step.heading_sigma_deg.toFixed(1)}°`],
+      ] : []),
+      ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
+      ['map', chosen.track.map.name],
       ['step', String(step.sequence)],
       ['measurement', step.measurement],
       ['last accepted', step.since_accepted_s === null ? 'never' : `${step.since_accepted_s.toFixed(1)} s before`],
-      ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
       ['places', String(step.cluster_count)],
       ['resets', String(step.resets)],
       ['odometry', step.drifts ? 'drifts: tell its covariance, or a wind' : 'as it says'],
     ]));
-    if (step.pose) this.path.addLatLng(inView(this.view, step.pose));
-    this.draw(step);
+    this.estimate.clearLayers();
+    drawModes(this.view, this.estimate, step.clusters, old ? 'no_fix' : look);
+    if (step.clusters.length && !chosen.seen) {
+      chosen.seen = true;
+      const at = inView(this.view, step.clusters[0].pose);
+      if (!this.view.getBounds().contains(at)) this.view.setView(at, Math.max(this.view.getZoom(), 14));
+    }
   }
 
-  draw(step) {
-    const old = ['cut-off', 'ended'].some((name) => this.output.classList.contains(name));
-    this.estimate.clearLayers();
-    drawModes(this.view, this.estimate, step.clusters, old ? 'no_fix' : STATUS[step.status] ?? 'no_fix');
+  /// Draws on the line what the track was sure of since; where it was not, there is a gap.
+  async extend(chosen) {
+    const last = chosen.track.last?.sequence ?? -1;
+    if (chosen.extending || last <= chosen.after) return;
+    chosen.extending = true;
+    const answer = await get(`${urlOf(chosen.id)}/history?after=${chosen.after}&limit=${LINE_STEPS}`).catch(() => null);
+    chosen.extending = false;
+    for (const { geometry, properties } of answer?.features ?? []) {
+      if (properties.sequence === undefined) continue;  // the line of all
+      chosen.after = properties.sequence;
+      if (!geometry) chosen.lines.push([]);
+      else chosen.lines.at(-1).push(inView(this.view, { lat: geometry.coordinates[1], lon: geometry.coordinates[0] }));
+    }
+    chosen.lines = chosen.lines.filter((line, i) => line.length || i === chosen.lines.length - 1);
+    if (chosen === this.chosen) this.path.setLatLngs(chosen.lines);
   }
 }

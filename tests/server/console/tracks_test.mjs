@@ -1,124 +1,141 @@
 // What the page shows of a track while its service comes and goes: node tracks_test.mjs FOLDER/OF/THE/PAGE
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { colours, drawn, GREEN, load, node, RED, run, service, view, YELLOW } from './page.mjs';
 
-// A copy inside a package, since node takes a .js file outside of one for no module.
-const folder = mkdtempSync(join(tmpdir(), 'roadfix-console-'));
-writeFileSync(join(folder, 'package.json'), '{"type":"module"}');
-for (const name of ['tracks.js', 'show.js', 'geometry.js']) copyFileSync(join(process.argv[2], name), join(folder, name));
-process.on('exit', () => rmSync(folder, { recursive: true }));
-
-let drawn = [];
-const figure = (kind) => (at, style = {}) => {
-  const made = {
-    addTo() { drawn.push({ kind, at, ...style }); return made; }, bindTooltip: () => made, setLatLngs() {}, addLatLng() {},
-  };
-  return made;
-};
-const group = { addTo: () => group, clearLayers() { drawn = []; } };
-globalThis.L = { polyline: figure('line'), polygon: figure('ellipse'), circleMarker: figure('point'), layerGroup: () => group };
-
-function node() {
-  const classes = new Set();
-  return {
-    text: '', options: [], value: '',
-    classList: {
-      add: (name) => classes.add(name), contains: (name) => classes.has(name), remove: (...names) => names.forEach((name) => classes.delete(name)),
-      toggle: (name, on) => (on ? classes.add(name) : classes.delete(name)),
-    },
-    replaceChildren() {}, append() {}, prepend() {}, addEventListener() {}, insertRow: node, insertCell: node,
-    add(option) { this.options.push(option); },
-  };
-}
-globalThis.document = { createElement: node };
-globalThis.Option = class { constructor(text, value) { Object.assign(this, { text, value }); } };
-
-let stream;
-globalThis.EventSource = class extends EventTarget {
-  constructor() { super(); stream = this; }
-  close() {}
-  send(step) { this.dispatchEvent(Object.assign(new Event('step'), { data: JSON.stringify(step) })); }
-};
-let service = { tracks: [{ id: 'one', map: { name: 'city' }, stale: false }, { id: 'two', map: { name: 'city' }, stale: false }] };
-globalThis.fetch = async () => {
-  if (!service) throw new TypeError('fetch failed');
-  return { ok: true, json: async () => service };
-};
-globalThis.setInterval = () => {};
-
-const { Tracks } = await import(join(folder, 'tracks.js'));
-const { LastQuestion } = await import(join(folder, 'show.js'));
+const { Tracks } = await load('tracks.js');
+let now = 1_000_000;
+Date.now = () => now;
 
 const cluster = (lat, weight) => ({ pose: { lat, lon: 38, heading_deg: 0 }, sigma_m: [3, 2], ellipse_heading_deg: 0, weight });
 const converged = {
-  sequence: 1, status: 'converged', pose: { lat: 37, lon: 38, heading_deg: 0 }, radius95_m: 6, clusters: [cluster(37, 0.9), cluster(37.1, 0.1)],
-  cluster_count: 2, measurement: 'accepted', since_accepted_s: 0, resets: 0, drifts: false,
+  sequence: 1, status: 'converged', pose: { lat: 37, lon: 38, heading_deg: 0 }, heading_sigma_deg: 1, radius95_m: 6,
+  clusters: [cluster(37, 0.9), cluster(37.1, 0.1)], cluster_count: 2, measurement: 'accepted', since_accepted_s: 0, resets: 0, drifts: false,
 };
-const colours = () => drawn.filter(({ kind }) => kind === 'ellipse').map(({ color }) => color);
-const [green, yellow, red] = ['#7ee0a1', '#f4c95d', '#f28b82'];
+const track = (id, last, silent_s = 0.1) => ({ id, map: { name: 'city' }, created_us: 0, silent_s, stale: silent_s >= 60, last });
+const ended = { status: 410, title: 'Gone', code: 'track-ended' };
+const place = (sequence, lat) => ({ geometry: lat && { type: 'Point', coordinates: [38, lat] }, properties: { sequence } });
+const answer = (one, history = []) => { service.answers = { '/v1/tracks/one': one, '/v1/tracks/one/history': { features: history } }; };
 
-let middle = 38;
 const list = node();
 const output = node();
-const view = { getCenter: () => ({ lat: 37, lng: middle }) };
-const tracks = new Tracks(view, list, output);
-const cases = {
-  'only the place that a track is sure of is drawn as one'() {
-    tracks.follow('one');
-    stream.send(converged);
-    assert.deepEqual(colours(), [green, yellow]);
+const details = node();
+const tracks = new Tracks(view, list, output, details);
+const isOld = () => {
+  assert.equal(output.classList.contains('old'), details.classList.contains('old'));
+  return output.classList.contains('old');
+};
+
+await run({
+  async 'only the place that a track is sure of is drawn as one'() {
+    answer(track('one', converged));
+    await tracks.follow('one');
+    assert.deepEqual(colours(), [GREEN, YELLOW]);
+    assert.match(details.textContent, /37\.000000, 38\.000000/);
+    assert.ok(!isOld());
   },
-  'a lost connection makes the last estimate an old one, until there is a connection again'() {
-    stream.dispatchEvent(new Event('error'));
-    assert.ok(output.classList.contains('cut-off'));
-    assert.deepEqual(colours(), [red, red]);
-    stream.dispatchEvent(new Event('open'));
-    assert.ok(!output.classList.contains('cut-off'));
-    assert.deepEqual(colours(), [green, yellow]);
+  async 'a service that cannot be reached makes the last estimate an old one, until it answers again'() {
+    service.answers = null;
+    await tracks.look();
+    assert.ok(isOld());
+    assert.match(output.textContent, /gives no answer/);
+    assert.deepEqual(colours(), [RED, RED]);
+    answer({ status: 502 });
+    await tracks.look();
+    assert.ok(isOld());
+    answer(track('one', converged));
+    await tracks.look();
+    assert.ok(!isOld());
+    assert.deepEqual(colours(), [GREEN, YELLOW]);
   },
-  'an ended track is an old one for good'() {
-    tracks.follow('one');
-    stream.send(converged);
-    stream.dispatchEvent(new Event('end'));
-    assert.ok(output.classList.contains('ended'));
-    assert.deepEqual(colours(), [red, red]);
+  async 'an estimate grows old also while an answer is awaited'() {
+    service.answers = { '/v1/tracks/one': () => new Promise(() => {}) };
+    tracks.look();
+    now += 9000;
+    await tracks.look();
+    assert.match(details.textContent, /9 s ago/);
+    assert.ok(!isOld());
+    now += 1000;
+    await tracks.look();
+    assert.ok(isOld());
+    assert.deepEqual(colours(), [RED, RED]);
   },
-  'another track begins without what was lost of the one before'() {
-    stream.dispatchEvent(new Event('error'));
-    tracks.follow('two');
-    assert.ok(!output.classList.contains('ended'));
-    assert.ok(!output.classList.contains('cut-off'));
+  async 'a vehicle that is silent is where it was, and is said to have been'() {
+    answer(track('one', converged, 30));
+    await tracks.follow('one');
+    assert.match(details.textContent, /30 s ago/);
+    assert.match(output.textContent, /no step for 10 s/);
+    assert.deepEqual(colours(), [RED, RED]);
+    answer(track('one', { ...converged, sequence: 2 }));
+    await tracks.look();
+    assert.match(details.textContent, /0 s ago/);
+    assert.deepEqual(colours(), [GREEN, YELLOW]);
+  },
+  async 'an ended track is an old one for good'() {
+    answer(ended);
+    await tracks.look();
+    assert.match(output.textContent, /the track has ended/);
+    answer(track('one', converged));
+    await tracks.look();
+    assert.ok(isOld());
+    assert.deepEqual(colours(), [RED, RED]);
+  },
+  async 'another track begins without what was lost of the one before, nor its late answer'() {
+    let late;
+    service.answers = { '/v1/tracks/one': () => new Promise((give) => { late = give; }), '/v1/tracks/two': track('two') };
+    const one = tracks.follow('one');
+    await tracks.follow('two');
+    assert.match(output.textContent, /no step has come yet/);
+    late(track('one', converged));
+    await one;
+    assert.match(output.textContent, /no step has come yet/);
+    assert.ok(!isOld());
     assert.deepEqual(colours(), []);
   },
-  'a place beyond the 180th meridian is drawn on the side that is shown'() {
-    tracks.follow('one');
-    middle = 180.01;
+  async 'the line has gaps where the track was not sure, and grows from where it ends'() {
+    answer(track('one', { ...converged, sequence: 3 }), [place(0, 36.9), place(1), place(2), place(3, 37)]);
+    await tracks.follow('one');
+    const line = [...drawn].find(({ kind }) => kind === 'line');
+    assert.deepEqual(tracks.path.at, [[[36.9, 38]], [[37, 38]]]);
+    let asked;
+    answer(track('one', { ...converged, sequence: 4 }));
+    service.answers['/v1/tracks/one/history'] = (url) => { asked = url; return { features: [place(4, 37.1)] }; };
+    await tracks.look();
+    assert.match(asked, /after=3&/);
+    assert.deepEqual(tracks.path.at, [[[36.9, 38]], [[37, 38], [37.1, 38]]]);
+    assert.ok(line);
+  },
+  async 'a track that is out of view is brought there once'() {
+    answer(track('one', { ...converged, clusters: [cluster(50, 1)] }));
+    view.moved = null;
+    await tracks.follow('one');
+    assert.deepEqual(view.moved, [50, 38]);
+    view.moved = null;
+    answer(track('one', { ...converged, sequence: 5, clusters: [cluster(51, 1)] }));
+    await tracks.look();
+    assert.equal(view.moved, null);
+  },
+  async 'a place beyond the 180th meridian is drawn on the side that is shown'() {
+    view.middle = 180.01;
     const [east, west] = [cluster(37, 0.9), cluster(37, 0.1)];
     east.pose.lon = -179.98;
     west.pose.lon = 179.99;
-    stream.send({ ...converged, clusters: [east, west] });
-    const longitudes = drawn.filter(({ kind }) => kind === 'point').map(({ at }) => at[1]);
+    answer(track('one', { ...converged, clusters: [east, west] }));
+    await tracks.follow('one');
+    const longitudes = [...drawn].filter(({ kind }) => kind === 'point').map(({ at }) => at[1]);
     assert.deepEqual(longitudes.map((lon) => lon.toFixed(2)), ['180.02', '179.99']);
   },
   async 'a service that does not answer takes no track off the list'() {
+    const ids = () => list.options.map(({ value }) => value);
+    service.answers = { '/v1/tracks': { tracks: [track('one'), track('two', converged, 80)] } };
     await tracks.refresh();
-    assert.deepEqual(list.options.map(({ value }) => value), ['one', 'two']);
-    service = null;
+    assert.deepEqual(ids(), ['one', 'two']);
+    assert.match(list.options[1].text, /, silent$/);
+    service.answers = null;
     await tracks.refresh();
-    assert.deepEqual(list.options.map(({ value }) => value), ['one', 'two']);
+    assert.deepEqual(ids(), ['one', 'two']);
+    service.answers = { '/v1/tracks': { tracks: [track('two')] } };
+    await tracks.refresh();
+    assert.deepEqual(ids(), ['two']);
+    assert.doesNotMatch(list.options[0].text, /silent/);
   },
-  'a question ends those before it'() {
-    const questions = new LastQuestion();
-    const first = questions.next();
-    const second = questions.next();
-    assert.ok(first.aborted);
-    assert.ok(!second.aborted);
-  },
-};
-
-for (const [name, check] of Object.entries(cases)) {
-  await check();
-  console.log(`ok: ${name}`);
-}
+});

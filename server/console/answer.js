@@ -1,0 +1,66 @@
+// The answer to the question where a picture was taken. It stands only for the picture, the numbers and the map that it
+// was asked with: when one of them is another, it stays to be read, as an old one.
+import { attempt, drawModes, inView, LastQuestion, request, showFix, showOld, showStatus } from './show.js';
+
+/// A browser gives no bytes of a file that was written anew since it was chosen.
+async function bytesOf(picture) {
+  try {
+    return await picture.arrayBuffer();
+  } catch {
+    throw { title: 'The picture cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
+  }
+}
+
+export class Answer {
+  #questions = new LastQuestion();
+  #fix = null;
+
+  constructor(view, output) {
+    this.view = view;
+    this.output = output;
+    this.figures = L.layerGroup().addTo(view);
+  }
+
+  async ask(url, picture) {
+    this.forget();
+    const signal = this.#questions.next();
+    showStatus(this.output, 'searching …', []);
+    await attempt(this.output, async () => {
+      const body = await bytesOf(picture);
+      this.#fix = await request(url, { method: 'POST', body, headers: { 'Content-Type': picture.type }, signal });
+      showFix(this.output, this.#fix, picture.name);
+      this.#draw(this.#fix.status);
+      const { pose } = this.#fix;
+      if (pose) this.view.flyTo(inView(this.view, pose), Math.max(this.view.getZoom(), 16));
+    });
+  }
+
+  forget() {
+    this.#questions.next();
+    this.#fix = null;
+    this.figures.clearLayers();
+    this.output.replaceChildren();
+  }
+
+  /// For another question on the page than the one that was asked.
+  questionChanged() {
+    if (this.#fix) this.#outdate('the question has changed');
+    else this.forget();
+  }
+
+  /// `maps` as the service has them now.
+  mapsChanged(maps) {
+    const { map } = this.#fix ?? {};
+    if (map && !maps.some(({ name, version }) => name === map.name && version === map.version)) this.#outdate('its map has changed');
+  }
+
+  #outdate(why) {
+    showOld(this.output, why);
+    this.#draw('no_fix');
+  }
+
+  #draw(look) {
+    this.figures.clearLayers();
+    drawModes(this.view, this.figures, this.#fix.modes, look);
+  }
+}

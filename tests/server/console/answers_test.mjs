@@ -1,0 +1,98 @@
+// What the page shows of its answers when the question is another one by then: node answers_test.mjs FOLDER/OF/THE/PAGE
+import assert from 'node:assert/strict';
+import { colours, drawn, GREEN, load, node, RED, run, service, view } from './page.mjs';
+
+const { Answer } = await load('answer.js');
+const { Places } = await load('places.js');
+const { LastQuestion } = await load('show.js');
+
+const mode = { pose: { lat: 37, lon: 38, heading_deg: 0 }, sigma_m: [3, 2], ellipse_heading_deg: 0, weight: 1 };
+const fix = {
+  status: 'fix', probability: 0.999, pose: mode.pose, heading_sigma_deg: 1, sigma_m: [3, 2], modes: [mode],
+  searched: { area_km2: 1, headings: 120 }, time_ms: { detect: 1, search: 1 }, map: { name: 'city', version: '1' },
+};
+const picture = (name) => ({ name, type: 'image/png', arrayBuffer: async () => new ArrayBuffer(1) });
+const output = node();
+const answer = new Answer(view, output);
+const isOld = () => output.classList.contains('old');
+async function ask(name = 'a.png') {
+  service.answers = { '/fix': fix };
+  await answer.ask('/fix?kind=frame', picture(name));
+}
+
+const place = node();
+const footprint = { value: '400' };
+const wanted = { checked: true };
+const places = new Places(view, place, footprint, wanted);
+const latlng = { lat: 37, lng: 38, wrap: () => latlng };
+
+await run({
+  async 'a fix names the picture that it is of'() {
+    await ask('frame_07.png');
+    assert.match(output.textContent, /frame_07\.png/);
+    assert.deepEqual(colours(), [GREEN]);
+    assert.ok(!isOld());
+  },
+  async 'a fix is an old one as soon as the question is another one'() {
+    await ask();
+    answer.questionChanged();
+    assert.ok(isOld());
+    assert.match(output.textContent, /the question has changed/);
+    assert.deepEqual(colours(), [RED]);
+    await ask('b.png');
+    assert.ok(!isOld());
+    assert.deepEqual(colours(), [GREEN]);
+  },
+  async 'an answer that is awaited is given up when the question is another one'() {
+    let late;
+    service.answers = { '/fix': () => new Promise((give) => { late = give; }) };
+    const asked = answer.ask('/fix', picture('a.png'));
+    await new Promise(setImmediate);
+    answer.questionChanged();
+    late(fix);
+    await asked;
+    assert.equal(output.textContent, '');
+    assert.deepEqual(colours(), []);
+  },
+  async 'a fix is an old one when its map was replaced or is no longer served'() {
+    const others = [{ name: 'town', version: '2' }];
+    for (const maps of [others, [...others, { name: 'city', version: '2' }], [{ name: 'city', status: 'unreadable' }]]) {
+      await ask();
+      answer.mapsChanged([...others, { name: 'city', version: '1' }]);
+      assert.ok(!isOld());
+      answer.mapsChanged(maps);
+      assert.ok(isOld());
+      assert.deepEqual(colours(), [RED]);
+    }
+    answer.forget();
+    answer.mapsChanged(others);
+    assert.equal(output.textContent, '');
+  },
+  async 'a picture that was written anew since it was chosen is said to be unreadable, not the service'() {
+    const gone = { name: 'a.png', type: 'image/png', arrayBuffer: async () => { throw new DOMException('gone', 'NotReadableError'); } };
+    await answer.ask('/fix', gone);
+    assert.match(output.textContent, /choose it again/);
+    assert.doesNotMatch(output.textContent, /gives no answer/);
+  },
+  'a question ends those before it'() {
+    const questions = new LastQuestion();
+    const first = questions.next();
+    const second = questions.next();
+    assert.ok(first.aborted);
+    assert.ok(!second.aborted);
+  },
+  async 'a layer that cannot be drawn is said to be so, and holds up nothing else'() {
+    service.answers = { '/map/localizability/tilejson.json': { status: 400, title: 'Bad request', detail: 'footprint_m is 1' } };
+    await places.drawLayer('/map', 18);
+    assert.match(place.textContent, /footprint_m is 1/);
+  },
+  async 'what is known of a place is forgotten with its footprint'() {
+    service.answers = { '/map/localizability': { status: 'fix', reason: '', probability: 1, road_share: 0.1, observed_share: 1 } };
+    await places.ask('/map', latlng);
+    assert.match(place.textContent, /^fix/);
+    assert.ok(drawn.size);
+    places.forget();
+    assert.equal(place.textContent, '');
+    assert.deepEqual(colours(), []);
+  },
+});

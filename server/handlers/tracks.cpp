@@ -41,9 +41,9 @@ std::int64_t digest_of(const api::Content& content) {
 }
 
 json track_json(const Service& service, const StoredTrack& track) {
-  const auto silent = service.tracks.silent(track.id);
-  const double silent_s = std::chrono::duration<double>(silent).count();
-  const auto left = std::max(service.tracks.limits().idle - silent, std::chrono::milliseconds(0));
+  const double silent_s = std::chrono::duration<double>(service.tracks.silent(track)).count();
+  const auto left =
+      std::max(service.tracks.limits().idle - service.tracks.idle(track.id), std::chrono::milliseconds(0));
   return {{"id", track.id},
           {"map", {{"name", track.map}, {"version", track.map_version}}},
           {"request", api::stored_json(track.request)},

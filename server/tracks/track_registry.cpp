@@ -123,16 +123,22 @@ StoredTrack TrackRegistry::find(const std::string& id) const {
   return *track;
 }
 
-std::chrono::milliseconds TrackRegistry::silent(const std::string& id) const {
+std::chrono::milliseconds TrackRegistry::silent(const StoredTrack& track) const {
+  const std::chrono::microseconds by_date(now_us() - track.touched_us);
+  const auto idle = this->idle(track.id);
+  const std::lock_guard lock(mutex_);
+  return heard_.contains(track.id) ? idle : std::max(idle, std::chrono::floor<std::chrono::milliseconds>(by_date));
+}
+
+std::chrono::milliseconds TrackRegistry::idle(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto heard = heard_.find(id);
-  return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() -
-                                                               (heard == heard_.end() ? began_ : heard->second));
+  return std::chrono::floor<std::chrono::milliseconds>(Clock::now() - (heard == heard_.end() ? began_ : heard->second));
 }
 
 std::string TrackRegistry::ended(const StoredTrack& track) const {
   if (!track.ended.empty()) return track.ended;
-  return silent(track.id) > limits_.idle ? "expired" : "";
+  return idle(track.id) > limits_.idle ? "expired" : "";
 }
 
 std::optional<StoredStep> TrackRegistry::last_step(const std::string& id) const {

@@ -1,8 +1,8 @@
 // The tracks that fly: each with its tracker in memory and its state in the store. Steps of one track are taken one at
 // a time and in order; those of different tracks run side by side.
 //
-// How long a track has been silent is told by a clock that nobody can set, and counts from the start of the service at
-// the earliest: a machine without GPS may learn the date in mid-flight.
+// When a track ends is told by a clock that nobody can set, and counts from the start of the service at the earliest: a
+// machine without GPS may learn the date in mid-flight.
 #pragma once
 
 #include <chrono>
@@ -53,8 +53,11 @@ class TrackRegistry {
   std::vector<StoredTrack> of_client(const std::string& client) const;
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
-  /// Since its last step, its beginning or the start of the service.
-  std::chrono::milliseconds silent(const std::string& id) const;
+  /// Since its last step or its beginning. Of a track that was not heard since the service started the date tells how
+  /// long before that: silence that the clock makes up is better than a place from before taken for one of now.
+  std::chrono::milliseconds silent(const StoredTrack& track) const;
+  /// Since its last step, its beginning or the start of the service: a track has TrackLimits::idle from then.
+  std::chrono::milliseconds idle(const std::string& id) const;
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
   /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").

@@ -76,6 +76,19 @@ TEST_F(TrackRegistryTest, GoesOnAfterARestartAsWithoutOne) {
   EXPECT_EQ(registry()->steps_after(id, -1, 100).size(), 6U);
 }
 
+TEST_F(TrackRegistryTest, SaysAfterARestartHowLongATrackHasBeenSilentWithoutEndingIt) {
+  TrackLimits limits;
+  limits.idle = std::chrono::seconds(60);
+  const std::string id = begin(*registry());
+  take(*registry(), id, 0);
+  testing::open_sqlite(folder_ / "tracks.sqlite").execute("UPDATE tracks SET touched_us = touched_us - 100000000");
+  const auto tracks = registry(limits);
+  EXPECT_GE(tracks->silent(tracks->find(id)), std::chrono::seconds(100));
+  EXPECT_LT(tracks->idle(id), limits.idle);
+  take(*tracks, id, 1);
+  EXPECT_LT(tracks->silent(tracks->find(id)), limits.idle);
+}
+
 TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
   const auto tracks = registry();
   const long unused = maps_.find("town").use_count();

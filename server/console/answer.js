@@ -1,6 +1,6 @@
 // The answer to the question where a picture was taken. It stands only for the picture, the numbers and the map that it
 // was asked with: when one of them is another, it stays to be read, as an old one.
-import { attempt, drawModes, inView, LastQuestion, request, showFix, showOld, showStatus } from './show.js';
+import { attempt, drawModes, LastQuestion, moveTo, request, showFix, showOld, showStatus } from './show.js';
 
 /// A browser gives no bytes of a file that was written anew since it was chosen.
 async function bytesOf(picture) {
@@ -31,7 +31,7 @@ export class Answer {
       showFix(this.output, this.#fix, picture.name);
       this.#draw(this.#fix.status);
       const { pose } = this.#fix;
-      if (pose) this.view.flyTo(inView(this.view, pose), Math.max(this.view.getZoom(), 16));
+      if (pose) moveTo(this.view, pose, 16);
     });
   }
 

@@ -110,12 +110,13 @@ function askPlace(latlng) {
   if (tiles) places.ask(mapUrl(), latlng);
 }
 
-function acceptDrops(target, input) {
+/// Wherever on the page: a browser would leave it to show what was dropped beside its place.
+function acceptDrops(zone, input) {
   for (const name of ['dragover', 'dragleave', 'drop']) {
-    target.addEventListener(name, (event) => {
+    document.addEventListener(name, (event) => {
       event.preventDefault();
-      target.classList.toggle('over', name === 'dragover');
-      if (name !== 'drop') return;
+      zone.classList.toggle('over', name === 'dragover');
+      if (name !== 'drop' || !event.dataTransfer.files.length) return;
       input.files = event.dataTransfer.files;
       input.dispatchEvent(new Event('input', { bubbles: true }));
     });

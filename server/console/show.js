@@ -50,6 +50,11 @@ export function inView(view, { lat, lon }) {
   return [lat, towards(lon, view.getCenter().lng)];
 }
 
+/// At once: what is drawn while a view flies is beside its place until the view has come to rest.
+export function moveTo(view, pose, zoom) {
+  view.setView(inView(view, pose), Math.max(view.getZoom(), zoom), { animate: false });
+}
+
 function modeText(mode) {
   const [long, short] = mode.sigma_m;
   return `${place(mode.pose)}, heading ${degrees(mode.pose.heading_deg, 1)}, σ ${long.toFixed(1)} × ${short.toFixed(1)} m, weight ${mode.weight.toFixed(3)}`;

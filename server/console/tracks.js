@@ -1,7 +1,7 @@
 // A track as the service has it now: a line of the places it was sure of, its last estimate with its ellipse, and how old
 // that is. It is asked for again and again and not read from the stream of events, in which a connection that hangs looks
 // like a vehicle that is silent, and steps that waited on a slow one look like news.
-import { drawModes, element, inView, request, showOld, showProblem, showStatus, table } from './show.js';
+import { drawModes, element, inView, moveTo, request, showOld, showProblem, showStatus, table } from './show.js';
 
 const LIST_MS = 5000;
 const LOOK_MS = 1000;
@@ -133,8 +133,8 @@ export class Tracks {
     drawModes(this.view, this.estimate, step.clusters, old ? 'no_fix' : look);
     if (step.clusters.length && !chosen.seen) {
       chosen.seen = true;
-      const at = inView(this.view, step.clusters[0].pose);
-      if (!this.view.getBounds().contains(at)) this.view.setView(at, Math.max(this.view.getZoom(), 14));
+      const { pose } = step.clusters[0];
+      if (!this.view.getBounds().contains(inView(this.view, pose))) moveTo(this.view, pose, 14);
     }
   }
 

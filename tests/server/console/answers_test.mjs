@@ -32,6 +32,7 @@ await run({
     assert.match(output.textContent, /frame_07\.png/);
     assert.deepEqual(colours(), [GREEN]);
     assert.ok(!isOld());
+    assert.deepEqual(view.moved, [37, 38]);
   },
   async 'a fix is an old one as soon as the question is another one'() {
     await ask();

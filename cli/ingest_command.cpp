@@ -67,8 +67,11 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     Progress reading(record.name, lines ? "features" : "MP",
                      lines ? lines_per_block : kTileCells * kTileCells * cell_mp);
     Progress fusing("fusing", "tiles");
-    const IngestProgress progress{reading.updates(), fusing.updates()};
-    report = ingest(*source, record, settings, *writer, arguments.options, progress, stop);
+    IngestOptions options = arguments.options;
+    options.on_blocks = reading.updates();
+    options.on_fusing = fusing.updates();
+    options.stop = stop;
+    report = ingest(*source, record, *writer, options);
   }
   if (report.observed_cells == 0 && report.blocks_before == 0) {
     fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,

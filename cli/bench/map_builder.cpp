@@ -93,10 +93,11 @@ MapView build_map(const ManifestMap& map, const MapBuilding& building) {
   {
     MapWriter writer(file, settings);
     for (const OpenedSource& source : sources) {
-      const IngestProgress progress{
-          [&](std::int64_t done, std::int64_t total) { building.progress(source.record.name, done, total); }, {}};
-      ingest(*source.cells, source.record, settings, writer, {building.jobs, building.seed, false}, progress,
-             building.stop);
+      const auto tell = [&](std::int64_t done, std::int64_t total) {
+        building.progress(source.record.name, done, total);
+      };
+      ingest(*source.cells, source.record, writer,
+             {.jobs = building.jobs, .seed = building.seed, .on_blocks = tell, .stop = building.stop});
     }
   }
   constexpr std::size_t kSearchCacheBytes = std::size_t{256} << 20;  // all queries search the same map

@@ -114,7 +114,7 @@ void ingest_all(benchmark::State& state, const RoadDetector& detector, int jobs)
     record.name = "town";
     record.kind = "imagery";
     record.fingerprint = source->summary().fingerprint;
-    ingest(*source, record, settings, writer, {.jobs = jobs}, {}, {});
+    ingest(*source, record, writer, {.jobs = jobs});
   }
   count_megapixels(state);
 }

@@ -21,11 +21,9 @@ struct IngestOptions {
   int jobs = 1;  ///< blocks read and detected at a time, at least 1
   std::uint64_t seed = 1;
   bool replace = false;  ///< a source of that name with another fingerprint
-};
-
-struct IngestProgress {
-  OnProgress blocks;
-  OnProgress fusing;
+  OnProgress on_blocks{};
+  OnProgress on_fusing{};
+  std::stop_token stop{};
 };
 
 struct IngestReport {
@@ -44,10 +42,9 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
 std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
 
 /// Carries the source into the map or goes on where an earlier call was stopped. `record.fingerprint` must tell
-/// everything that changes the cells. Throws Interrupted "ingest-stopped" when `stop` is requested, and whatever
-/// source and writer throw; what was finished until then stays.
-IngestReport ingest(const CellSource& source, const SourceRecord& record, const MapSettings& settings,
-                    MapWriter& writer, const IngestOptions& options, const IngestProgress& progress,
-                    std::stop_token stop);
+/// everything that changes the cells. Throws Interrupted "ingest-stopped" when asked to stop, and whatever source and
+/// writer throw; what was finished until then stays.
+IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWriter& writer,
+                    const IngestOptions& options);
 
 }  // namespace roadfix

@@ -63,9 +63,10 @@ void refuse_other_content(const Connection& map, SourceTable& sources, const Sou
 }  // namespace
 
 struct MapWriter::State {
-  State(const std::filesystem::path& path, const MapSettings& settings)
+  State(const std::filesystem::path& path, const MapSettings& wanted)
       : lock(path),
-        made_here(create_if_missing(path, settings)),
+        made_here(create_if_missing(path, wanted)),
+        settings(wanted),
         map(open_with(path, settings, Access::kReadWrite)),
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
@@ -89,6 +90,7 @@ struct MapWriter::State {
 
   WriterLock lock;
   bool made_here;
+  MapSettings settings;
   Connection map;
   TileTable tiles;
   SourceTable sources;
@@ -157,6 +159,8 @@ MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& setti
 MapWriter::~MapWriter() = default;
 MapWriter::MapWriter(MapWriter&&) noexcept = default;
 MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;
+
+const MapSettings& MapWriter::settings() const { return state_->settings; }
 
 std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& path) {
   if (!is_there(path)) return std::nullopt;

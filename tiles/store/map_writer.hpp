@@ -27,6 +27,7 @@ class MapWriter {
   MapWriter(MapWriter&&) noexcept;
   MapWriter& operator=(MapWriter&&) noexcept;
 
+  const MapSettings& settings() const;
   /// Settings of an existing map; nullopt where no file is.
   static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
 

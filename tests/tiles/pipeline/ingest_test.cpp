@@ -68,8 +68,7 @@ class IngestTest : public ::testing::Test {
  protected:
   IngestReport run(const CellSource& source, const std::string& map, int jobs, std::stop_token stop = {}) {
     MapWriter writer(folder / map, kSettings);
-    return ingest(source, record(), kSettings, writer, {.jobs = jobs, .seed = 5, .replace = false}, {},
-                  std::move(stop));
+    return ingest(source, record(), writer, {.jobs = jobs, .seed = 5, .stop = std::move(stop)});
   }
   /// Cells of all levels.
   void expect_equal(const std::string& a, const std::string& b) {
@@ -169,12 +168,11 @@ TEST_F(IngestTest, SaysHowFarItIs) {
   MapWriter writer(folder / "a.gpkg", kSettings);
   std::vector<std::int64_t> seen;
   std::int64_t blocks = 0;
-  const IngestProgress progress{[&](std::int64_t done, std::int64_t total) {
-                                  blocks = total;
-                                  seen.push_back(done);
-                                },
-                                {}};
-  ingest(NoiseSource(), record(), kSettings, writer, {.jobs = 2, .seed = 5, .replace = false}, progress, {});
+  const auto note = [&](std::int64_t done, std::int64_t total) {
+    blocks = total;
+    seen.push_back(done);
+  };
+  ingest(NoiseSource(), record(), writer, {.jobs = 2, .seed = 5, .on_blocks = note});
   ASSERT_EQ(std::ssize(seen), blocks + 1);
   EXPECT_TRUE(std::ranges::is_sorted(seen));
   EXPECT_EQ(seen.back(), blocks);

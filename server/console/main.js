@@ -40,9 +40,14 @@ async function drawMap() {
   return info;
 }
 
+/// What was of the map before leaves at once: its roads under the name of another map would be read as that one's.
 async function openMap() {
   answer.forget();
   places.forget();
+  places.removeLayer();
+  if (tiles) tiles.remove();
+  tiles = null;
+  by('about').textContent = 'opening …';
   shown = { name: by('maps').value, version: null };
   try {
     const info = await drawMap();

@@ -50,12 +50,17 @@ export class Places {
     this.output.replaceChildren();
   }
 
-  /// Draws the layer anew, where it is wanted, and says what is wrong with it.
-  async drawLayer(mapUrl, maxZoom) {
-    const signal = this.#layerQuestions.next();
+  removeLayer() {
+    this.#layerQuestions.next();
     this.#layer?.remove();
     this.#layer = null;
+  }
+
+  /// Draws the layer anew, where it is wanted, and says what is wrong with it.
+  async drawLayer(mapUrl, maxZoom) {
+    this.removeLayer();
     if (!this.wanted.checked) return;
+    const signal = this.#layerQuestions.next();
     await attempt(this.output, async () => {
       const query = `footprint_m=${Number(this.footprint.value)}`;
       const tileset = await request(`${mapUrl}/localizability/tilejson.json?${query}`, { signal });

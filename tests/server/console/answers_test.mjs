@@ -87,6 +87,21 @@ await run({
     await places.drawLayer('/map', 18);
     assert.match(place.textContent, /footprint_m is 1/);
   },
+  async 'a layer that was asked for comes no more once its map has left'() {
+    const tiles = () => [...drawn].filter(({ kind }) => kind === 'tiles').length;
+    let late;
+    const tileset = { bounds: [38, 37, 39, 38], minzoom: 10, maxzoom: 16 };
+    service.answers = { '/map/localizability/tilejson.json': tileset };
+    await places.drawLayer('/map', 18);
+    assert.equal(tiles(), 1);
+    service.answers = { '/map/localizability/tilejson.json': () => new Promise((give) => { late = give; }) };
+    const asked = places.drawLayer('/map', 18);
+    await new Promise(setImmediate);
+    places.removeLayer();
+    late(tileset);
+    await asked;
+    assert.equal(tiles(), 0);
+  },
   async 'what is known of a place is forgotten with its footprint'() {
     service.answers = { '/map/localizability': { status: 'fix', reason: '', probability: 1, road_share: 0.1, observed_share: 1 } };
     await places.ask('/map', latlng);

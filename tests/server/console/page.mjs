@@ -45,6 +45,7 @@ export const view = {
   middle: 38, moved: null,
   getCenter: () => ({ lat: 37, lng: view.middle }),
   getZoom: () => 12,
+  setZoom() {},
   getBounds: () => ({ contains: ([lat, lon]) => Math.abs(lat - 37) < 1 && Math.abs(lon - view.middle) < 1 }),
   setView(at, zoom, { animate }) { assert.equal(animate, false, 'what is drawn while a view flies is beside its place'); view.moved = at; },
 };

@@ -3,6 +3,7 @@
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
+#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <array>

@@ -46,7 +46,7 @@ struct Picture {
 
 Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
   if (options.frame.given()) {
-    return {ground_seen(options.frame, picture_in(options.image), detector), {}};
+    return {ground_seen(options.frame, options.image, detector), {}};
   }
   const UtmZone zone = zone_of_image(options.image);
   Orthoimage ortho = read_orthoimage(options.image, zone);
@@ -115,7 +115,7 @@ void add_detect_command(CLI::App& app) {
   const auto options = std::make_shared<DetectOptions>();
   command
       ->add_option("image", options->image,
-                   "Frame (PNG or JPEG, with --gsd or --fov and --agl), or any georeferenced image")
+                   "Frame (PNG or JPEG, with --gsd, --exif or --fov and --agl), or any georeferenced image")
       ->required();
   command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
   add_frame_options(*command, options->frame);

@@ -52,7 +52,7 @@ Another parse_also(const std::string& text) {
 FeatureMap features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
                        double map_cell_m) {
   if (detector == nullptr) return FeatureMap::centred(feature_map_in(path), options.cell_m);
-  const GroundView view = ground_seen(options.frame, picture_in(path), *detector);
+  const GroundView view = ground_seen(options.frame, path, *detector);
   return detect_features(*detector, view, map_cell_m, options.seed);
 }
 
@@ -96,7 +96,7 @@ FeatureInput read_feature_input(const FeatureInputOptions& options, double map_c
   if (options.cell_m <= 0.0 && !options.frame.given()) {
     throw InvalidInput(
         "input-kind-missing",
-        "say what the input is: --cell for a feature map, --gsd or --agl with --fov or --focal-px for a frame");
+        "say what the input is: --cell for a feature map; --gsd, --exif or --agl with --fov or --focal-px for a frame");
   }
   if (options.cell_m > 0.0) return {all_features(options, nullptr, map_cell_m), {}};
   const auto detector = make_detector(options.detector);

@@ -9,6 +9,7 @@
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "tiles/sources/drone_picture.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -45,6 +46,28 @@ FrameCamera camera_of(const FrameOptions& options) {
   return camera;
 }
 
+[[noreturn]] void refuse_file(const std::string& path, const char* lacks_and_advice) {
+  throw InvalidInput("camera-not-in-file", fmt::format("{} does not tell {}", path, lacks_and_advice));
+}
+
+FrameCamera camera_in(const std::string& path, const FrameOptions& options) {
+  const DronePicture told = drone_picture(read_picture_tags(path));
+  if (!told.focal_px) {
+    refuse_file(path,
+                "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a picture that was "
+                "not cut): give --agl with --fov or --focal-px");
+  }
+  FrameCamera camera;
+  camera.focal_px = told.focal_px;
+  camera.principal_px = told.principal_px;
+  camera.distortion = told.distortion;
+  camera.agl_m = options.agl_m > 0.0 ? options.agl_m : told.agl_m.value_or(told.takeoff_m.value_or(0.0));
+  if (camera.agl_m <= 0.0) refuse_file(path, "a height (RelativeAltitude or AboveGroundAltitude): give it with --agl");
+  set_attitude(camera, options.roll_deg ? options.roll_deg : told.roll_deg,
+               options.pitch_deg ? options.pitch_deg : told.pitch_deg);
+  return camera;
+}
+
 }  // namespace
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
@@ -60,6 +83,13 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
   auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov or --focal-px")
                   ->check(positive())
                   ->excludes(gsd);
+  auto* exif = command
+                   .add_flag("--exif", o.camera_in_file,
+                             "The input is a frame as a drone stored it: its EXIF and XMP tell lens, height above the "
+                             "take-off, roll and pitch; --agl, --roll and --pitch say otherwise")
+                   ->excludes(gsd)
+                   ->excludes(fov)
+                   ->excludes(focal);
   fov->needs(agl);
   focal->needs(agl);
   command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down, 0 = straight down")
@@ -81,18 +111,15 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
       ->needs(focal);
   command.add_flag("--fisheye", o.fisheye, "The lens is a fisheye (OpenCV's model; ROS: equidistant)")->needs(focal);
   command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen")->needs(gsd);
-  return {gsd, agl};
+  return {gsd, agl, exif};
 }
 
-GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector) {
+GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
+  const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_image(bytes, kMaxPixels); });
   std::optional<FrameCamera> camera;
-  if (options.camera()) camera = camera_of(options);
+  if (options.camera()) camera = options.camera_in_file ? camera_in(path, options) : camera_of(options);
   const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
-  return ground_seen(frame_image(decoded, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
-}
-
-cv::Mat picture_in(const std::string& path) {
-  return decoded(path, [](const auto& bytes) { return decode_image(bytes, kMaxPixels); });
+  return ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
 }
 
 CellArray feature_map_in(const std::string& path) {

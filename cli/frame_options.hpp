@@ -15,6 +15,7 @@ inline constexpr std::int64_t kMaxPixels = 400'000'000;
 
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
+  bool camera_in_file = false;
   double fov_deg = 0.0;
   double focal_px = 0.0;
   std::vector<double> principal_px;
@@ -26,21 +27,20 @@ struct FrameOptions {
   bool black_unseen = false;
 
   bool given() const { return gsd_m > 0.0 || camera(); }
-  bool camera() const { return agl_m > 0.0; }
+  bool camera() const { return camera_in_file || agl_m > 0.0; }
 };
 
-/// Adds --gsd, the camera's --fov or --focal-px and what goes with them, and --black-unseen; `options` must live as
-/// long as the command. Returns those of which one says that there is a frame.
+/// Adds --gsd, the camera's --exif, --fov or --focal-px and what goes with them, and --black-unseen; `options` must
+/// live as long as the command. Returns those of which one says that there is a frame.
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
 
-/// The ground that the frame (see decode_image) shows, in pixels that the detector makes use of.
-/// Throws what frame_image and rectify throw. options.given() must hold.
-GroundView ground_seen(const FrameOptions& options, const cv::Mat& decoded, const RoadDetector& detector);
+/// The ground that the frame in a file shows, in pixels that the detector makes use of. Throws what decode_image,
+/// frame_image and rectify throw, and InvalidInput "camera-not-in-file", "not-a-file" and NotFound "file-not-found";
+/// all about the file name it. options.given() must hold.
+GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
-/// The picture in a file, see decode_image; what that throws names the file here. Also throws InvalidInput "not-a-file"
-/// and NotFound "file-not-found".
-cv::Mat picture_in(const std::string& path);
-/// Likewise, see decode_feature_map.
+/// The feature map in a file, see decode_feature_map; what that throws names the file here. Also throws InvalidInput
+/// "not-a-file" and NotFound "file-not-found".
 CellArray feature_map_in(const std::string& path);
 
 }  // namespace roadfix::cli

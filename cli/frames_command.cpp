@@ -151,7 +151,7 @@ void add_frames_command(CLI::App& app) {
       "frames", "Makes the table of frames for bench and fly out of pictures as a drone stored them (EXIF and XMP)");
   command->footer(
       "Examples: roadfix frames photos/ --csv photos/frames.csv\n"
-      "          roadfix frames DJI_0042.JPG      (prints height, focal length, roll and pitch for roadfix fix)");
+      "          roadfix frames DJI_0042.JPG      (prints what roadfix fix --exif takes from it)");
   const auto options = std::make_shared<FramesOptions>();
   command->add_option("pictures", options->pictures, "JPEG files, or folders of them")->required();
   command->add_option("--csv", options->csv, "File to write, from which the pictures are named; default: print");

@@ -2,9 +2,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/bench/frames_csv.hpp"
 #include "tests/support/run_program.hpp"
@@ -80,6 +84,30 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
                                 HasSubstr("a,b.jpg is left out: no CSV can hold the comma"),
                                 HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
+}
+
+/// What detect says of a frame, but for its time and what angles lose by being turned to and fro.
+nlohmann::json detected(const std::filesystem::path& folder, const std::string& arguments) {
+  const std::string target = "'" + (folder / "roads.png").string() + "'";
+  const ProgramResult result = run_program(folder, fmt::format("detect --json {} {}", arguments, target));
+  EXPECT_EQ(result.code, 0) << result.err;
+  auto answer = nlohmann::json::parse(result.out);
+  answer.erase("time_ms");
+  for (auto& number : answer.at("nadir_cell")) number = std::round(1e6 * number.get<double>());
+  return answer;
+}
+
+TEST_F(FramesCommand, TellsOtherCommandsTheCameraOfAFrame) {
+  picture("0001.jpg", tags(118.0));
+  picture("bare.jpg", "");
+  const std::string file = "'" + (folder / "flight 1" / "0001.jpg").string() + "'";
+  EXPECT_EQ(detected(folder.path(), file + " --exif"),
+            detected(folder.path(), file + " --focal-px 100 --agl 118 --roll 0 --pitch 3"));
+  EXPECT_EQ(detected(folder.path(), file + " --exif --agl 90 --pitch -8"),
+            detected(folder.path(), file + " --focal-px 100 --agl 90 --roll 0 --pitch -8"));
+  const std::string bare = "'" + (folder / "flight 1" / "bare.jpg").string() + "'";
+  EXPECT_THAT(run_program(folder.path(), "detect --exif " + bare + " roads.png").err,
+              HasSubstr("[camera-not-in-file]"));
 }
 
 TEST_F(FramesCommand, RefusesWhereThereIsNothingToRead) {

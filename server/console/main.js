@@ -21,7 +21,7 @@ let tiles = null;
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 
 async function drawLayer() {
-  if (tiles) await places.drawLayer(mapUrl(), tiles.options.maxZoom);
+  if (tiles) await places.drawLayer(mapUrl(), shown.version, tiles.options.maxZoom);
 }
 
 /// Draws the chosen map as it is now; gives what the service says of it.
@@ -30,7 +30,7 @@ async function drawMap() {
   const signal = mapQuestions.next();
   const [info, tileset] = await Promise.all([request(url, { signal }), request(`${url}/tilejson.json`, { signal })]);
   if (tiles) tiles.remove();
-  tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png`, {
+  tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
   }).addTo(view);
   shown = { name: info.name, version: info.version };

@@ -57,7 +57,7 @@ export class Places {
   }
 
   /// Draws the layer anew, where it is wanted, and says what is wrong with it.
-  async drawLayer(mapUrl, maxZoom) {
+  async drawLayer(mapUrl, version, maxZoom) {
     this.removeLayer();
     if (!this.wanted.checked) return;
     const signal = this.#layerQuestions.next();
@@ -65,7 +65,7 @@ export class Places {
       const query = `footprint_m=${Number(this.footprint.value)}`;
       const tileset = await request(`${mapUrl}/localizability/tilejson.json?${query}`, { signal });
       const [west, south, east, north] = tileset.bounds;
-      this.#layer = L.tileLayer(`${mapUrl}/localizability/tiles/{z}/{x}/{y}.png?${query}`, {
+      this.#layer = L.tileLayer(`${mapUrl}/localizability/tiles/{z}/{x}/{y}.png?${query}&version=${version}`, {
         minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom,
         bounds: east > 180 ? null : [[south, west], [north, east]],  // Leaflet would leave out what lies beyond the 180th meridian
       }).on('tileerror', askAgain).addTo(this.view);

@@ -3,9 +3,9 @@ import { arrow, ellipse95, towards } from './geometry.js';
 
 export const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
 
-/// The JSON of an answer; throws the problem (RFC 9457) of any other.
+/// The JSON of an answer, never one that a cache kept; throws the problem (RFC 9457) of any other.
 export async function request(url, options) {
-  const answer = await fetch(url, options);
+  const answer = await fetch(url, { cache: 'no-cache', ...options });
   const body = await answer.json();
   if (!answer.ok) throw body;
   return body;

@@ -144,7 +144,7 @@ void add_localizability_routes(http::Router& router, const Service& service) {
   const auto turns = std::make_shared<http::Admission>(kTilesDrawn, service.http.threads / kThreadsPerWaitingTile);
   router.add({"GET",
               "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
-              {"footprint_m", "style"},
+              {"footprint_m", "style", "version"},
               http::Load::kLight,
               [&service, turns](const http::Request& request) { return get_tile(service, request, *turns); }});
   router.add({"GET",

@@ -61,7 +61,7 @@ http::Response get_tilejson(const Service& service, const http::Request& request
 void add_tile_routes(http::Router& router, const Service& service) {
   router.add({"GET",
               "/v1/maps/{map}/tiles/{z}/{x}/{y}.png",
-              {"style"},
+              {"style", "version"},
               http::Load::kLight,
               [&service](const http::Request& request) { return get_tile(service, request); }});
   router.add(

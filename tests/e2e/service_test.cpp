@@ -61,6 +61,7 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
   EXPECT_EQ(again->status, 304);
   EXPECT_TRUE(again->body.empty());
   EXPECT_NE(client_.Get(path + "?style=grey")->get_header_value("ETag"), tile->get_header_value("ETag"));
+  EXPECT_EQ(client_.Get(path + "?version=7f3a")->get_header_value("ETag"), tile->get_header_value("ETag"));
   EXPECT_EQ(client_.Get("/v1/maps/town/tiles/16/0/0.png")->status, 204);
   EXPECT_EQ(testing::refusal(client_.Get("/v1/maps/town/tiles/16/70000/0.png")), "404 tile-not-found");
 }

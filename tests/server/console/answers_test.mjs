@@ -84,18 +84,26 @@ await run({
   },
   async 'a layer that cannot be drawn is said to be so, and holds up nothing else'() {
     service.answers = { '/map/localizability/tilejson.json': { status: 400, title: 'Bad request', detail: 'footprint_m is 1' } };
-    await places.drawLayer('/map', 18);
+    await places.drawLayer('/map', 'v1', 18);
     assert.match(place.textContent, /footprint_m is 1/);
+  },
+  async 'tiles of a map that was replaced have other addresses, for what a browser keeps'() {
+    const layer = () => [...drawn].find(({ kind }) => kind === 'tiles').at;
+    service.answers = { '/map/localizability/tilejson.json': (url, { cache }) => cache === 'no-cache' && { bounds: [38, 37, 39, 38], minzoom: 10 } };
+    await places.drawLayer('/map', 'v1', 18);
+    const before = layer();
+    await places.drawLayer('/map', 'v2', 18);
+    assert.notEqual(layer(), before);
   },
   async 'a layer that was asked for comes no more once its map has left'() {
     const tiles = () => [...drawn].filter(({ kind }) => kind === 'tiles').length;
     let late;
     const tileset = { bounds: [38, 37, 39, 38], minzoom: 10, maxzoom: 16 };
     service.answers = { '/map/localizability/tilejson.json': tileset };
-    await places.drawLayer('/map', 18);
+    await places.drawLayer('/map', 'v1', 18);
     assert.equal(tiles(), 1);
     service.answers = { '/map/localizability/tilejson.json': () => new Promise((give) => { late = give; }) };
-    const asked = places.drawLayer('/map', 18);
+    const asked = places.drawLayer('/map', 'v1', 18);
     await new Promise(setImmediate);
     places.removeLayer();
     late(tileset);

@@ -37,9 +37,6 @@ class BoundMap {
   static constexpr int kBorder = 16;
 
   const GridGeometry& geometry() const { return geometry_; }
-  /// Geometry in whole blocks: block (0, 0) is the north-western one; its cells start at geometry().origin.
-  int block_cols() const { return block_cols_; }
-  int block_rows() const { return block_rows_; }
   /// Least value of an observed cell; the bounds count what lies above.
   int base() const { return base_; }
   /// Most above base, at least 1.
@@ -76,7 +73,7 @@ class BoundMap {
   }
 
   GridGeometry geometry_;
-  int block_cols_;
+  int block_cols_;  ///< block (0, 0) is the north-western one; its cells start at geometry().origin
   int block_rows_;
   static constexpr int kMargin = 4;
   std::ptrdiff_t stride_;

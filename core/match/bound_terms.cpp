@@ -51,10 +51,6 @@ class Remainder {
   std::vector<int> values_;
 };
 
-bool holds(const std::vector<CellOffset>& piece, int share, int level, double min_share) {
-  return share >= min_share * level * static_cast<double>(piece.size());
-}
-
 }  // namespace
 
 BoundTerms quantized(std::vector<std::pair<double, BoundTerms::Term>> weighted, Rounding rounding) {
@@ -126,20 +122,20 @@ namespace {
 
 using Weighted = std::vector<std::pair<double, BoundTerms::Term>>;
 
+/// Of the block (col, row), counted from the nadir's.
 BoundTerms::Term term_at(int col, int row, int plane) {
-  return {static_cast<std::int16_t>(floor_div(col, kBlockCells)),
-          static_cast<std::int16_t>(floor_div(row, kBlockCells)), static_cast<std::int16_t>(plane)};
+  return {static_cast<std::int16_t>(col), static_cast<std::int16_t>(row), static_cast<std::int16_t>(plane)};
 }
 
 /// Takes the lines from the remainder, each where it fits best near its place.
-void add_lines(const LineHints& hints, Angle heading, int nadir_col, int nadir_row, int span, Remainder& rest,
-               Weighted& terms) {
+Weighted line_terms(const LineHints& hints, Angle heading, CellOffset nadir, int span, Remainder& rest) {
   constexpr double kMinShare = 0.3;
   const double c = cos(heading);
   const double s = sin(heading);
+  Weighted terms;
   for (const LineHint& hint : hints.lines) {
-    const int col = static_cast<int>(std::lround(c * hint.col - s * hint.row)) + nadir_col;
-    const int row = static_cast<int>(std::lround(s * hint.col + c * hint.row)) + nadir_row;
+    const int col = static_cast<int>(std::lround(c * hint.col - s * hint.row)) + nadir.col;
+    const int row = static_cast<int>(std::lround(s * hint.col + c * hint.row)) + nadir.row;
     const long turned = std::lround((hint.angle + heading.radians()) / std::numbers::pi * kLineDirections);
     const int index = static_cast<int>(((turned % kLineDirections) + kLineDirections) % kLineDirections);
     const auto& line = line_stencil(index);
@@ -152,25 +148,27 @@ void add_lines(const LineHints& hints, Angle heading, int nadir_col, int nadir_r
       best = at;
       best_share = share;
     }
-    if (!holds(line, best_share, hints.level, kMinShare)) continue;
+    if (best_share < kMinShare * hints.level * static_cast<double>(line.size())) continue;
     rest.take(line, best.col, best.row, hints.level);
     const double weight = static_cast<double>(line.size()) * hints.level * span / BoundMap::kFull;
-    terms.emplace_back(weight, term_at(best.col - nadir_col, best.row - nadir_row, index));
+    terms.emplace_back(weight, term_at(floor_div(best.col - nadir.col, kBlockCells),
+                                       floor_div(best.row - nadir.row, kBlockCells), index));
   }
+  return terms;
 }
 
-/// Sums per block of value(col, row), with the nadir's block aligned to the nadir cell.
+/// Sums per block of value(col, row) over the cells, with the nadir's block aligned to the nadir cell.
 template <typename Value>
-Weighted block_terms(int cols, int rows, int nadir_col, int nadir_row, int plane, double factor, Value value) {
-  const int first_col = floor_div(-nadir_col, kBlockCells);
-  const int first_row = floor_div(-nadir_row, kBlockCells);
-  const int block_cols = floor_div(cols - 1 - nadir_col, kBlockCells) - first_col + 1;
-  const int block_rows = floor_div(rows - 1 - nadir_row, kBlockCells) - first_row + 1;
+Weighted block_terms(const CellArray& cells, CellOffset nadir, int plane, double factor, Value value) {
+  const int first_col = floor_div(-nadir.col, kBlockCells);
+  const int first_row = floor_div(-nadir.row, kBlockCells);
+  const int block_cols = floor_div(cells.cols() - 1 - nadir.col, kBlockCells) - first_col + 1;
+  const int block_rows = floor_div(cells.rows() - 1 - nadir.row, kBlockCells) - first_row + 1;
   std::vector<double> sums(static_cast<std::size_t>(block_cols) * static_cast<std::size_t>(block_rows), 0.0);
-  for (int row = 0; row < rows; ++row) {
-    const int block_row = floor_div(row - nadir_row, kBlockCells) - first_row;
-    for (int col = 0; col < cols; ++col) {
-      const int block_col = floor_div(col - nadir_col, kBlockCells) - first_col;
+  for (int row = 0; row < cells.rows(); ++row) {
+    const int block_row = floor_div(row - nadir.row, kBlockCells) - first_row;
+    for (int col = 0; col < cells.cols(); ++col) {
+      const int block_col = floor_div(col - nadir.col, kBlockCells) - first_col;
       sums[static_cast<std::size_t>(block_row * block_cols + block_col)] += value(col, row);
     }
   }
@@ -178,113 +176,42 @@ Weighted block_terms(int cols, int rows, int nadir_col, int nadir_row, int plane
   for (int row = 0; row < block_rows; ++row) {
     for (int col = 0; col < block_cols; ++col) {
       const double sum = sums[static_cast<std::size_t>(row * block_cols + col)];
-      if (sum <= 0.0) continue;
-      terms.emplace_back(
-          sum * factor, BoundTerms::Term{static_cast<std::int16_t>(first_col + col),
-                                         static_cast<std::int16_t>(first_row + row), static_cast<std::int16_t>(plane)});
+      if (sum > 0.0) terms.emplace_back(sum * factor, term_at(first_col + col, first_row + row, plane));
     }
   }
   return terms;
 }
 
-/// Observed cells within windows of 2 kBlockCells - 1 cells, by a table of sums.
-class WindowCount {
- public:
-  explicit WindowCount(const CellArray& cells)
-      : cols_(cells.cols()), rows_(cells.rows()), sums_(static_cast<std::size_t>((cols_ + 1) * (rows_ + 1)), 0) {
-    for (int row = 0; row < rows_; ++row) {
-      for (int col = 0; col < cols_; ++col) {
-        sum(col + 1, row + 1) =
-            sum(col, row + 1) + sum(col + 1, row) - sum(col, row) + (is_observed(cells.at(col, row)) ? 1 : 0);
-      }
-    }
-  }
-  int within(int col, int row, int size) {
-    const int c0 = std::clamp(col, 0, cols_);
-    const int c1 = std::clamp(col + size, 0, cols_);
-    const int r0 = std::clamp(row, 0, rows_);
-    const int r1 = std::clamp(row + size, 0, rows_);
-    return sum(c1, r1) - sum(c0, r1) - sum(c1, r0) + sum(c0, r0);
-  }
-
- private:
-  int& sum(int col, int row) { return sums_[static_cast<std::size_t>(row * (cols_ + 1) + col)]; }
-
-  int cols_;
-  int rows_;
-  std::vector<int> sums_;
-};
-
 }  // namespace
 
-TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints, int span,
-                               bool whole_map) {
+TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints,
+                               const BoundMap& map) {
   const CellArray& array = turned.cells;
-  const int nadir_col = static_cast<int>(std::floor(turned.nadir.col));
-  const int nadir_row = static_cast<int>(std::floor(turned.nadir.row));
+  const CellOffset nadir{static_cast<int>(std::floor(turned.nadir.col)),
+                         static_cast<int>(std::floor(turned.nadir.row))};
   for (const Cell cell : array.cells()) {
     if (!is_observed(cell)) continue;
     cells += 1.0;
     sum += cell;
     square += double{1} * cell * cell;
   }
+  cover = cover_of(array, nadir);
 
   Remainder rest(array, base);
-  Weighted pieces;
-  add_lines(hints, heading, nadir_col, nadir_row, span, rest, pieces);
+  Weighted pieces = line_terms(hints, heading, nadir, map.span(), rest);
   const auto blocks = [&](int plane, double factor, auto value) {
-    return block_terms(array.cols(), array.rows(), nadir_col, nadir_row, plane, factor / BoundMap::kFull, value);
+    return block_terms(array, nadir, plane, factor / BoundMap::kFull, value);
   };
-  const Weighted single = blocks(BoundMap::kCellPlane, span, [&](int c, int r) { return rest.at(c, r); });
+  const Weighted single = blocks(BoundMap::kCellPlane, map.span(), [&](int c, int r) { return rest.at(c, r); });
   pieces.insert(pieces.end(), single.begin(), single.end());
   cross = quantized(std::move(pieces), Rounding::kUp);
+  if (map.all_observed()) return;
+
   const auto value = [&](int c, int r) { return is_observed(array.at(c, r)) ? double{1} * array.at(c, r) : 0.0; };
-  if (whole_map) {
-    cover(array, nadir_col, nadir_row);
-    return;
-  }
   sum_min = quantized(blocks(BoundMap::kAllObserved, 1.0, value), Rounding::kDown);
   sum_max = quantized(blocks(BoundMap::kAnyObserved, 1.0, value), Rounding::kUp);
   const auto squared = [&](int c, int r) { return value(c, r) * value(c, r); };
   square_min = quantized(blocks(BoundMap::kAllObserved, 1.0, squared), Rounding::kDown);
-
-  cover(array, nadir_col, nadir_row);
-}
-
-void TurnedFeatures::cover(const CellArray& array, int nadir_col, int nadir_row) {
-  const int reach = std::max(nadir_col, nadir_row);
-  const int half = (reach + kBlockCells - 1) / kBlockCells + 1;
-  side = 2 * half + 1;
-  inner.assign(static_cast<std::size_t>(side * side), false);
-  outer = inner;
-  WindowCount count(array);
-  for (int row = -half; row <= half; ++row) {
-    for (int col = -half; col <= half; ++col) {
-      // The cells of the block as seen from the positions of the nadir's block.
-      const int seen = count.within(nadir_col + kBlockCells * col - kBlockCells + 1,
-                                    nadir_row + kBlockCells * row - kBlockCells + 1, kBlockWindow);
-      const auto at = static_cast<std::size_t>((row + half) * side + col + half);
-      inner[at] = seen == kBlockWindow * kBlockWindow;
-      outer[at] = seen > 0;
-    }
-  }
-}
-
-std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side) {
-  std::vector<BlockRun> runs;
-  const int half = side / 2;
-  for (int row = 0; row < side; ++row) {
-    int first = -1;
-    for (int col = 0; col <= side; ++col) {
-      const bool covered = col < side && blocks[static_cast<std::size_t>(row * side + col)];
-      if (covered && first < 0) first = col;
-      if (!covered && first >= 0) {
-        runs.push_back({row - half, first - half, col - half});
-        first = -1;
-      }
-    }
-  }
-  return runs;
 }
 
 }  // namespace roadfix

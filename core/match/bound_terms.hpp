@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
+#include "core/match/block_cover.hpp"
 #include "core/match/bound_map.hpp"
 
 namespace roadfix {
@@ -51,29 +52,15 @@ int base_of(const FeatureMap& features);
 FeatureMap above_base(const FeatureMap& features, int base);
 LineHints find_lines(const FeatureMap& features, int base);
 
-/// Blocks relative to the nadir's, as runs along a row: [first, last).
-struct BlockRun {
-  int row = 0;
-  int first = 0;
-  int last = 0;
-};
-
 /// One heading. Values are cells as stored (0..254), map values less the map's base.
 struct TurnedFeatures {
   double cells = 0.0, sum = 0.0, square = 0.0;  ///< over the observed cells
   BoundTerms cross;                             ///< sum of (l - base) m', at most
   BoundTerms sum_min, sum_max, square_min;      ///< over cells where the map is observed
-  std::vector<bool> inner, outer;  ///< blocks covered from every position of the nadir's block, from any; side x side
-  int side = 0;                    ///< odd; the nadir's block in the middle
+  BlockCover cover;
 
-  /// `turned` = rotated(features, heading); `span`: BoundMap::span(); `whole_map`: all of it is observed.
-  TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints, int span, bool whole_map);
-
- private:
-  void cover(const CellArray& array, int nadir_col, int nadir_row);
+  /// `turned` = rotated(features, heading).
+  TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints, const BoundMap& map);
 };
-
-/// The marked ones of side x side blocks, the nadir's in the middle.
-std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side);
 
 }  // namespace roadfix

@@ -7,33 +7,6 @@
 #include "core/units/parallel_for.hpp"
 
 namespace roadfix {
-namespace {
-
-/// The blocks, of side x side, that all headings cover, and those that any of them does.
-struct Marks {
-  int side;
-  std::vector<bool> inner, outer;
-
-  explicit Marks(int along)
-      : side(along), inner(static_cast<std::size_t>(side * side), true), outer(inner.size(), false) {}
-
-  void add(const TurnedFeatures& turned) {
-    const int inset = (side - turned.side) / 2;
-    for (int row = 0; row < side; ++row) {
-      for (int col = 0; col < side; ++col) {
-        const int c = col - inset;
-        const int r = row - inset;
-        const bool within = c >= 0 && r >= 0 && c < turned.side && r < turned.side;
-        const auto from = static_cast<std::size_t>(r * turned.side + c);
-        const auto to = static_cast<std::size_t>(row * side + col);
-        inner[to] = inner[to] && within && turned.inner[from];
-        outer[to] = outer[to] || (within && turned.outer[from]);
-      }
-    }
-  }
-};
-
-}  // namespace
 
 void narrow(BlockSums& sums, const TurnedFeatures& turned) {
   sums.cells = {turned.cells, turned.cells};
@@ -60,8 +33,7 @@ bool HeadingSectors::turn(const Deadline& deadline) {
       return;
     }
     const Angle heading = problem_.heading(at);
-    turned_[at].emplace(problem_.rotator.rotated(heading), heading, problem_.base, hints, problem_.map.span(),
-                        problem_.map.all_observed());
+    turned_[at].emplace(problem_.rotator.rotated(heading), heading, problem_.base, hints, problem_.map);
   });
   if (!complete) return false;
   for (std::size_t first = 0; first < count; first += kSectorHeadings) {
@@ -72,9 +44,7 @@ bool HeadingSectors::turn(const Deadline& deadline) {
 
 Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const {
   Sector sector{first, last, {}, {}, 0.0, {}};
-  int side = 0;
-  for (std::size_t i = first; i < last; ++i) side = std::max(side, turned_[i]->side);
-  Marks marks(side);
+  std::vector<const BlockCover*> covers;
   BlockSums& sums = sector.features;
   constexpr double kMax = std::numeric_limits<double>::max();
   sums.cells = {kMax, 0.0};
@@ -84,13 +54,14 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
   sums.span = problem_.map.span();
   for (std::size_t i = first; i < last; ++i) {
     const TurnedFeatures& turned = *turned_[i];
-    marks.add(turned);
+    covers.push_back(&turned.cover);
     sums.cells = {std::min(sums.cells.min, turned.cells), std::max(sums.cells.max, turned.cells)};
     sums.feature = {std::min(sums.feature.min, turned.sum), std::max(sums.feature.max, turned.sum)};
     sums.feature_square_min = std::min(sums.feature_square_min, turned.square);
   }
-  sector.inner = runs_of(marks.inner, side);
-  sector.outer = runs_of(marks.outer, side);
+  const BlockCover common = common_cover(covers);
+  sector.inner = runs_of(common.inner, common.side);
+  sector.outer = runs_of(common.outer, common.side);
   for (const BlockRun& run : sector.outer) sector.outer_blocks += run.last - run.first;
   return sector;
 }

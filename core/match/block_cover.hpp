@@ -1,0 +1,34 @@
+// Which blocks of a map (bound_map.hpp) a footprint covers while its nadir is anywhere in a block.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/grid/cell_array.hpp"
+#include "core/match/line_stencil.hpp"
+
+namespace roadfix {
+
+/// Of side x side blocks, row by row, with the nadir's in the middle.
+struct BlockCover {
+  int side = 0;                    ///< odd
+  std::vector<bool> inner, outer;  ///< covered from every position of the nadir's block, from any
+};
+
+/// Of the observed cells, with the nadir in the cell `nadir`.
+BlockCover cover_of(const CellArray& cells, CellOffset nadir);
+
+/// What all of them cover (inner), and what any of them does (outer).
+BlockCover common_cover(std::span<const BlockCover* const> covers);
+
+/// Blocks relative to the nadir's, along a row: [first, last).
+struct BlockRun {
+  int row = 0;
+  int first = 0;
+  int last = 0;
+};
+
+/// The marked ones of side x side blocks, the nadir's in the middle.
+std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side);
+
+}  // namespace roadfix

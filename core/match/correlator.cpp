@@ -67,26 +67,26 @@ Correlator::Correlator(const FloatPlane& first, const FloatPlane& second, int pa
   assert(!pair_ || (second.cols == cols_ && second.rows == rows_));
   const int side = fourier_.side();
   const int step = side - patch + 1 - overlap;
-  ComplexPlane tile(side);
-  ComplexPlane scratch(side);
+  Workspace workspace(side);
   for (int i = 0; i < tiles_along(rows_, patch, overlap, side); ++i) {
     for (int k = 0; k < tiles_along(cols_, patch, overlap, side); ++k) {
-      tiles_.push_back(tile_at(first, second, k * step - kLead, i * step - kLead, tile, scratch));
+      tiles_.push_back(tile_at(first, second, k * step - kLead, i * step - kLead, workspace));
     }
   }
 }
 
 Correlator::Tile Correlator::tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row,
-                                     ComplexPlane& plane, ComplexPlane& scratch) const {
+                                     Workspace& workspace) const {
   const int side = fourier_.side();
   const auto only_first = only_value(first, col, row, side);
   const auto only_second = only_value(second, col, row, side);
   if (only_first && only_second) return {col, row, std::nullopt, *only_first, *only_second};
   Tile tile{col, row, Spectrum(side), 0.0F, 0.0F};
+  ComplexPlane& plane = workspace.sums;
   plane.clear(side);
   fill(first, col, row, side, plane.re(), plane.stride());
   if (pair_) fill(second, col, row, side, plane.im(), plane.stride());
-  fourier_.forward(plane, {side, side}, scratch, *tile.spectrum);
+  fourier_.forward(plane, {side, side}, workspace.scratch, *tile.spectrum);
   return tile;
 }
 
@@ -94,13 +94,6 @@ std::size_t Correlator::bytes() const {
   std::size_t bytes = 0;
   for (const Tile& tile : tiles_) bytes += tile.spectrum ? tile.spectrum->bytes() : sizeof(Tile);
   return bytes;
-}
-
-Spectrum Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second) const {
-  Spectrum spectrum(side());
-  Workspace workspace(side());
-  spectrum_of(first, second, workspace, spectrum);
-  return spectrum;
 }
 
 void Correlator::spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace,
@@ -143,13 +136,6 @@ Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectru
   result.first_scale = 1.0F / (static_cast<float>(side()) * static_cast<float>(side()));
   // The conjugate of a pair of patches is the pair with its second one negative.
   result.second_scale = pair_ || half_turn ? result.first_scale : -result.first_scale;
-  return result;
-}
-
-FloatPlanes Correlator::correlate(const Spectrum& patch_spectrum, bool half_turn) const {
-  FloatPlanes result;
-  Workspace workspace(side());
-  correlate(patch_spectrum, half_turn, workspace, result);
   return result;
 }
 

@@ -28,17 +28,14 @@ class Correlator {
   };
 
   /// The spectrum of a patch, or of two where there is one plane; `second` is empty for one.
-  Spectrum spectrum_of(const FloatPlane& first, const FloatPlane& second) const;
   void spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace, Spectrum& spectrum) const;
 
-  /// Size of the planes that correlate() returns.
+  /// Size of the planes that correlate() gives.
   int sum_cols() const { return cols_ + 2 * kLead; }
   int sum_rows() const { return rows_ + 2 * kLead; }
   /// Sum over each patch (or over the patch in each plane) at each place where it stays within the plane and its lead,
   /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
   /// patch's last cell, counted in the turned patch.
-  FloatPlanes correlate(const Spectrum& patch_spectrum, bool half_turn) const;
-  /// The same, into memory that is kept.
   void correlate(const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace, FloatPlanes& result) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.
@@ -69,8 +66,7 @@ class Correlator {
     float second = 0.0F;
   };
 
-  Tile tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row, ComplexPlane& plane,
-               ComplexPlane& scratch) const;
+  Tile tile_at(const FloatPlane& first, const FloatPlane& second, int col, int row, Workspace& workspace) const;
 
   int cols_;
   int rows_;

@@ -21,11 +21,6 @@ void ComplexPlane::clear(int rows) {
   for (float* plane : {re(), im()}) std::fill_n(plane, rows * stride_, 0.0F);
 }
 
-void ComplexPlane::fill(float real, float imaginary) {
-  std::fill_n(re(), re_.size() * kStripCols, real);
-  std::fill_n(im(), im_.size() * kStripCols, imaginary);
-}
-
 bool FourierTransform::is_side(int side) {
   const int twos = side % 3 == 0 ? side / 3 : side;
   return twos >= kMinSide && (twos & (twos - 1)) == 0;

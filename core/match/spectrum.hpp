@@ -24,8 +24,6 @@ class ComplexPlane {
   int side() const { return side_; }
   /// The first rows.
   void clear(int rows);
-  /// The same number everywhere.
-  void fill(float real, float imaginary);
   /// Floats from one row to the next: not a power of two, which would crowd the cache.
   std::ptrdiff_t stride() const { return stride_; }
   float* re() { return re_.data()->values; }

@@ -32,6 +32,16 @@ double sum_at(const FloatPlane& plane, const FloatPlane& patch, int col, int row
   return sum;
 }
 
+FloatPlanes correlated(const Correlator& correlator, const FloatPlane& patch, const FloatPlane& second,
+                       bool half_turn) {
+  Correlator::Workspace workspace(correlator.side());
+  Spectrum spectrum(correlator.side());
+  correlator.spectrum_of(patch, second, workspace, spectrum);
+  FloatPlanes sums;
+  correlator.correlate(spectrum, half_turn, workspace, sums);
+  return sums;
+}
+
 void expect_sums(const FloatPlane& plane, const FloatPlane& patch, int side, bool half_turn, const FloatPlane& sums) {
   constexpr int kLead = Correlator::kLead;
   const int before = half_turn ? side - 1 : 0;
@@ -58,10 +68,10 @@ TEST(Correlator, SumsPairsOfPatchesAndPairsOfPlanesAsPlainLoopsDo) {
       const Correlator one(plane, {}, side, overlap);
       const Correlator two(plane, other, side, overlap);
       for (const bool half_turn : {false, true}) {
-        const FloatPlanes patches = one.correlate(one.spectrum_of(patch, second), half_turn);
+        const FloatPlanes patches = correlated(one, patch, second, half_turn);
         expect_sums(plane, patch, side, half_turn, patches.first);
         expect_sums(plane, second, side, half_turn, patches.second);
-        const FloatPlanes planes = two.correlate(two.spectrum_of(patch, {}), half_turn);
+        const FloatPlanes planes = correlated(two, patch, {}, half_turn);
         expect_sums(plane, patch, side, half_turn, planes.first);
         expect_sums(other, patch, side, half_turn, planes.second);
       }
@@ -90,8 +100,7 @@ TEST(Correlator, KnowsTheSumsWhereAllCellsAreAlike) {
     const Correlator correlator(plane, pair ? other : FloatPlane(), side, 2);
     EXPECT_LT(correlator.bytes(), correlator.tiles() * Spectrum(correlator.side()).bytes());
     for (const bool half_turn : {false, true}) {
-      const FloatPlanes sums =
-          correlator.correlate(correlator.spectrum_of(patch, pair ? FloatPlane() : second), half_turn);
+      const FloatPlanes sums = correlated(correlator, patch, pair ? FloatPlane() : second, half_turn);
       expect_sums(plane, patch, side, half_turn, sums.first);
       expect_sums(pair ? other : plane, pair ? patch : second, side, half_turn, sums.second);
     }

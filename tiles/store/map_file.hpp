@@ -1,4 +1,4 @@
-// A file as a map: made, recognised, described. Shared by reader, writer and verifier; not for other modules.
+// A file as a map: recognised and described. Shared by reader, writer and verifier; not for other modules.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,6 @@ inline constexpr const char* kSqlNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
 
 /// Throws IoFailure ("map-io") where that cannot be told.
 bool is_there(const std::filesystem::path& path);
-
-/// Makes an empty map under the name in one step: killed at any point, there is a whole map or none.
-/// Throws InvalidInput ("cell-size-not-supported") or IoFailure.
-void create_map(const std::filesystem::path& path, const MapSettings& settings);
 
 /// Opens what create_map made. Undoes what a killed writer left half done, even for reading where that is possible.
 /// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version") or CorruptData

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <set>
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/store/create_map.hpp"
+#include "tiles/store/evidence_table.hpp"
 #include "tiles/store/fusion_queue.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
-#include "tiles/store/tile_png.hpp"
 #include "tiles/store/tile_table.hpp"
 #include "tiles/store/writer_lock.hpp"
 
@@ -70,18 +69,9 @@ struct MapWriter::State {
         map(open_with(path, settings, Access::kReadWrite)),
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
-        fusion(map, tiles),
-        put_evidence(map,
-                     "INSERT OR REPLACE INTO roadfix_evidence (source_id, tile_column, tile_row, tile_data) VALUES "
-                     "(?1, ?2, ?3, ?4)"),
-        remove_evidence(map,
-                        "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3"),
-        mark_done(map,
-                  "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
-                  "RETURNING 1") {}
+        evidence(map, tiles.finest_zoom()),
+        fusion(map, tiles) {}
 
-  void put(const std::string& source, TileIndex block, const CellArray& cells);
-  std::vector<std::string> drop_damaged_evidence();
   NotFound no_source(const std::string& name) const {
     return {"source-not-found",
             fmt::format("{}: there is no source named '{}'. roadfix info names those that are there",
@@ -94,65 +84,9 @@ struct MapWriter::State {
   Connection map;
   TileTable tiles;
   SourceTable sources;
+  EvidenceTable evidence;
   FusionQueue fusion;
-  Statement put_evidence;
-  Statement remove_evidence;
-  Statement mark_done;
 };
-
-/// Within a transaction.
-void MapWriter::State::put(const std::string& source, TileIndex block, const CellArray& cells) {
-  assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
-  const int row = tile_row(block, tiles.finest_zoom());
-  const auto target = sources.find(source, false);
-  const bool expected = target && mark_done.with(target->id, block.col, row).step();
-  mark_done.reset();
-  if (!expected) {
-    throw InvalidInput("block-not-expected", fmt::format("{}: source '{}' has not begun with block column {} row {}",
-                                                         map.path().string(), source, block.col, block.row));
-  }
-  if (cells.observed_count() > 0) {
-    const std::vector<std::byte> png = encode_tile(cells, TileDepth::kEvidence);
-    put_evidence.with(target->id, block.col, row, std::span(png)).run();
-  } else {
-    remove_evidence.with(target->id, block.col, row).run();
-  }
-}
-
-/// What cannot be read, or stands for no block that the ledger calls done.
-/// Returns the sources that lost evidence, each once. Their fingerprint is emptied: they are not what was ingested.
-std::vector<std::string> MapWriter::State::drop_damaged_evidence() {
-  std::vector<std::int64_t> damaged;
-  for (Statement all(map,
-                     "SELECT e.id, e.tile_data, b.done FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON "
-                     "b.source_id = e.source_id AND b.tile_row = e.tile_row AND b.tile_column = e.tile_column");
-       all.step();) {
-    if (all.integer(2) != 1) {
-      damaged.push_back(all.integer(0));
-      continue;
-    }
-    try {
-      decode_tile(all.blob(1), TileDepth::kEvidence);
-    } catch (const CorruptData&) {
-      damaged.push_back(all.integer(0));
-    }
-  }
-  std::set<std::string> names;
-  Statement source(map,
-                   "UPDATE roadfix_sources SET fingerprint = '' WHERE id = (SELECT source_id FROM roadfix_evidence "
-                   "WHERE id = ?1) RETURNING name");
-  Statement unfinished(map,
-                       "UPDATE roadfix_blocks SET done = 0 WHERE (source_id, tile_row, tile_column) = (SELECT "
-                       "source_id, tile_row, tile_column FROM roadfix_evidence WHERE id = ?1)");
-  Statement remove(map, "DELETE FROM roadfix_evidence WHERE id = ?1");
-  for (const std::int64_t id : damaged) {
-    if (source.with(id).step()) names.insert(std::string(source.text(0)));
-    source.reset();
-    unfinished.with(id).run();
-    remove.with(id).run();
-  }
-  return {names.begin(), names.end()};
-}
 
 MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& settings)
     : state_(std::make_unique<State>(path, settings)) {}
@@ -212,8 +146,14 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
 }
 
 void MapWriter::put_blocks(const std::string& source, std::span<const FinishedBlock> blocks) {
-  Transaction transaction(state_->map, Transaction::Kind::kWrite);
-  for (const FinishedBlock& block : blocks) state_->put(source, block.index, block.cells);
+  State& s = *state_;
+  Transaction transaction(s.map, Transaction::Kind::kWrite);
+  const auto unfinished = s.sources.find(source, false);
+  for (const auto& [index, cells] : blocks) {
+    if (unfinished && s.evidence.put(unfinished->id, index, cells)) continue;
+    throw InvalidInput("block-not-expected", fmt::format("{}: source '{}' has not begun with block column {} row {}",
+                                                         s.map.path().string(), source, index.col, index.row));
+  }
   transaction.commit();
 }
 
@@ -229,9 +169,7 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
         s.fusion.add_source(replaced->id);
         s.sources.remove(replaced->id);
       }
-      Statement(s.map, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kSqlNow))
-          .with(complete->id)
-          .run();
+      s.sources.put_in_force(complete->id);
     } else if (!replaced) {
       throw s.no_source(source);
     }
@@ -240,19 +178,7 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
   s.fusion.drain(progress, stop);
 }
 
-std::vector<std::string> MapWriter::twins_of(const std::string& source) {
-  std::vector<std::string> names;
-  // Equal cells are equal bytes.
-  Statement twins(
-      state_->map,
-      "WITH own AS (SELECT e.* FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE "
-      "s.name = ?1 AND s.in_force = 1) SELECT name FROM roadfix_sources s WHERE in_force = 1 AND name <> ?1 "
-      "AND EXISTS (SELECT 1 FROM own) AND NOT EXISTS (SELECT 1 FROM own WHERE NOT EXISTS (SELECT 1 FROM "
-      "roadfix_evidence o WHERE o.source_id = s.id AND o.tile_column = own.tile_column AND o.tile_row = "
-      "own.tile_row AND o.tile_data = own.tile_data)) ORDER BY name");
-  for (twins.with(source); twins.step();) names.push_back(twins.text(0));
-  return names;
-}
+std::vector<std::string> MapWriter::twins_of(const std::string& source) { return state_->evidence.twins_of(source); }
 
 void MapWriter::remove_if_new_and_empty() {
   State& s = *state_;
@@ -283,7 +209,7 @@ bool MapWriter::remove_source(const std::string& source, const OnProgress& progr
 std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop_token stop) {
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
-  std::vector<std::string> lost = s.drop_damaged_evidence();
+  std::vector<std::string> lost = s.evidence.drop_damaged();
   for (const char* sql :
        {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
         "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/units/error.hpp"
+#include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -57,6 +58,12 @@ void SourceTable::set_ledger(std::int64_t id, std::span<const TileIndex> blocks)
             "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND NOT EXISTS (SELECT 1 FROM roadfix_blocks b WHERE "
             "b.source_id = ?1 AND b.tile_row = roadfix_evidence.tile_row AND b.tile_column = "
             "roadfix_evidence.tile_column)")
+      .with(id)
+      .run();
+}
+
+void SourceTable::put_in_force(std::int64_t id) {
+  Statement(map_, fmt::format("UPDATE roadfix_sources SET in_force = 1, ingested_at = {} WHERE id = ?1", kSqlNow))
       .with(id)
       .run();
 }

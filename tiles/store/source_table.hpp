@@ -32,6 +32,8 @@ class SourceTable {
   std::set<TileIndex> done_blocks(std::int64_t id);
   /// Throws InvalidInput ("source-incomplete").
   void require_complete(std::int64_t id, const std::string& name);
+  /// From now on, in place of one of the same name, which has to be removed.
+  void put_in_force(std::int64_t id);
   /// Removes the source, its ledger and its evidence.
   void remove(std::int64_t id);
 

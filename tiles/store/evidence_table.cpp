@@ -1,0 +1,88 @@
+#include "tiles/store/evidence_table.hpp"
+
+#include <cassert>
+#include <set>
+#include <span>
+
+#include "core/units/error.hpp"
+#include "tiles/store/tile_matrix.hpp"
+#include "tiles/store/tile_png.hpp"
+
+namespace roadfix {
+
+using sqlite::Statement;
+
+EvidenceTable::EvidenceTable(sqlite::Connection& map, int finest_zoom)
+    : map_(map),
+      zoom_(finest_zoom),
+      put_(map,
+           "INSERT OR REPLACE INTO roadfix_evidence (source_id, tile_column, tile_row, tile_data) VALUES (?1, ?2, ?3, "
+           "?4)"),
+      remove_(map, "DELETE FROM roadfix_evidence WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3"),
+      mark_done_(map,
+                 "UPDATE roadfix_blocks SET done = 1 WHERE source_id = ?1 AND tile_column = ?2 AND tile_row = ?3 "
+                 "RETURNING 1") {}
+
+bool EvidenceTable::put(std::int64_t source_id, TileIndex block, const CellArray& cells) {
+  assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
+  const int row = tile_row(block, zoom_);
+  const bool expected = mark_done_.with(source_id, block.col, row).step();
+  mark_done_.reset();
+  if (!expected) return false;
+  if (cells.observed_count() > 0) {
+    const std::vector<std::byte> png = encode_tile(cells, TileDepth::kEvidence);
+    put_.with(source_id, block.col, row, std::span(png)).run();
+  } else {
+    remove_.with(source_id, block.col, row).run();
+  }
+  return true;
+}
+
+std::vector<std::string> EvidenceTable::twins_of(const std::string& source) {
+  std::vector<std::string> names;
+  // Equal cells are equal bytes.
+  Statement twins(
+      map_,
+      "WITH own AS (SELECT e.* FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE "
+      "s.name = ?1 AND s.in_force = 1) SELECT name FROM roadfix_sources s WHERE in_force = 1 AND name <> ?1 "
+      "AND EXISTS (SELECT 1 FROM own) AND NOT EXISTS (SELECT 1 FROM own WHERE NOT EXISTS (SELECT 1 FROM "
+      "roadfix_evidence o WHERE o.source_id = s.id AND o.tile_column = own.tile_column AND o.tile_row = "
+      "own.tile_row AND o.tile_data = own.tile_data)) ORDER BY name");
+  for (twins.with(source); twins.step();) names.push_back(twins.text(0));
+  return names;
+}
+
+std::vector<std::string> EvidenceTable::drop_damaged() {
+  std::vector<std::int64_t> damaged;
+  for (Statement all(map_,
+                     "SELECT e.id, e.tile_data, b.done FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON "
+                     "b.source_id = e.source_id AND b.tile_row = e.tile_row AND b.tile_column = e.tile_column");
+       all.step();) {
+    if (all.integer(2) != 1) {
+      damaged.push_back(all.integer(0));
+      continue;
+    }
+    try {
+      decode_tile(all.blob(1), TileDepth::kEvidence);
+    } catch (const CorruptData&) {
+      damaged.push_back(all.integer(0));
+    }
+  }
+  std::set<std::string> names;
+  Statement source(map_,
+                   "UPDATE roadfix_sources SET fingerprint = '' WHERE id = (SELECT source_id FROM roadfix_evidence "
+                   "WHERE id = ?1) RETURNING name");
+  Statement unfinished(map_,
+                       "UPDATE roadfix_blocks SET done = 0 WHERE (source_id, tile_row, tile_column) = (SELECT "
+                       "source_id, tile_row, tile_column FROM roadfix_evidence WHERE id = ?1)");
+  Statement remove(map_, "DELETE FROM roadfix_evidence WHERE id = ?1");
+  for (const std::int64_t id : damaged) {
+    if (source.with(id).step()) names.insert(source.text(0));
+    source.reset();
+    unfinished.with(id).run();
+    remove.with(id).run();
+  }
+  return {names.begin(), names.end()};
+}
+
+}  // namespace roadfix

@@ -1,0 +1,36 @@
+// What each source of a map file says (table roadfix_evidence), tile by tile. Shared by the writer's steps; not for
+// other modules.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/grid/cell_array.hpp"
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+class EvidenceTable {
+ public:
+  EvidenceTable(sqlite::Connection& map, int finest_zoom);
+
+  /// Stores what a source says of a block and marks it as done; nothing is stored of a block without an observed cell.
+  /// False where the ledger of the source does not have the block. Part of the caller's transaction.
+  bool put(std::int64_t source_id, TileIndex block, const CellArray& cells);
+  /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
+  std::vector<std::string> twins_of(const std::string& source);
+  /// Drops what cannot be read, or stands for no block that the ledger calls done. Returns the sources that lost some,
+  /// each once. Their fingerprint is emptied: they are not what was ingested. Part of the caller's transaction.
+  std::vector<std::string> drop_damaged();
+
+ private:
+  sqlite::Connection& map_;
+  int zoom_;
+  sqlite::Statement put_;
+  sqlite::Statement remove_;
+  sqlite::Statement mark_done_;
+};
+
+}  // namespace roadfix

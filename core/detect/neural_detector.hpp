@@ -32,8 +32,6 @@ class NeuralRoadDetector : public RoadDetector {
   double halo_m() const override;
   std::string describe() const override;
 
-  const NetworkDescription& network() const { return network_; }
-
  private:
   class NetPool;
 

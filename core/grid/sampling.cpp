@@ -53,12 +53,4 @@ SnappedPlacement::Run SnappedPlacement::run_at(int col, int row) const {
           col_step_, row_step_};
 }
 
-GridGeometry::CellPosition SnappedPlacement::position_of(int col, int row) const {
-  const Run run = run_at(col, row);
-  const auto snapped = [](std::int32_t at) {
-    return (at >> kDroppedBits) / static_cast<double>(1 << kShareBits) - 0.5;
-  };
-  return {snapped(run.col), snapped(run.row)};
-}
-
 }  // namespace roadfix

@@ -61,11 +61,9 @@ class SnappedPlacement {
   /// From the cell (col, row) of the result on, for cells_left(col) cells; its positions lie within some cells of the
   /// source.
   Run run_at(int col, int row) const;
-  /// After so many the steps start anew from exact numbers: their errors add up to less than 1/1000 of a cell.
+  /// After so many the steps start anew from exact numbers: their errors add up to less than 1/1000 of a cell. So the
+  /// position of a cell lies within 1/200 of a cell of placement.source_of() its middle.
   static int cells_left(int col) { return kRunCells - col % kRunCells; }
-
-  /// The position of the cell (col, row) of the result: within 1/200 of a cell of placement.source_of() its middle.
-  GridGeometry::CellPosition position_of(int col, int row) const;
 
  private:
   static constexpr int kRunCells = 256;

@@ -90,7 +90,6 @@ class Statement {
   std::string text(int column) const;
   /// Valid until the next step.
   std::span<const std::byte> blob(int column) const;
-  bool is_null(int column) const;
 
  private:
   void bind(int index, std::int64_t value);

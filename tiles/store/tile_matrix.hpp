@@ -29,9 +29,6 @@ constexpr bool on_lattice(TileIndex tile, int zoom) {
   return tile.col >= 0 && tile.col < matrix_width(zoom) && tile.row < 0 && tile.row >= -matrix_height(zoom);
 }
 
-/// The tile one level coarser that holds this one.
-constexpr TileIndex parent(TileIndex tile) { return {tile.col >> 1, tile.row >> 1}; }
-
 /// Contribution of one tile to the version of a map: the sum over the finest tiles does not depend on their order.
 std::uint64_t content_hash(TileIndex tile, std::span<const std::byte> png);
 

@@ -28,14 +28,6 @@ TEST(TileMatrix, RowsAreCountedFromTheNorthernEdge) {
   EXPECT_EQ(index_row(tile_row({3, -77}, zoom), zoom), -77);
 }
 
-TEST(TileMatrix, AParentCoversItsChild) {
-  for (const TileIndex tile : {TileIndex{847, -8165}, {848, -8164}, {0, -1}, {1, -2}}) {
-    const GridBox child = tile_geometry(tile, 2.0).box();
-    const GridBox box = tile_geometry(parent(tile), 4.0).box();
-    EXPECT_TRUE(box.contains(child.min) && box.contains(child.max));
-  }
-}
-
 TEST(TileMatrix, TheLatticeEndsWhereItEnds) {
   EXPECT_TRUE(on_lattice({0, -1}, 4));
   EXPECT_TRUE(on_lattice({15, -160}, 4));

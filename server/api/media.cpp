@@ -7,7 +7,6 @@
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
-#include "server/api/fields.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -71,6 +70,13 @@ const Media& negotiated(std::string_view accept, std::span<const Media> offered)
   std::string types;
   for (const Media& media : offered) types += fmt::format("{}{}", types.empty() ? "" : ", ", media.type);
   throw InvalidInput("not-acceptable", fmt::format("Accept matches none of {}", types));
+}
+
+const Media& media_asked_for(const http::Request& request, const Fields& fields, std::span<const Media> offered) {
+  if (!fields.has("format")) return negotiated(request.header("accept"), offered);
+  std::vector<std::string_view> names;
+  for (const Media& media : offered) names.push_back(media.name);
+  return *std::ranges::find(offered, fields.word("format", names), &Media::name);
 }
 
 }  // namespace roadfix::api

@@ -18,13 +18,6 @@ constexpr std::array<Media, 6> kFormats{{{"json", "application/json"},
                                          {"mavproxy", "application/x-mavproxy-gps-input+json"},
                                          {"nmea", "application/x-nmea-0183"}}};
 
-const Media& media_of(const http::Request& request, const Fields& fields) {
-  if (!fields.has("format")) return negotiated(request.header("accept"), kFormats);
-  std::array<std::string_view, kFormats.size()> names;
-  std::ranges::transform(kFormats, names.begin(), &Media::name);
-  return *std::ranges::find(kFormats, fields.word("format", names), &Media::name);
-}
-
 std::optional<autopilot::Position> position_of(const nlohmann::json& answer) {
   if (!answer.contains("pose")) return std::nullopt;
   const nlohmann::json& pose = answer.at("pose");
@@ -50,7 +43,7 @@ const std::vector<std::string>& position_fields() {
 }
 
 PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
-  const Media& media = media_of(request, fields);
+  const Media& media = media_asked_for(request, fields, kFormats);
   PositionFormat format{media.name, media.type, fields.optional_number("alt_m", {-1000.0, 50'000.0}), 0, {}};
   format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
   format.sender.system = static_cast<std::uint8_t>(fields.optional_integer("system", 1, 255).value_or(1));

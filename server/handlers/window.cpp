@@ -18,13 +18,6 @@ namespace {
 constexpr std::array<api::Media, 3> kFormats{
     {{"png", "image/png"}, {"tiff", "image/tiff"}, {"json", "application/json"}}};
 
-std::string_view format_of(const http::Request& request, const api::Fields& fields) {
-  if (!fields.has("format")) return api::negotiated(request.header("accept"), kFormats).name;
-  constexpr std::array<std::string_view, 3> kNames{"png", "tiff", "json"};
-  const std::string name = fields.word("format", kNames);
-  return *std::ranges::find(kNames, name);
-}
-
 http::Response rendered(const api::Window& window, std::string_view format) {
   if (format == "json") return json_response(api::to_json(window));
   if (format == "tiff")
@@ -36,7 +29,7 @@ http::Response rendered(const api::Window& window, std::string_view format) {
 http::Response get_window(const Service& service, const http::Request& request, http::Admission& turns) {
   const api::Fields fields(request.query);
   const api::WindowRequest asked = api::parse_window(fields);
-  const std::string_view format = format_of(request, fields);
+  const std::string_view format = api::media_asked_for(request, fields, kFormats).name;
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
   const api::Window window = api::cut_window(map->view, asked, service.limits);

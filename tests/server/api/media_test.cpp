@@ -18,6 +18,14 @@ TEST(Media, FollowsQualityAndTheMostSpecificRange) {
   EXPECT_EQ(negotiated("image/png; q=0.3, image/tiff ;q=0.4", kOffered).name, "tiff");
 }
 
+TEST(Media, FollowsTheFieldBeforeTheHeader) {
+  http::Request request;
+  request.headers["accept"] = "image/tiff";
+  EXPECT_EQ(media_asked_for(request, Fields(http::Parameters{}), kOffered).name, "tiff");
+  EXPECT_EQ(media_asked_for(request, Fields(http::Parameters{{"format", "json"}}), kOffered).name, "json");
+  EXPECT_THROW(media_asked_for(request, Fields(http::Parameters{{"format", "gif"}}), kOffered), InvalidInput);
+}
+
 TEST(Media, RefusesWhatMatchesNothing) {
   EXPECT_THROW(negotiated("text/html", kOffered), InvalidInput);
   EXPECT_THROW(negotiated("image/png;q=0", kOffered), InvalidInput);

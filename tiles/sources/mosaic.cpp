@@ -74,29 +74,42 @@ struct Mosaic::Handle {
 Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
     : options_(options), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
   std::vector<float> values;
-  for (std::string& path : paths) {
-    RasterFile file(path, options);
-    if (rule == ValueRule::kShare && !images_.empty()) {
-      require_same_kind(RasterFile(images_.front().path, options), file);
-    }
-    const Georeference georeference(file, zone);
-    Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
-                rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};
-    extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
-    gsd_m_ = std::min(gsd_m_, image.gsd_m);
-    channels_ = std::max(channels_, file.channels());
-    integers_ = integers_ || file.holds_integers();
-    if (images_.empty()) crs_ = crs_name(file.crs());
-    PositionError error = roadfix::position_error(file, georeference, zone);
-    if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
-    if (!image.declared) {
-      const std::vector<float> sample = file.sample_values();
-      image.sampled = sampled_in(sample);
-      const std::vector<float> ground = rule == ValueRule::kPicture ? without_fill(sample) : sample;
-      values.insert(values.end(), ground.begin(), ground.end());
-    }
-    images_.push_back(std::move(image));
+  for (std::string& path : paths) add_image(std::move(path), rule, values);
+  choose_ranges(rule, std::move(values));
+  if (rule == ValueRule::kShare) channels_ = 1;
+  if (!options.collar) return;
+  for (Image& image : images_) {
+    RasterFile file(image.path, options);
+    image.collar = std::make_shared<Collar>(file, *options.collar, image.range);
   }
+}
+
+/// Adds to `values` what is sampled of an image whose type does not say its range.
+void Mosaic::add_image(std::string path, ValueRule rule, std::vector<float>& values) {
+  RasterFile file(path, options_);
+  if (rule == ValueRule::kShare && !images_.empty()) {
+    require_same_kind(RasterFile(images_.front().path, options_), file);
+  }
+  const Georeference georeference(file, zone_);
+  Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
+              rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};
+  extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
+  gsd_m_ = std::min(gsd_m_, image.gsd_m);
+  channels_ = std::max(channels_, file.channels());
+  integers_ = integers_ || file.holds_integers();
+  if (images_.empty()) crs_ = crs_name(file.crs());
+  PositionError error = roadfix::position_error(file, georeference, zone_);
+  if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
+  if (!image.declared) {
+    const std::vector<float> sample = file.sample_values();
+    image.sampled = sampled_in(sample);
+    const std::vector<float> ground = rule == ValueRule::kPicture ? without_fill(sample) : sample;
+    values.insert(values.end(), ground.begin(), ground.end());
+  }
+  images_.push_back(std::move(image));
+}
+
+void Mosaic::choose_ranges(ValueRule rule, std::vector<float> values) {
   if (rule == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
     const auto [min, max] = std::ranges::minmax_element(values);
     sampled_ = {static_cast<double>(*min), static_cast<double>(*max)};
@@ -107,16 +120,12 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
   } else {
     range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   }
-  if (rule == ValueRule::kShare) channels_ = 1;
   // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
   const bool masks = rule == ValueRule::kShare && integers_ &&
                      std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
     if (masks && image.sampled.max == 1.0F) image.range = {0.0, 1.0};
-    if (!options.collar) continue;
-    RasterFile file(image.path, options);
-    image.collar = std::make_shared<Collar>(file, *options.collar, image.range);
   }
 }
 

@@ -56,6 +56,8 @@ class Mosaic {
  private:
   struct Image;
   struct Handle;
+  void add_image(std::string path, ValueRule rule, std::vector<float>& values);
+  void choose_ranges(ValueRule rule, std::vector<float> values);
   std::unique_ptr<Handle> borrow(std::size_t image, double gsd_m) const;
   void give_back(std::unique_ptr<Handle> handle) const;
 

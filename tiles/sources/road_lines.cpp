@@ -4,21 +4,16 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <functional>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
-#include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
-#include "tiles/sources/position_error.hpp"
 #include "tiles/sources/road_geometry.hpp"
+#include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
-#include "tiles/sources/stray_roads.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
@@ -31,30 +26,8 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
   return index;
 }
 
-/// Lines of the layers that tell roads apart, and of those that do not.
-struct Parts {
-  RoadNetwork classified;
-  RoadNetwork plain;
-  std::size_t classified_before = 0;  ///< lines of the files before the one that is read
-  std::size_t plain_before = 0;
-  bool any_layer = false;
-  bool any_classified = false;
-  std::int64_t features = 0;
-  std::int64_t lines = 0;
-  std::map<std::string, std::int64_t> unknown_classes;
-  bool strays_noted = false;
-  /// Layers of lines without classes by name: the first file that has them, and their attributes.
-  std::map<std::string, std::pair<std::string, std::string>> plain_layers;
-
-  RoadNetwork& network_of(const RoadLayer& layer) { return layer.classified() ? classified : plain; }
-  std::span<const RoadLine> lines_of_file(const RoadLayer& layer) const {
-    return layer.classified() ? std::span(classified.lines).subspan(classified_before)
-                              : std::span(plain.lines).subspan(plain_before);
-  }
-};
-
 /// Takes down what is known of a layer once all its features were seen.
-void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, Parts& parts) {
+void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, RoadParts& parts) {
   if (layer.lines() == 0) return;
   parts.lines += layer.lines();
   for (const auto& [name, count] : layer.unknown_classes()) parts.unknown_classes[name] += count;
@@ -72,66 +45,8 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
                                       layer.class_attribute()));
 }
 
-/// Of the ground that a layer says something about: as much as its widest road, or the largest cell, on either side of
-/// a straight line.
-double min_side_m(std::span<const RoadLine> lines) {
-  double side_m = 2.0 * kMaxCellM;
-  for (const RoadLine& line : lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
-  return side_m;
-}
-
-/// No map holds what lies on two sides of the Earth, and roads on both sides of the 180th meridian seem to.
-void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
-  const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
-  std::array<double, 2> lon{box.MinX, box.MaxX};
-  std::array<double, 2> lat{(box.MinY + box.MaxY) / 2.0, (box.MinY + box.MaxY) / 2.0};
-  const GdalMessages messages;
-  if (to_earth->Transform(2, lon.data(), lat.data()) == FALSE || !(lon[1] - lon[0] > 180.0)) return;
-  throw InvalidInput(
-      "roads-around-the-earth",
-      fmt::format("{}: it reaches from longitude {:.2f} to {:.2f}, and no map holds both. Name the ground of the map "
-                  "with --extent W,S,E,N; across the 180th meridian W is larger than E, as in 179.5,-17,-179.5,-16",
-                  path, lon[0], lon[1]));
-}
-
-void add_datum_error(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
-  const std::optional<OGREnvelope> box = layer.extent_seen();
-  if (layer.lines() == 0 || !box) return;
-  const OGRSpatialReference crs = file.crs_of(layer.layer());
-  double east_m = (box->MinX + box->MaxX) / 2.0;
-  double north_m = (box->MinY + box->MaxY) / 2.0;
-  const GdalMessages messages;
-  if (!on_old_ellipsoid(crs) || layer.to_plane().Transform(1, &east_m, &north_m) == FALSE) return;
-  PositionError error = datum_error(crs, zone, zone.unproject({east_m, north_m}), path);
-  RoadNetwork& network = parts.network_of(layer);
-  if (error.sigma_m <= network.datum_sigma_m) return;
-  network.datum_sigma_m = error.sigma_m;
-  network.notes.push_back(std::move(error.reason));
-}
-
-void add_covered(VectorFile& file, const RoadLayer& layer, const std::string& path, UtmZone zone, Parts& parts) {
-  const bool tile = vector_tile_of(path).has_value();
-  if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
-  std::optional<OGREnvelope> box = file.cut_out(layer.layer());
-  if (!box) box = layer.extent_seen();
-  if (!box) return;
-  const std::span<const RoadLine> lines = parts.lines_of_file(layer);
-  const double side_m = min_side_m(lines);
-  const PlanePolygon covered = box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), path);
-  if (layer.classified() || tile) parts.classified.covered.push_back(covered);
-  if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
-  if (tile || parts.strays_noted) return;
-  RoadNetwork& network = parts.network_of(layer);
-  if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
-    network.notes.push_back(fmt::format("{}: {}", path, *note));
-    parts.strays_noted = true;
-  } else {
-    require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), path);
-  }
-}
-
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
-              Parts& parts) {
+              RoadParts& parts) {
   VectorFile file(path, options);
   parts.classified_before = parts.classified.lines.size();
   parts.plain_before = parts.plain.lines.size();
@@ -160,13 +75,13 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
     add_layer(layer, rules, path, parts);
-    add_datum_error(file, layer, path, zone, parts);
-    if (options.extent.empty()) add_covered(file, layer, path, zone, parts);
+    add_datum_error(file, layer, zone, parts);
+    if (options.extent.empty()) add_covered(file, layer, zone, parts);
   }
 }
 
 /// Where some layers tell roads apart, the lines of the others are rivers, railways or bus routes.
-RoadNetwork join(Parts& parts, const RoadRules& rules) {
+RoadNetwork join(RoadParts& parts, const RoadRules& rules) {
   RoadNetwork network = std::move(parts.any_classified ? parts.classified : parts.plain);
   const RoadNetwork& other = parts.any_classified ? parts.plain : parts.classified;
   network.left_out += other.left_out + static_cast<std::int64_t>(other.lines.size());
@@ -198,7 +113,7 @@ std::string most_frequent(const std::map<std::string, std::int64_t>& counts) {
 }
 
 /// A few features of odd classes are in every extract of OpenStreetMap; more of them are missing roads.
-void note_unknown_classes(const Parts& parts, RoadNetwork& network) {
+void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
   constexpr double kWorthNoting = 0.02;
   std::int64_t unknown = 0;
   for (const auto& [name, count] : parts.unknown_classes) unknown += count;
@@ -209,7 +124,7 @@ void note_unknown_classes(const Parts& parts, RoadNetwork& network) {
       unknown, parts.lines, most_frequent(parts.unknown_classes)));
 }
 
-std::string why_none_is_drawn(const Parts& parts, const RoadRules& rules) {
+std::string why_none_is_drawn(const RoadParts& parts, const RoadRules& rules) {
   if (parts.lines == 0) return "none of them is a line; points and areas are not drawn, centrelines are";
   if (!parts.unknown_classes.empty()) {
     return fmt::format(
@@ -262,7 +177,7 @@ std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path) 
 
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone) {
-  Parts parts;
+  RoadParts parts;
   for (const std::string& path : paths) add_file(path, options, rules, zone, parts);
   if (!parts.any_layer) refuse_layer(paths.front(), options);
   if (parts.features == 0) refuse_empty(paths.front(), options);

@@ -29,6 +29,7 @@ class VectorFile {
   /// Throws NotFound or InvalidInput ("source-unreadable").
   VectorFile(const std::string& path, const VectorOptions& options);
 
+  const std::string& path() const { return path_; }
   /// All that have geometries, or the one that the user chose, if the file has it; of OpenStreetMap files the lines.
   const std::vector<OGRLayer*>& layers() const { return layers_; }
   /// Of all layers of the file, "'roads', 'rivers'", for messages.

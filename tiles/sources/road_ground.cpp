@@ -1,0 +1,79 @@
+#include "tiles/sources/road_ground.hpp"
+
+#include <fmt/format.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "core/grid/geometry.hpp"
+#include "core/units/error.hpp"
+#include "tiles/sources/position_error.hpp"
+#include "tiles/sources/stray_roads.hpp"
+
+namespace roadfix {
+namespace {
+
+/// Of the ground that a layer says something about: as much as its widest road, or the largest cell, on either side of
+/// a straight line.
+double min_side_m(std::span<const RoadLine> lines) {
+  double side_m = 2.0 * kMaxCellM;
+  for (const RoadLine& line : lines) side_m = std::max(side_m, 4.0 * line.half_width_m);
+  return side_m;
+}
+
+/// No map holds what lies on two sides of the Earth, and roads on both sides of the 180th meridian seem to.
+void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+  const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
+  std::array<double, 2> lon{box.MinX, box.MaxX};
+  std::array<double, 2> lat{(box.MinY + box.MaxY) / 2.0, (box.MinY + box.MaxY) / 2.0};
+  const GdalMessages messages;
+  if (to_earth->Transform(2, lon.data(), lat.data()) == FALSE || !(lon[1] - lon[0] > 180.0)) return;
+  throw InvalidInput(
+      "roads-around-the-earth",
+      fmt::format("{}: it reaches from longitude {:.2f} to {:.2f}, and no map holds both. Name the ground of the map "
+                  "with --extent W,S,E,N; across the 180th meridian W is larger than E, as in 179.5,-17,-179.5,-16",
+                  path, lon[0], lon[1]));
+}
+
+}  // namespace
+
+void add_datum_error(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts) {
+  const std::optional<OGREnvelope> box = layer.extent_seen();
+  if (layer.lines() == 0 || !box) return;
+  const OGRSpatialReference crs = file.crs_of(layer.layer());
+  double east_m = (box->MinX + box->MaxX) / 2.0;
+  double north_m = (box->MinY + box->MaxY) / 2.0;
+  const GdalMessages messages;
+  if (!on_old_ellipsoid(crs) || layer.to_plane().Transform(1, &east_m, &north_m) == FALSE) return;
+  PositionError error = datum_error(crs, zone, zone.unproject({east_m, north_m}), file.path());
+  RoadNetwork& network = parts.network_of(layer);
+  if (error.sigma_m <= network.datum_sigma_m) return;
+  network.datum_sigma_m = error.sigma_m;
+  network.notes.push_back(std::move(error.reason));
+}
+
+void add_covered(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts) {
+  const bool tile = vector_tile_of(file.path()).has_value();
+  if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
+  std::optional<OGREnvelope> box = file.cut_out(layer.layer());
+  if (!box) box = layer.extent_seen();
+  if (!box) return;
+  const std::span<const RoadLine> lines = parts.lines_of_file(layer);
+  const double side_m = min_side_m(lines);
+  const PlanePolygon covered =
+      box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), file.path());
+  if (layer.classified() || tile) parts.classified.covered.push_back(covered);
+  if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
+  if (tile || parts.strays_noted) return;
+  RoadNetwork& network = parts.network_of(layer);
+  if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
+    network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
+    parts.strays_noted = true;
+  } else {
+    require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path());
+  }
+}
+
+}  // namespace roadfix

@@ -80,7 +80,7 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
                                 "The input is a camera frame: focal length in pixels, as a calibration gives it")
                     ->check(positive())
                     ->excludes(fov);
-  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov or --focal-px")
+  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov, --focal-px or --exif")
                   ->check(positive())
                   ->excludes(gsd);
   auto* exif = command

@@ -18,6 +18,7 @@ class LiveTrack {
  public:
   LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& settings, TrackerState state = {});
 
+  const ServedMap& map() const { return *map_; }
   const Tracker& tracker() const { return tracker_; }
   /// After the last step, thinned to at most `count`; none before the first one. Waits for no step that is under way.
   std::vector<GeoPose> particles(std::size_t count) const;

@@ -94,6 +94,11 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   const auto map = maps_.find(asked.map);
   auto fresh = std::make_shared<LiveTrack>(map, calibrated(asked.settings));
   const std::lock_guard lock(mutex_);
+  // Tracks of the map before cannot fly on, and would keep all of it that is in memory. Those that take a step do.
+  std::erase_if(live_, [&](const auto& item) {
+    const auto& [id, track] = item;
+    return track.use_count() == 1 && track->map().name == map->name && track->map().view.version != map->view.version;
+  });
   const std::vector<StoredTrack> flying = store().flying();
   const auto own = std::ranges::count(flying, client, &StoredTrack::client);
   if (static_cast<int>(flying.size()) >= limits_.tracks || own >= limits_.tracks_per_client) {

@@ -104,6 +104,18 @@ TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
   EXPECT_EQ(maps_.find("town").use_count(), unused);
 }
 
+TEST_F(TrackRegistryTest, LetsGoOfAMapThatWasReplacedWhenATrackBeginsOnTheNewOne) {
+  const auto tracks = registry();
+  take(*tracks, begin(*tracks), 0);
+  const std::weak_ptr<const ServedMap> before = maps_.find("town");
+  std::filesystem::remove(folder_ / "town.gpkg");
+  testing::write_map_file(folder_ / "town.gpkg", testing::street_map(4, {2.0, {300'100, -3'200'050}, 300, 300}), 2.0);
+  maps_.refresh();
+  EXPECT_FALSE(before.expired());  // by the track, which may not fly on it any more
+  begin(*tracks);
+  EXPECT_TRUE(before.expired());
+}
+
 TEST_F(TrackRegistryTest, IsAsItWasAfterAStepThatTheFullStoreRefused) {
   const std::vector<std::string> expected = undisturbed(100);
   TrackLimits limits;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
@@ -20,17 +21,24 @@ JsonLimits json_limits(const Limits& limits) {
   return {limits.json_depth, static_cast<std::size_t>(limits.poses) * 4 + 1000};
 }
 
+void add_picture(Content& content, std::vector<std::uint8_t> bytes) {
+  if (content.has_picture) throw InvalidField("duplicate-parameter", "image", "'image' is given twice");
+  content.image = std::move(bytes);
+  content.has_picture = true;
+}
+
+std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {
   content.fields.add(parse_json(text, json_limits(limits)), known);
-  if (content.fields.has("image")) content.image = bytes_of_base64("image", content.fields.text("image"));
+  if (content.fields.has("image")) add_picture(content, bytes_of_base64("image", content.fields.text("image")));
 }
 
 void add_part(Content& content, const Part& part, const std::vector<std::string>& known, const Limits& limits) {
   if (part.name == "request") {
     add_json(content, part.content, known, limits);
   } else if (part.name == "image") {
-    if (!content.image.empty()) throw InvalidField("duplicate-parameter", "image", "'image' is given twice");
-    content.image.assign(part.content.begin(), part.content.end());
+    add_picture(content, bytes_of(part.content));
   } else if (std::ranges::find(known, part.name) != known.end()) {
     content.fields.add_text(part.name, std::string(part.content));
   } else {
@@ -43,10 +51,10 @@ void add_part(Content& content, const Part& part, const std::vector<std::string>
 }  // namespace
 
 Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits) {
-  Content content{Fields(request.query), {}};
+  Content content{Fields(request.query)};
   const std::string type = request.media_type();
   if (type == "image/png" || type == "image/jpeg") {
-    content.image.assign(request.body.begin(), request.body.end());
+    add_picture(content, bytes_of(request.body));
   } else if (type == "application/json") {
     add_json(content, request.body, known, limits);
   } else if (type == "multipart/form-data") {

@@ -31,6 +31,12 @@ void require_picture(const Content& content) {
   }
 }
 
+void require_no(const Fields& fields, std::initializer_list<const char*> names, std::string_view why) {
+  for (const char* name : names) {
+    if (fields.has(name)) throw InvalidField("bad-parameter", name, fmt::format("'{}' {}: leave it out", name, why));
+  }
+}
+
 /// Cells as GET .../window gives them: base64, row by row, 0..254 and 255 = unobserved.
 CellArray cells_of_json(const Fields& fields, const Limits& limits) {
   constexpr int kMaxSide = 1 << 24;
@@ -58,7 +64,10 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   if (fields.has("cells") && !content.image.empty()) {
     throw InvalidField("duplicate-parameter", "cells", "give either a picture or 'cells', not both");
   }
-  if (!fields.has("cells")) require_picture(content);
+  if (!fields.has("cells")) {
+    require_picture(content);
+    require_no(fields, {"cols", "rows"}, "goes with 'cells'; a picture has a size of its own");
+  }
   FeatureMap map = FeatureMap::centred(
       fields.has("cells") ? cells_of_json(fields, limits) : decode_feature_map(content.image, limits.cells), cell_m);
   constexpr Range kPosition{-1e6, 1e6};
@@ -131,14 +140,10 @@ void require_few_pixels(const GroundImage& image, const RoadDetector& detector, 
                   detector.preferred_gsd_m(), limits.pixels));
 }
 
-void require_no_place_of_the_nadir(const Fields& fields) {
-  for (const char* name : {"nadir_col", "nadir_row"}) {
-    if (!fields.has(name)) continue;
-    throw InvalidField("bad-parameter", name,
-                       fmt::format("'{}' describes a feature map; of a frame the point below the UAV follows from "
-                                   "roll_deg and pitch_deg: leave it out",
-                                   name));
-  }
+void require_frame(const Fields& fields) {
+  require_no(fields, {"cells", "cols", "rows"}, "describes a feature map, and kind=frame says that this is a picture");
+  require_no(fields, {"nadir_col", "nadir_row"},
+             "describes a feature map; of a frame the point below the UAV follows from roll_deg and pitch_deg");
 }
 
 void require_feature_map(const Fields& fields) {
@@ -163,9 +168,14 @@ const std::vector<std::string>& feature_fields() {
 }
 
 const std::vector<std::string>& picture_members() {
-  static const std::vector<std::string> kMembers{"image", "cells", "cols",      "rows",        "pose",
-                                                 "map",   "epsg",  "footprint", "geotransform"};
+  static const std::vector<std::string> kMembers{"image", "cells",     "cols",         "rows",     "pose",   "map",
+                                                 "epsg",  "footprint", "geotransform", "detector", "time_ms"};
   return kMembers;
+}
+
+bool shows_ground(const Content& content) {
+  const Fields& fields = content.fields;
+  return content.has_picture || fields.has("cells") || fields.has("cols") || fields.has("rows");
 }
 
 std::optional<double> told_nadir_sigma_m(const Fields& fields) {
@@ -176,7 +186,7 @@ Features features_of(const Content& content, const RoadDetector& detector, doubl
                      const std::stop_token& stop) {
   Features features;
   if (content.fields.word("kind", kKinds) == "frame") {
-    require_no_place_of_the_nadir(content.fields);
+    require_frame(content.fields);
     features = detected(content, detector, default_cell_m, limits, stop);
   } else {
     require_feature_map(content.fields);

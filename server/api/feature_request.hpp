@@ -21,6 +21,7 @@ namespace roadfix::api {
 struct Content {
   Fields fields;
   std::vector<std::uint8_t> image;
+  bool has_picture = false;  ///< one was sent, though its bytes may have been lost on their way
 };
 
 /// `known` are the members a JSON body or form may have. Throws InvalidField, LimitExceeded, or InvalidInput
@@ -31,8 +32,10 @@ Content read_content(const http::Request& request, const std::vector<std::string
 const std::vector<std::string>& feature_fields();
 /// Those of a frame alone.
 const std::vector<std::string>& frame_fields();
-/// Members of a JSON body beside these: the picture, or the cells of a window as GET .../window gives them.
+/// Members of a JSON body beside these: the picture, or the cells of a window or detection as the service gives them.
 const std::vector<std::string>& picture_members();
+/// Whether the ground was seen, rather than nothing. A picture of no bytes was, and is refused when it is read.
+bool shows_ground(const Content& content);
 
 struct Features {
   FeatureMap map;

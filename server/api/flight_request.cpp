@@ -86,7 +86,7 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
       throw InvalidField("bad-parameter", place, "a frame is an object with image, forward_m, right_m and turn_deg");
     }
     const BodyOffset offset = offset_of(frame, place);
-    const Content other{content.fields, picture_of(frame, place)};
+    const Content other{content.fields, picture_of(frame, place), true};
     Features features = named(place, [&] { return features_of(other, detector, default_cell_m, limits, stop); });
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();

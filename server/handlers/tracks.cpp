@@ -75,11 +75,6 @@ http::Response step_response(const http::Request& request, const api::PositionFo
   return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request)});
 }
 
-/// A picture of no bytes was lost on its way, as curl sends a file that is missing: no step without a picture.
-bool shows_ground(const http::Request& request, const api::Content& content) {
-  return !content.image.empty() || content.fields.has("cells") || request.media_type().starts_with("image/");
-}
-
 /// A step as it was sent: all but its feature map, which takes a turn to detect.
 struct PostedStep {
   StoredTrack track;
@@ -105,7 +100,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
     return repeated;
   }
   const api::TimeLimit limit(request.deadline);
-  if (shows_ground(request, content)) {
+  if (api::shows_ground(content)) {
     const auto map = service.maps.find(track.map);
     input.features = api::features_of(content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
   }

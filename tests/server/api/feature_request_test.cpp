@@ -8,6 +8,7 @@
 
 #include "core/detect/frame_camera.hpp"
 #include "core/detect/image_codec.hpp"
+#include "server/http/errors.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -49,6 +50,61 @@ TEST(FeatureRequest, TakesThePlaceOfTheNadirInOtherPicturesForExact) {
 TEST(FeatureRequest, TakesWhatItIsToldOfTheNadir) {
   EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}, {"nadir_sigma_m", 12}}), 12.0);
   EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"nadir_sigma_m", 0}}), 0.0);
+}
+
+std::string part(const std::string& name, const std::string& value) {
+  return "--b\r\nContent-Disposition: form-data; name=\"" + name + "\"\r\n\r\n" + value + "\r\n";
+}
+
+Content content_of(const std::string& type, const std::string& body) {
+  http::Request request;
+  request.headers["content-type"] = type;
+  request.body = body;
+  return read_content(request, joined(feature_fields(), picture_members()), Limits{});
+}
+Content json_content(const nlohmann::json& body) { return content_of("application/json", body.dump()); }
+Content form_content(const std::string& parts) {
+  return content_of("multipart/form-data; boundary=b", parts + "--b--\r\n");
+}
+
+/// The field that is complained about.
+template <typename Read>
+std::string refused(Read read) {
+  try {
+    read();
+    return "nothing";
+  } catch (const http::InvalidField& error) {
+    return error.code() + " " + error.field();
+  }
+}
+
+TEST(FeatureRequest, RefusesASecondPictureWhicheverComesFirst) {
+  const std::string picture = part("image", "one");
+  const std::string request = part("request", R"({"image": "dHdv"})");
+  for (const std::string& parts :
+       {picture + request, request + picture, picture + picture, part("image", "") + picture}) {
+    EXPECT_EQ(refused([&] { form_content(parts); }), "duplicate-parameter image") << parts;
+  }
+}
+
+TEST(FeatureRequest, TellsAPictureThatWasLostFromNone) {
+  EXPECT_TRUE(shows_ground(content_of("image/png", "")));
+  EXPECT_TRUE(shows_ground(json_content({{"image", ""}})));
+  EXPECT_TRUE(shows_ground(json_content({{"cols", 2}, {"rows", 2}})));
+  EXPECT_TRUE(shows_ground(form_content(part("image", ""))));
+  EXPECT_FALSE(shows_ground(json_content({{"image", nullptr}, {"cell_m", 2}})));
+}
+
+TEST(FeatureRequest, RefusesWhatItWouldNotLookAt) {
+  const nlohmann::json cells{{"cell_m", 2}, {"cols", 2}, {"rows", 1}, {"cells", "AP4="}};
+  const auto refused_beside = [&](nlohmann::json request) {
+    request["image"] = "cGljdHVyZQ==";
+    return refused([&] { features_of(json_content(request), NoRoads(), 2.0, Limits{}, {}); });
+  };
+  EXPECT_EQ(refused_beside(cells), "duplicate-parameter cells");
+  EXPECT_EQ(refused_beside({{"cell_m", 2}, {"cols", 2}}), "bad-parameter cols");
+  EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"cells", "AP4="}}), "bad-parameter cells");
+  EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"rows", 2}}), "bad-parameter rows");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ export class Places {
       const [west, south, east, north] = tileset.bounds;
       this.#layer = L.tileLayer(`${mapUrl}/localizability/tiles/{z}/{x}/{y}.png?${query}&version=${version}`, {
         minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom,
-        bounds: east > 180 ? null : [[south, west], [north, east]],  // Leaflet would leave out what lies beyond the 180th meridian
+        bounds: east - west === 360 ? null : [[south, west], [north, east]],  // Leaflet would leave out what lies beyond the 180th meridian
       }).on('tileerror', askAgain).addTo(this.view);
       if (this.view.getZoom() < tileset.minzoom) this.view.setZoom(tileset.minzoom);
     });

@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "core/geodesy/geo_box.hpp"
 #include "core/locate/decision.hpp"
 #include "core/units/error.hpp"
 #include "server/api/fields.hpp"
@@ -119,13 +118,11 @@ http::Response get_tile(const Service& service, const http::Request& request, ht
 
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const Layer layer = layer_of(service, request);
-  const std::string query = fmt::format("?footprint_m={}", layer.footprint_m) +
+  const std::string query = fmt::format("&footprint_m={}", layer.footprint_m) +
                             (layer.style == kTileStyles[0] ? "" : "&style=" + layer.style);
-  nlohmann::json answer = tilejson(request, layer.map->name + ", localizability", query);
-  const GridBox& extent = layer.map->view.extent;
-  if (!extent.empty()) {
+  nlohmann::json answer = tilejson(request, *layer.map, layer.map->name + ", localizability", query);
+  if (!layer.map->view.extent.empty()) {
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
-    answer["bounds"] = api::bbox_json(geo_box_around(layer.map->view.zone, extent));
     answer["minzoom"] = zooms.first;
     answer["maxzoom"] = zooms.last;
   }

@@ -1,11 +1,23 @@
 #include "server/handlers/tile_answers.hpp"
 
+#include <fmt/format.h>
+
+#include "core/geodesy/geo_box.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/handlers/answers.hpp"
 
 namespace roadfix::server {
 namespace {
 
+/// Not longer, though their addresses change with the map: a page that stays open asks for the same ones again, and
+/// gets what is there by then.
 constexpr const char* kCacheControl = "public, max-age=60";
+
+/// All around the Earth where the box lies across the antimeridian, which bounds of TileJSON must not.
+GeoBox not_wrapped(GeoBox box) {
+  if (box.south_west.lon_deg >= -180.0 && box.north_east.lon_deg <= 180.0) return box;
+  return {{box.south_west.lat_deg, -180.0}, {box.north_east.lat_deg, 180.0}};
+}
 
 }  // namespace
 
@@ -31,18 +43,24 @@ http::Response tile_response(const http::Request& request, const std::string& ta
   return response;
 }
 
-nlohmann::json tilejson(const http::Request& request, const std::string& name, const std::string& query) {
+nlohmann::json tilejson(const http::Request& request, const ServedMap& map, const std::string& name,
+                        const std::string& query) {
   const std::string folder = base_url(request) + request.path.substr(0, request.path.rfind('/'));
-  return {{"tilejson", "3.0.0"},
-          {"name", name},
-          {"version", "1.0.0"},
-          {"scheme", "xyz"},
-          {"tiles", {folder + "/tiles/{z}/{x}/{y}.png" + query}}};
+  nlohmann::json answer{
+      {"tilejson", "3.0.0"},
+      {"name", name},
+      {"version", "1.0.0"},
+      {"scheme", "xyz"},
+      {"tiles", {fmt::format("{}/tiles/{{z}}/{{x}}/{{y}}.png?version={}{}", folder, map.edition(), query)}}};
+  const MapView& view = map.view;
+  if (!view.extent.empty()) answer["bounds"] = api::bbox_json(not_wrapped(geo_box_around(view.zone, view.extent)));
+  return answer;
 }
 
 http::Response tilejson_response(const nlohmann::json& tilejson) {
   http::Response response = json_response(tilejson);
-  response.headers.emplace_back("Cache-Control", kCacheControl);
+  // Kept for a minute it would lead to tiles of the map before, which are kept too.
+  response.headers.emplace_back("Cache-Control", "no-cache");
   return response;
 }
 

@@ -12,6 +12,7 @@
 
 #include "server/api/tile_picture.hpp"
 #include "server/http/message.hpp"
+#include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
 
 namespace roadfix::server {
@@ -29,8 +30,10 @@ std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const 
 http::Response tile_response(const http::Request& request, const std::string& tag,
                              const std::function<std::string()>& picture);
 
-/// Of the tiles whose folder lies beside this document; `query` stands behind their addresses ("?style=grey").
-nlohmann::json tilejson(const http::Request& request, const std::string& name, const std::string& query);
+/// Of the tiles whose folder lies beside this document. Their addresses name the edition of the map, so that no client
+/// shows tiles of the one before; `query` ("&style=grey") stands behind it.
+nlohmann::json tilejson(const http::Request& request, const ServedMap& map, const std::string& name,
+                        const std::string& query);
 http::Response tilejson_response(const nlohmann::json& tilejson);
 
 }  // namespace roadfix::server

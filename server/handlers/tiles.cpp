@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/geodesy/geo_box.hpp"
 #include "server/api/fields.hpp"
-#include "server/api/fix_json.hpp"
 #include "server/api/tile_picture.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -43,14 +41,13 @@ http::Response get_tilejson(const Service& service, const http::Request& request
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const MapInfo& info = map->reader->info();
   const std::string style = api::Fields(request.query).word("style", kTileStyles);
-  json answer = tilejson(request, map->name, style == kTileStyles[0] ? "" : "?style=" + style);
+  json answer = tilejson(request, *map, map->name, style == kTileStyles[0] ? "" : "&style=" + style);
   answer.update({{"attribution", attribution(info)}, {"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
-  if (!info.extent.empty()) {
-    const GeoBox b = geo_box_around(info.settings.zone, info.extent);
-    const int native = api::native_zoom(map->view);
-    answer["bounds"] = api::bbox_json(b);
-    answer["center"] = {0.5 * (b.south_west.lon_deg + b.north_east.lon_deg),
-                        0.5 * (b.south_west.lat_deg + b.north_east.lat_deg), std::max(0, native - kZoomsBeyondNative)};
+  const MapView& view = map->view;
+  if (!view.extent.empty()) {
+    const int native = api::native_zoom(view);
+    const LatLon centre = view.zone.unproject(view.extent.centre());
+    answer["center"] = {centre.lon_deg, centre.lat_deg, std::max(0, native - kZoomsBeyondNative)};
     answer["maxzoom"] = std::min(api::kMaxZoom, native + kZoomsBeyondNative);
   }
   return tilejson_response(answer);

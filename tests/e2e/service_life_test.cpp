@@ -1,4 +1,5 @@
 // The service over time: maps that come and go, many clients, the end.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -9,6 +10,7 @@
 
 #include "core/locate/calibration.hpp"
 #include "core/units/error.hpp"
+#include "server/api/web_mercator.hpp"
 #include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/raw_http.hpp"
@@ -43,12 +45,15 @@ TEST(ServiceLife, NoticesMapsThatAppearChangeBreakAndLeave) {
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
   EXPECT_TRUE(eventually([&] { return status() == "ready"; }));
   const std::string version = testing::json_of(client.Get("/v1/maps/town"))["version"];
+  const auto tiles = [&] { return testing::json_of(client.Get("/v1/maps/town/tilejson.json"))["tiles"]; };
+  const json tiles_before = tiles();
 
   {
     MapWriter writer(folder / "town.gpkg", {town.zone, 2.0});
     writer.remove_source("town");
   }
   EXPECT_TRUE(eventually([&] { return testing::json_of(client.Get("/v1/maps/town"))["version"] != version; }));
+  EXPECT_NE(tiles(), tiles_before) << "a client that keeps tiles gets new ones by their new addresses";
 
   std::ofstream(folder / "broken.gpkg") << "no map at all";
   EXPECT_TRUE(eventually([&] { return status() == "unreadable"; })) << "the broken one is listed, first by name";
@@ -73,6 +78,29 @@ TEST(ServiceLife, AMapWithoutLatitudeAndLongitudeHidesNoOther) {
   EXPECT_EQ(maps[0]["status"], "unreadable");
   EXPECT_EQ(maps[0]["code"], "position-outside-zone");
   EXPECT_EQ(maps[1]["status"], "ready");
+}
+
+TEST(ServiceLife, DescribesTilesAcrossThe180thMeridianWithinTheBoundsOfTileJson) {
+  const testing::TemporaryFolder folder;
+  const auto zone = UtmZone::from_epsg(32760).value();
+  // 820 km east and 8140 km north are 16.8 degrees south on the 180th meridian.
+  testing::write_map_file(folder / "taveuni.gpkg", testing::street_map(41, {2.0, {409'850, -4'070'150}, 300, 300}), 2.0,
+                          zone);
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  const json bbox = testing::json_of(client.Get("/v1/maps/taveuni"))["bbox"];
+  ASSERT_LT(bbox[0], 180.0);
+  ASSERT_GT(bbox[2], 180.0);
+  for (const char* path : {"/v1/maps/taveuni/tilejson.json", "/v1/maps/taveuni/localizability/tilejson.json"}) {
+    const json tiles = testing::json_of(client.Get(path));
+    EXPECT_EQ(tiles["bounds"], json({-180.0, bbox[1], 180.0, bbox[3]})) << path;
+  }
+  const json centre = testing::json_of(client.Get("/v1/maps/taveuni/tilejson.json"))["center"];
+  EXPECT_LE(std::abs(centre[0].get<double>()), 180.0);
+  for (const int x : {0, (1 << 15) - 1}) {
+    const int y = static_cast<int>(api::mercator_pixel({centre[1], 180.0}, 15).y / 256);
+    EXPECT_EQ(client.Get(fmt::format("/v1/maps/taveuni/tiles/15/{}/{}.png", x, y))->status, 200) << x;
+  }
 }
 
 TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {

@@ -48,8 +48,10 @@ TEST_F(Service, SaysThatItLivesAndWhatItServes) {
 }
 
 TEST_F(Service, ServesTilesThatClientsMayCache) {
-  const json description = testing::json_of(client_.Get("/v1/maps/town/tilejson.json"));
-  EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png"));
+  const auto tilejson = client_.Get("/v1/maps/town/tilejson.json");
+  EXPECT_EQ(tilejson->get_header_value("Cache-Control"), "no-cache") << "it tells the tiles of the map as it is now";
+  const json description = testing::json_of(tilejson);
+  EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png?version="));
   const api::MercatorPixel pixel = api::mercator_pixel(town->place, 16);
   const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
                            std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
@@ -69,7 +71,8 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
 TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
   const json description = testing::json_of(client_.Get("/v1/maps/town/localizability/tilejson.json?footprint_m=500"));
   EXPECT_THAT(description["tiles"][0].get<std::string>(),
-              HasSubstr("/v1/maps/town/localizability/tiles/{z}/{x}/{y}.png?footprint_m=500"));
+              ::testing::AllOf(HasSubstr("/v1/maps/town/localizability/tiles/{z}/{x}/{y}.png?version="),
+                               ::testing::EndsWith("&footprint_m=500")));
   EXPECT_LT(description["minzoom"], description["maxzoom"]);
   const auto path = [&](int zoom, const std::string& query) {
     const api::MercatorPixel pixel = api::mercator_pixel(town->place, zoom);

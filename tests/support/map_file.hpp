@@ -9,9 +9,10 @@
 
 namespace roadfix::testing {
 
-/// One source named "town" that holds the grid, in UTM zone 34 north.
-inline void write_map_file(const std::filesystem::path& path, const RoadGrid& grid, double registration_sigma_m) {
-  MapWriter writer(path, {UtmZone::from_epsg(32634).value(), grid.geometry.cell_m});
+/// One source named "town" that holds the grid.
+inline void write_map_file(const std::filesystem::path& path, const RoadGrid& grid, double registration_sigma_m,
+                           const UtmZone& zone = UtmZone::from_epsg(32634).value()) {
+  MapWriter writer(path, {zone, grid.geometry.cell_m});
   const SourceRecord record{.name = "town",
                             .kind = "roads",
                             .location = "town.geojson",

@@ -95,6 +95,15 @@ await run({
     await places.drawLayer('/map', 'v2', 18);
     assert.notEqual(layer(), before);
   },
+  async 'a layer across the 180th meridian is drawn on both sides of it'() {
+    const layer = () => [...drawn].find(({ kind }) => kind === 'tiles').bounds;
+    service.answers = { '/map/localizability/tilejson.json': { bounds: [-180, -17, 180, -16], minzoom: 10 } };
+    await places.drawLayer('/map', 'v1', 18);
+    assert.equal(layer(), null);
+    service.answers = { '/map/localizability/tilejson.json': { bounds: [38, 37, 39, 38], minzoom: 10 } };
+    await places.drawLayer('/map', 'v1', 18);
+    assert.deepEqual(layer(), [[37, 38], [38, 39]]);
+  },
   async 'a layer that was asked for comes no more once its map has left'() {
     const tiles = () => [...drawn].filter(({ kind }) => kind === 'tiles').length;
     let late;

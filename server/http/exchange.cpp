@@ -40,6 +40,12 @@ std::vector<std::string> list_of(const std::string& header) {
   return parts;
 }
 
+/// RFC 9110 8.4.1: in any case, and under its old name.
+bool is_gzip(const std::string& coding) {
+  const std::string name = lower_case(coding);
+  return name == "gzip" || name == "x-gzip";
+}
+
 /// RFC 9110 12.5.3: named, or covered by "*", and not with a weight of 0.
 bool accepts_gzip(const std::string& accept_encoding) {
   std::optional<bool> named;
@@ -48,7 +54,7 @@ bool accepts_gzip(const std::string& accept_encoding) {
     const std::size_t weight = coding.find(";q=");
     const bool wanted = weight == std::string::npos || coding.find_first_of("123456789", weight) != std::string::npos;
     const std::string name = coding.substr(0, coding.find(';'));
-    if (name == "gzip" || name == "x-gzip") named = wanted;
+    if (is_gzip(name)) named = wanted;
     if (name == "*") any = wanted;
   }
   return named.value_or(any);
@@ -90,6 +96,10 @@ void take_over(httplib::Request& head, Exchange& exchange) {
   const bool gzip = accepts_gzip(head.get_header_value("Accept-Encoding"));
   head.headers.erase("Accept-Encoding");
   if (gzip) head.headers.emplace("Accept-Encoding", "gzip");
+  // The library unpacks what is called so in small letters only, and passes on anything else as it came.
+  if (const auto coding = head.headers.find("Content-Encoding");
+      coding != head.headers.end() && is_gzip(coding->second))
+    coding->second = "gzip";
   exchange.asked_to_close = asks_to_close(head);
   // The library does not notice all that ask for it, and says that it keeps some that it closes.
   if (exchange.asked_to_close || (head.version == "HTTP/1.0" && head.get_header_value("Connection") != "Keep-Alive")) {

@@ -25,6 +25,12 @@ class Passing {
   Passing& operator=(const Passing&) = delete;
 };
 
+/// What cpp-httplib packs for those who accept it, of the types that there are here.
+bool is_packed_on_request(const std::string& content_type) {
+  return content_type.starts_with("application/json") ||
+         (content_type.starts_with("text/") && content_type != "text/event-stream");
+}
+
 LimitExceeded url_too_long(std::size_t limit) {
   return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
 }
@@ -161,7 +167,7 @@ Response Server::Impl::failed(const Exchange& exchange, std::exception_ptr throw
 void Server::Impl::complete_headers(Exchange& exchange, Response& response) const {
   response.headers.emplace_back("X-Request-Id", exchange.request.id);
   cors_.open(response);
-  if (response.content_type.starts_with("application/json")) response.headers.emplace_back("Vary", "Accept-Encoding");
+  if (is_packed_on_request(response.content_type)) response.headers.emplace_back("Vary", "Accept-Encoding");
   if (exchange.must_close) response.headers.emplace_back("Connection", "close");
   exchange.problem = response.problem;
 }

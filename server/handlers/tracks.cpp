@@ -67,14 +67,6 @@ http::Response post_track(const Service& service, const http::Request& request) 
   return response;
 }
 
-http::Response step_response(const http::Request& request, const api::PositionFormat& format, const StepInput& input,
-                             std::string answer) {
-  if (format.is_json()) return {200, "application/json", std::move(answer)};
-  api::PositionFormat numbered = format;
-  numbered.sender.sequence = static_cast<std::uint8_t>(input.sequence & 0xff);
-  return api::position_response(api::stored_json(answer), numbered, {input.time_us, time_spent(request)});
-}
-
 /// A step as it was sent: all but its feature map, which takes a turn to detect.
 struct PostedStep {
   StoredTrack track;
@@ -82,6 +74,16 @@ struct PostedStep {
   api::PositionFormat format;
   StepInput input;
 };
+
+http::Response step_response(const Service& service, const http::Request& request, const PostedStep& step,
+                             std::string answer) {
+  if (step.format.is_json()) return {200, "application/json", std::move(answer)};
+  api::PositionFormat numbered = step.format;
+  numbered.sender.sequence = static_cast<std::uint8_t>(step.input.sequence & 0xff);
+  // A step that is sent again is as old as when it came first.
+  const auto processing = std::max(time_spent(request), service.tracks.age_of_last_step(step.track.id));
+  return api::position_response(api::stored_json(answer), numbered, {step.input.time_us, processing});
+}
 
 PostedStep read_step(const Service& service, const http::Request& request) {
   StoredTrack track = service.tracks.find(id_of(request));
@@ -95,7 +97,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   auto& [track, content, format, input] = step;
   const std::int64_t digest = digest_of(content);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
-    http::Response repeated = step_response(request, format, input, std::move(*answer));
+    http::Response repeated = step_response(service, request, step, std::move(*answer));
     repeated.headers.emplace_back("Roadfix-Repeated", "true");
     return repeated;
   }
@@ -109,10 +111,10 @@ http::Response take_step(const Service& service, const http::Request& request, P
   // Two searches, and the rest of the step.
   limits.search_time = std::max(api::time_left(request.deadline) / 3, std::chrono::milliseconds(1));
   limits.stop = limit.token();
-  std::string answer = service.tracks.step(track.id, input, digest, limits);
+  std::string answer = service.tracks.step(track.id, input, digest, limits, request.received);
   const std::string status = api::stored_json(answer).at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
-  return step_response(request, format, input, std::move(answer));
+  return step_response(service, request, step, std::move(answer));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first.

@@ -111,7 +111,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, ""};
   store().add(track);
   live_[track.id] = std::move(fresh);
-  heard_[track.id] = Clock::now();
+  heard_[track.id] = {Clock::now(), Clock::now()};
   return track;
 }
 
@@ -138,7 +138,15 @@ std::chrono::milliseconds TrackRegistry::silent(const StoredTrack& track) const 
 std::chrono::milliseconds TrackRegistry::idle(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto heard = heard_.find(id);
-  return std::chrono::floor<std::chrono::milliseconds>(Clock::now() - (heard == heard_.end() ? began_ : heard->second));
+  const auto since = heard == heard_.end() ? began_ : heard->second.taken;
+  return std::chrono::floor<std::chrono::milliseconds>(Clock::now() - since);
+}
+
+std::chrono::microseconds TrackRegistry::age_of_last_step(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto heard = heard_.find(id);
+  const auto since = heard == heard_.end() ? began_ : heard->second.came;
+  return std::chrono::floor<std::chrono::microseconds>(Clock::now() - since);
 }
 
 std::string TrackRegistry::ended(const StoredTrack& track) const {
@@ -229,7 +237,7 @@ void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequen
 }
 
 std::string TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
-                                const StepLimits& limits) {
+                                const StepLimits& limits, Clock::time_point came) {
   const std::shared_ptr<LiveTrack> track = live(id);
   LiveTrack::Turn turn(*track, input.sequence, limits_.order_wait);
   if (const auto answer = answered(id, input.sequence, digest)) return *answer;
@@ -246,7 +254,7 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   }
   turn.settle(std::move(result.state));
   const std::lock_guard registry_lock(mutex_);
-  heard_[id] = Clock::now();
+  heard_[id] = {came, Clock::now()};
   ++changes_;
   news_.notify_all();
   return text;

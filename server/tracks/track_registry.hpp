@@ -58,6 +58,9 @@ class TrackRegistry {
   std::chrono::milliseconds silent(const StoredTrack& track) const;
   /// Since its last step, its beginning or the start of the service: a track has TrackLimits::idle from then.
   std::chrono::milliseconds idle(const std::string& id) const;
+  /// Since the last step came, the time that it took included: so old is its answer, and those before it are older. At
+  /// most since the start of the service.
+  std::chrono::microseconds age_of_last_step(const std::string& id) const;
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
   /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").
@@ -71,8 +74,9 @@ class TrackRegistry {
   /// the searches for that, so that it holds none meanwhile.
   void await_predecessor(const std::string& id, std::int64_t sequence) const;
   /// Takes the step and returns its answer once it cannot be lost any more. Throws what Tracker::advance throws,
-  /// InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
-  std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits);
+  /// InvalidInput ("map-replaced") and the store's errors; the track is then as it was. `came` is when the step did.
+  std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
+                   std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now());
 
   /// One stream of events for as long as it lives. Throws Busy.
   class Listener;
@@ -100,7 +104,11 @@ class TrackRegistry {
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
   std::condition_variable news_;
   std::map<std::string, std::shared_ptr<LiveTrack>> live_;
-  std::map<std::string, Clock::time_point> heard_;  ///< of the tracks that were heard since the start
+  struct Heard {
+    Clock::time_point came;
+    Clock::time_point taken;
+  };
+  std::map<std::string, Heard> heard_;  ///< last steps or beginnings, of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
   int streams_ = 0;
   bool stopping_ = false;

@@ -241,5 +241,27 @@ TEST_F(Tracks, AnswerInTheWordsOfAutopilots) {
   EXPECT_THAT(as(7, "&format=nmea")->body, ::testing::StartsWith("$GPGGA,,"));
 }
 
+TEST_F(Tracks, TellAutopilotsHowOldTheAnswerToARepeatedStepIs) {
+  const auto running = service();
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(8);
+  for (const Request& step : steps) send(client, id, step);
+  std::this_thread::sleep_for(300ms);
+  const std::string packet =
+      send(client, id, {steps[7].query + "&format=global_position_sensor", steps[7].picture})->body;
+  const auto number = [&](std::size_t begin, std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;) value = value << 8 | static_cast<unsigned char>(packet.at(begin + i));
+    return value;
+  };
+  constexpr std::size_t kHeader = 10;
+  const std::uint64_t sent_us = number(kHeader, 8);
+  const std::uint64_t processing_us = number(kHeader + 8, 4);
+  EXPECT_GE(processing_us, 300'000U) << "since the step came first, however soon it is answered again";
+  EXPECT_LT(processing_us, 20'000'000U);
+  EXPECT_EQ(sent_us - processing_us, 8'000'000U) << "the time of the frame";
+}
+
 }  // namespace
 }  // namespace roadfix

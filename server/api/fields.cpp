@@ -26,6 +26,11 @@ std::string shown(const json& value) {
   return text;
 }
 
+double to_number(const std::string& name, const json& value) {
+  if (value.is_number()) return value.get<double>();
+  throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a number, not '{}'", name, shown(value)));
+}
+
 void require_in(const Range& range, const std::string& name, double value) {
   const bool below = range.min_is_open ? value <= range.min : value < range.min;
   if (!below && value <= range.max) return;
@@ -42,6 +47,15 @@ std::optional<double> parse_number(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+double number_within(const json& object, const char* name, std::string_view place, const Range& range) {
+  const std::string field = fmt::format("{}.{}", place, name);
+  const auto found = object.find(name);
+  if (found == object.end()) missing(field);
+  const double value = to_number(field, *found);
+  require_in(range, field, value);
   return value;
 }
 
@@ -73,11 +87,6 @@ void Fields::add(const json& object, std::span<const std::string> known) {
 const Fields::Value* Fields::find(const std::string& name) const {
   const auto found = values_.find(name);
   return found == values_.end() ? nullptr : &found->second;
-}
-
-double Fields::to_number(const std::string& name, const json& value) const {
-  if (value.is_number()) return value.get<double>();
-  throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a number, not '{}'", name, shown(value)));
 }
 
 std::optional<double> Fields::optional_number(const std::string& name, const Range& range) const {

@@ -63,7 +63,6 @@ class Fields {
   std::string summary(std::span<const std::string> left_out) const;
 
  private:
-  double to_number(const std::string& name, const nlohmann::json& value) const;
   std::optional<double> whole_number(const std::string& name, const Range& range) const;
 
   /// Text of a query or form is kept as a JSON string with `from_text` set.
@@ -80,5 +79,9 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
 
 /// The whole of `text` as a finite number; nullopt for anything else.
 std::optional<double> parse_number(std::string_view text);
+
+/// A member of an object that lies deeper in a JSON body, at `place` ("poses[3]"). Throws as Fields::number does, of
+/// "poses[3].lat".
+double number_within(const nlohmann::json& object, const char* name, std::string_view place, const Range& range);
 
 }  // namespace roadfix::api

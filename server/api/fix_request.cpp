@@ -26,25 +26,13 @@ void require_together(const Fields& fields, std::initializer_list<const char*> n
   }
 }
 
-double pose_number(const json& pose, const char* name, std::size_t index, const Range& range) {
-  const std::string field = fmt::format("poses[{}].{}", index, name);
-  const auto found = pose.find(name);
-  if (found == pose.end()) throw InvalidField("missing-parameter", field, fmt::format("'{}' is missing", field));
-  const double value = found->is_number() ? found->get<double>() : std::nan("");
-  if (!(value >= range.min && value <= range.max)) {
-    throw InvalidField("bad-parameter", field,
-                       fmt::format("'{}' must be a number from {} to {}", field, range.min, range.max));
-  }
-  return value;
-}
-
 GeoPose parse_pose(const json& pose, std::size_t index) {
+  const std::string place = fmt::format("poses[{}]", index);
   if (!pose.is_object() || pose.size() > 3) {
-    throw InvalidField("bad-parameter", fmt::format("poses[{}]", index),
-                       "a pose is an object with lat, lon and heading_deg");
+    throw InvalidField("bad-parameter", place, "a pose is an object with lat, lon and heading_deg");
   }
-  return {{pose_number(pose, "lat", index, kLatitude), pose_number(pose, "lon", index, kLongitude)},
-          Angle::degrees(pose_number(pose, "heading_deg", index, kDegrees))};
+  return {{number_within(pose, "lat", place, kLatitude), number_within(pose, "lon", place, kLongitude)},
+          Angle::degrees(number_within(pose, "heading_deg", place, kDegrees))};
 }
 
 std::chrono::milliseconds milliseconds_of(double seconds) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 #include "core/grid/combine.hpp"
@@ -16,16 +15,6 @@ namespace {
 using http::InvalidField;
 using nlohmann::json;
 
-double number_of(const json& frame, const char* name, const std::string& place, double max) {
-  const auto found = frame.find(name);
-  const double value = found != frame.end() && found->is_number() ? found->get<double>() : std::nan("");
-  if (!(std::abs(value) <= max)) {
-    const std::string field = fmt::format("{}.{}", place, name);
-    throw InvalidField("bad-parameter", field, fmt::format("'{}' must be a number from {} to {}", field, -max, max));
-  }
-  return value;
-}
-
 std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place) {
   const std::string field = place + ".image";
   const auto found = frame.find("image");
@@ -36,9 +25,9 @@ std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place
 }
 
 BodyOffset offset_of(const json& frame, const std::string& place) {
-  constexpr double kFarthestM = 1e5;
-  return {number_of(frame, "forward_m", place, kFarthestM), number_of(frame, "right_m", place, kFarthestM),
-          Angle::degrees(number_of(frame, "turn_deg", place, 360.0))};
+  constexpr Range kMetres{-1e5, 1e5};
+  return {number_within(frame, "forward_m", place, kMetres), number_within(frame, "right_m", place, kMetres),
+          Angle::degrees(number_within(frame, "turn_deg", place, kDegrees))};
 }
 
 /// Complaints that the picture of an earlier frame causes say which one it is.

@@ -147,6 +147,9 @@ TEST_F(BadRequests, WithBrokenJsonSayWhere) {
   EXPECT_EQ(post("{" + map + R"(,"poses":[{"lat":1,"lon":2}]})"), "400 missing-parameter poses[0].heading_deg");
   EXPECT_EQ(post("{" + map + R"(,"poses":[{"lat":1,"lon":2,"heading_deg":3},{"lat":"x","lon":2,"heading_deg":3}]})"),
             "400 bad-parameter poses[1].lat");
+  EXPECT_EQ(post("{" + map + R"(,"poses":[{"lat":91,"lon":2,"heading_deg":3}]})"),
+            "400 parameter-out-of-range poses[0].lat")
+      << "as for a latitude anywhere else";
   EXPECT_EQ(post("{" + map + R"(,"pose_list":[]})"), "400 unknown-field pose_list");
   EXPECT_EQ(post(R"({"cell_m":2,"cols":2,"rows":2,"cells":"AP4=","poses":[{"lat":1,"lon":2,"heading_deg":3}]})"),
             "400 bad-parameter cells");

@@ -65,7 +65,10 @@ std::vector<std::uint8_t> bytes_of_base64(const std::string& field, std::string_
   if (result.bad_byte) {
     throw http::InvalidField(
         "bad-base64", field,
-        fmt::format("'{}' is not base64: character {} does not belong there", field, *result.bad_byte),
+        fmt::format(
+            "'{}' is not base64 of RFC 4648 section 4, on one line and without a data: URL in front: character {} "
+            "does not belong there",
+            field, *result.bad_byte),
         result.bad_byte);
   }
   return std::move(result.bytes);

@@ -181,10 +181,10 @@ std::optional<std::vector<double>> Fields::optional_numbers(const std::string& n
     for (const json& element : value->json) numbers.push_back(to_number(name, element));
   }
   if (numbers.size() < min || numbers.size() > max) {
-    throw InvalidField(
-        "bad-parameter", name,
-        fmt::format("'{}' must be {} numbers, not '{}'", name,
-                    min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max), shown(value->json)));
+    throw InvalidField("bad-parameter", name,
+                       fmt::format("'{}' must be {} numbers {}, not '{}'", name,
+                                   min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max),
+                                   value->from_text ? "with commas between them" : "in a list", shown(value->json)));
   }
   return numbers;
 }

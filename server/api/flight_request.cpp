@@ -66,6 +66,9 @@ const std::vector<std::string>& flight_members() {
 
 Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
                             const Limits& limits, const std::stop_token& stop) {
+  if (content.fields.has("also") && content.fields.has("cells")) {
+    throw InvalidField("bad-parameter", "cells", "beside 'also' the first frame is a picture too: send it as 'image'");
+  }
   Features first = features_of(content, detector, default_cell_m, limits, stop);
   if (!content.fields.has("also")) return first;
   std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};

@@ -25,7 +25,7 @@ class InvalidField : public InvalidInput {
   InvalidField(std::string code, std::string field, const std::string& message,
                std::optional<std::size_t> byte = std::nullopt);
   const std::string& field() const { return field_; }
-  /// Position in the body, where there is one.
+  /// Position in the body, or in the text of the field where that is base64; where there is one.
   std::optional<std::size_t> byte() const { return byte_; }
 
  private:

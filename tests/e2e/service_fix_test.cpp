@@ -109,6 +109,9 @@ TEST_F(ServiceFix, LaysFramesOfAFlightTogether) {
   const json problem = testing::json_of(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
   EXPECT_EQ(problem["code"], "image-format");
   EXPECT_EQ(problem["detail"].get<std::string>().substr(0, 14), "also[1].image:") << problem;
+  json by_cells{{"cell_m", 2}, {"cols", 2}, {"rows", 1}, {"cells", "AP4="}, {"also", json::array({frame})}};
+  const json mixed = testing::json_of(client_.Post("/v1/maps/town/fix", by_cells.dump(), "application/json"));
+  EXPECT_THAT(mixed["detail"].get<std::string>(), ::testing::HasSubstr("beside 'also'"));
   bent = frame;
   bent["right_m"] = bent["forward_m"] = 9e4;
   EXPECT_EQ(refusal(json::array({bent})), "422 frames-too-far-apart");

@@ -54,6 +54,22 @@ TEST(Fields, RefuseWhatIsNoFiniteNumberInRange) {
   EXPECT_EQ(code_of([&] { fields.number("lon", kLongitude); }), "missing-parameter lon");
 }
 
+TEST(Fields, SayHowSeveralNumbersAreGiven) {
+  const std::vector<std::string> known{"bbox"};
+  const auto complaint = [](const Fields& fields) -> std::string {
+    try {
+      fields.optional_numbers("bbox", 4);
+      return "none";
+    } catch (const InvalidField& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(complaint(Fields(http::Parameters{{"bbox", "1 2 3 4"}})), ::testing::HasSubstr("4 numbers with commas"));
+  Fields body;
+  body.add(json{{"bbox", "1,2,3,4"}}, known);
+  EXPECT_THAT(complaint(body), ::testing::HasSubstr("4 numbers in a list"));
+}
+
 TEST(Fields, ReadWholeNumbersAsLargeAsJsonHoldsExactly) {
   const Fields fields(http::Parameters{{"after", "4294967297"}, {"least", "-1"}, {"odd", "0.5"}, {"most", "1e16"}});
   EXPECT_EQ(fields.large_integer("after", -1), 4294967297);

@@ -94,17 +94,19 @@ PostedStep read_step(const Service& service, const http::Request& request) {
 }
 
 http::Response take_step(const Service& service, const http::Request& request, PostedStep& step) {
-  auto& [track, content, format, input] = step;
-  const std::int64_t digest = digest_of(content);
+  const StoredTrack& track = step.track;
+  StepInput& input = step.input;
+  const std::int64_t digest = digest_of(step.content);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
     http::Response repeated = step_response(service, request, step, std::move(*answer));
     repeated.headers.emplace_back("Roadfix-Repeated", "true");
     return repeated;
   }
   const api::TimeLimit limit(request.deadline);
-  if (api::shows_ground(content)) {
+  if (api::shows_ground(step.content)) {
     const auto map = service.maps.find(track.map);
-    input.features = api::features_of(content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
+    input.features =
+        api::features_of(step.content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
   }
   StepLimits limits;
   limits.threads = service.search_threads;

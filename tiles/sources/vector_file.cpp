@@ -148,7 +148,7 @@ std::optional<OGREnvelope> VectorFile::cut_out(OGRLayer& layer) const {
 }
 
 std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
-  if (const std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
+  if (std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
   OGREnvelope box;
   // Not layer.GetExtent(TRUE): the OpenStreetMap driver gives its layers interleaved only.
   for_each_feature([&](OGRLayer& of, OGRFeature& feature) {

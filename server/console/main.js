@@ -33,7 +33,7 @@ async function drawMap() {
   tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
   }).addTo(view);
-  shown = { name: info.name, version: info.version };
+  shown = { name: info.name, version: info.version, bbox: info.bbox };
   by('about').replaceChildren(
     element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
     ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));

@@ -24,11 +24,16 @@ export function linesOf(maps, chosen) {
   return lines;
 }
 
-/// What is to be done on the page: 'open' another map, 'redraw' the same one, whose content changed, or nothing.
-/// `shown` is the map on the page ({name, version}) or null, and its version null while it is being opened.
+/// Boxes in degrees: [west, south, east, north].
+const meet = (a, b) => a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
+
+/// What is to be done on the page: 'open' another map, or one of elsewhere that has taken the name of the shown one;
+/// 'redraw' the same one, whose content changed; or nothing.
+/// `shown` is the map on the page ({name, version, bbox}) or null, and its version null while it is being opened.
 export function stepTo(maps, chosen, shown) {
   const map = maps.find(({ name }) => name === chosen);
   if (!map || !usable(map)) return null;
   if (shown?.name !== chosen) return 'open';
-  return shown.version !== null && shown.version !== map.version ? 'redraw' : null;
+  if (shown.version === null || shown.version === map.version) return null;
+  return meet(shown.bbox, map.bbox) ? 'redraw' : 'open';
 }

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 const text = readFileSync(process.argv[2], 'utf8');
 const { choiceOf, linesOf, stepTo } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
 
-const ready = (name, version = '1') => ({ name, version, status: 'ready' });
+const ready = (name, version = '1', bbox = [38, 37, 39, 38]) => ({ name, version, status: 'ready', bbox });
 const texts = (maps, chosen) => linesOf(maps, chosen).map((line) => line.text);
 
 const cases = {
@@ -31,10 +31,17 @@ const cases = {
     assert.equal(stepTo([ready('a')], 'a', { name: 'b', version: '1' }), 'open');
     assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: null }), null);
     assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: '1' }), null);
-    assert.equal(stepTo([ready('a', '2')], 'a', { name: 'a', version: '1' }), 'redraw');
+    assert.equal(stepTo([ready('a', '2')], 'a', { name: 'a', version: '1', bbox: [38, 37, 38.5, 38] }), 'redraw');
     assert.equal(stepTo([], 'a', { name: 'a', version: '1' }), null);
     assert.equal(stepTo([], null, null), null);
     assert.equal(stepTo([{ name: 'a', version: '2', status: 'unreadable' }], 'a', { name: 'a', version: '1' }), null);
+  },
+  'a map that is replaced by one of elsewhere is opened, so that the view goes there'() {
+    const shown = { name: 'a', version: '1', bbox: [38, 37, 39, 38] };
+    for (const bbox of [[40, 37, 41, 38], [36, 37, 37, 38], [38, 40, 39, 41], [38, 35, 39, 36]]) {
+      assert.equal(stepTo([ready('a', '2', bbox)], 'a', shown), 'open');
+    }
+    assert.equal(stepTo([ready('a', '2', [38.5, 37.5, 50, 50])], 'a', shown), 'redraw');
   },
 };
 

@@ -51,7 +51,7 @@ void add_part(Content& content, const Part& part, const std::vector<std::string>
 }  // namespace
 
 Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits) {
-  Content content{Fields(request.query)};
+  Content content{.fields = Fields(request.query), .image = {}, .has_picture = false};
   const std::string type = request.media_type();
   if (type == "image/png" || type == "image/jpeg") {
     add_picture(content, bytes_of(request.body));

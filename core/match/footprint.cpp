@@ -64,9 +64,10 @@ PackedFootprint::PackedFootprint(const FeatureMap& north_up) {
       const std::size_t last = end_of_span(row.first(end), first);
       const int first_col = static_cast<int>(first) - nadir_col;
       const int last_col = static_cast<int>(last) - 1 - nadir_col;
-      spans_.push_back({first_col, r - nadir_row, static_cast<int>(last - first), values_.size() * kAlignment});
-      values_.resize(values_.size() + (last - first + kAlignment - 1) / kAlignment);
-      std::memcpy(values_.data()->cells + spans_.back().offset, &row[first], last - first);
+      const std::size_t block = values_.size();
+      spans_.push_back({first_col, r - nadir_row, static_cast<int>(last - first), block * kAlignment});
+      values_.resize(block + (last - first + kAlignment - 1) / kAlignment);
+      std::memcpy(&values_[block], &row[first], last - first);
       reach_ = std::max({reach_, std::abs(first_col), std::abs(last_col), std::abs(r - nadir_row)});
       first = last;
     }

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "server/http/errors.hpp"
+#include "server/http/message.hpp"
 
 namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 void wait_for(const auto& condition) {
   for (int i = 0; i < 5000 && !condition(); ++i) std::this_thread::sleep_for(1ms);

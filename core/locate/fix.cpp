@@ -93,12 +93,7 @@ void require_valid(const FixOptions& options, double area_km2) {
                        fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
   }
   require_scale_range(options.scale_range);
-  if (options.max_search_km2 > 0.0 && area_km2 > options.max_search_km2) {
-    throw LimitExceeded("search-area-too-large",
-                        fmt::format("the prior leaves {:.1f} km2 to search, more than the limit of {:.1f} km2: give a "
-                                    "smaller circle or box",
-                                    area_km2, options.max_search_km2));
-  }
+  require_searchable(area_km2, options.max_search_km2);
 }
 
 SearchOptions search_options_of(const FixOptions& options, const MapView& map,

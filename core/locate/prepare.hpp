@@ -13,4 +13,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 /// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMaxScaleRange.
 void require_scale_range(double range);
 
+/// Throws LimitExceeded ("search-area-too-large"). A limit of 0 is none.
+void require_searchable(double area_km2, double limit_km2);
+
 }  // namespace roadfix

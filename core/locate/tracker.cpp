@@ -55,7 +55,10 @@ Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
       settings_(std::move(settings)),
       start_(region_of(map_, settings_.prior)),
-      region_(region_of_flight(map_, settings_)) {}
+      region_(region_of_flight(map_, settings_)) {
+  // Particles alone would not find the vehicle there either, and each step would read the whole map for them.
+  if (settings_.start == TrackStart::kSearch) require_searchable(start_.area_km2(), settings_.max_search_km2);
+}
 
 StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
   return Step(*this, before, step, limits).run();

@@ -76,8 +76,10 @@ struct TrackSettings {
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
   /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
   double beyond_map_m = 1000.0;
-  double max_search_km2 = 2000.0;         ///< larger priors start uniformly; recovery looks around the last place
-  std::chrono::seconds longest_gap{600};  ///< after it the belief is thrown away
+  /// Of the prior where the start is searched for; 0 = unlimited. Where a uniform start was more, recovery looks around
+  /// the last place.
+  double max_search_km2 = 2000.0;
+  std::chrono::seconds longest_gap{600};           ///< after it the belief is thrown away
   std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
 
   /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.
@@ -161,7 +163,8 @@ struct StepLimits {
 
 class Tracker {
  public:
-  /// Throws InvalidInput for a prior that does not meet the map and for a scale range that cannot be.
+  /// Throws InvalidInput for a prior that does not meet the map and for a scale range that cannot be; LimitExceeded
+  /// ("search-area-too-large").
   Tracker(MapView map, TrackSettings settings);
 
   /// Throws InvalidInput: "step-late" for a sequence number not above the last, "time-backwards", those of

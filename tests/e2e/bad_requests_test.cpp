@@ -97,6 +97,14 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
 }
 
+TEST_F(BadRequests, ForATrackThatWouldHaveToBeSearchedForOnTooMuchGroundAreUnprocessable) {
+  const auto begin = [this](const std::string& more) {
+    return client_.Post("/v1/tracks", R"({"map":"town")" + more + "}", "application/json");
+  };
+  EXPECT_EQ(refusal(begin("")), "422 search-area-too-large");
+  EXPECT_EQ(begin(R"(,"start":"uniform")")->status, 201);
+}
+
 TEST_F(BadRequests, WithAFrameOfMoreGroundThanADetectorCanLookAtAreTooLarge) {
   const std::string frame = testing::text_of(encode_feature_map(CellArray(500, 500, kNoRoad)));
   EXPECT_EQ(refusal(client_.Post("/v1/detect?gsd_m=5&cell_m=20", frame, "image/png")), "413 ground-too-large");

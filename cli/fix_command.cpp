@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,6 +38,8 @@ struct FixArguments {
   FixOptions fix;
   bool as_json = false;
 };
+
+constexpr std::chrono::seconds kQuiet{2};  // a search that is over by then says nothing of its progress
 
 Prior prior_of(const FixArguments& options) {
   Prior prior;
@@ -91,6 +94,11 @@ void run_fix(const FixArguments& options) {
   fix_options.stop = stop_on_signals();
   fix_options.time_limit = milliseconds(options.time_limit_s);
   fix_options.proof_time = milliseconds(options.proof_s);
+  Progress progress("searching", "headings");
+  const auto began = std::chrono::steady_clock::now();
+  fix_options.progress = [&](std::int64_t done, std::int64_t total) {
+    if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
+  };
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
   if (options.as_json) {
     fmt::print("{}\n", json_text(api::to_json(fix, input.detect_time), 2));

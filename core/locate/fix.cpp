@@ -104,6 +104,7 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   result.cache = map.searches;
   if (options.looks_beyond_prior) result.surroundings = map.extent;
   result.threads = options.threads;
+  result.progress = options.progress;
   result.stop = options.stop;
   result.proof_time = options.proof_time;
   if (options.time_limit.count() > 0) result.deadline = started + options.time_limit;

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -31,8 +32,9 @@ struct FixOptions {
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
   int threads = 1;
-  std::stop_token stop{};                            ///< Interrupted when requested
-  std::shared_ptr<const Calibration> calibration{};  ///< nullptr = the one that is shipped
+  std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< see SearchOptions
+  std::stop_token stop{};                                                 ///< Interrupted when requested
+  std::shared_ptr<const Calibration> calibration{};                       ///< nullptr = the one that is shipped
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };

@@ -105,6 +105,7 @@ class Scan {
     result_.score_square_sum += found.squares;
     result_.poses += found.poses;
     scanned_ += found.headings;
+    if (request_.scanned) request_.scanned(scanned_);
     result_.maxima.insert(result_.maxima.end(), found.maxima.begin(), found.maxima.end());
     if (result_.maxima.size() < 4 * request_.keep) return;
     const auto cut = result_.maxima.begin() + static_cast<std::ptrdiff_t>(request_.keep);

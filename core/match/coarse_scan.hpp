@@ -29,6 +29,7 @@ struct ScanRequest {
   double min_observed_share = 0.5;
   std::size_t keep = 4096;  ///< best local maxima (within a heading) to return
   int threads = 1;
+  std::function<void(std::size_t headings)> scanned;  ///< so far; from any of the threads, one at a time
 };
 
 struct ScanResult {

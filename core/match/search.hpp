@@ -44,6 +44,9 @@ struct SearchOptions {
   std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
   std::stop_token stop;
   std::optional<std::chrono::steady_clock::time_point> deadline;
+  /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
+  /// at a time.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
   /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
 };

@@ -79,7 +79,7 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
 
 std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, SearchResult& result) const {
   const Level& coarse = levels_.coarse();
-  const ScanRequest asked = request();
+  ScanRequest asked = request();
   const int largest = coarse.scales.reach();
   const LatticeIndex origin = asked.positions.origin;
   const std::shared_ptr<const ScanMap> map = map_below(asked.positions);
@@ -89,7 +89,14 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   double squares = 0.0;
   double shares = 0.0;
   result.scales = 2 * largest + 1;
-  for (int scale = -largest; scale <= largest; ++scale) {
+  const auto headings = static_cast<std::int64_t>(asked.headings.size());
+  std::int64_t before = 0;
+  if (options_.progress) {
+    asked.scanned = [&](std::size_t here) {
+      options_.progress(before + static_cast<std::int64_t>(here), headings * result.scales);
+    };
+  }
+  for (int scale = -largest; scale <= largest; ++scale, before += headings) {
     const ScanResult found = coarse_scan(*map, coarse.at_scale(scale).map, asked, end);
     shares += found.share;
     result.background.poses += found.poses;
@@ -101,7 +108,7 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
     }
   }
   result.scanned_share = shares / result.scales;
-  result.headings = static_cast<int>(asked.headings.size());
+  result.headings = static_cast<int>(headings);
   if (result.background.poses > 0) {
     result.background.sd = std::sqrt(squares / static_cast<double>(result.background.poses));
   }

@@ -221,6 +221,29 @@ TEST(Search, ManyThreadsGiveWhatOneGives) {
   EXPECT_EQ(one.background.poses, four.background.poses);
 }
 
+TEST(Search, TellsHowFarItIsOverHeadingsAndSizes) {
+  const RoadGrid map = street_map(7, town(400, 400));
+  PoseRegion region;
+  region.box = map.geometry.box();
+  const GridPose pose{region.box.centre(), {}};
+  std::vector<std::int64_t> told;
+  SearchOptions options;
+  options.threads = 4;
+  options.scale_range = 0.02;
+  std::int64_t all = 0;
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    told.push_back(done);
+    all = total;
+  };
+  const SearchResult found = search(reader_of(map), 2.0, cut_out(map, pose, 64, 64, 2.0), region, options);
+  ASSERT_GT(found.scales, 1);
+  EXPECT_EQ(all, std::int64_t{found.headings} * found.scales);
+  ASSERT_GT(told.size(), 2U);
+  EXPECT_GT(told.front(), 0);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(told.back(), all);
+}
+
 TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
   const RoadGrid map = street_map(20, town(900, 800));
   std::mt19937_64 random(21);

@@ -46,26 +46,10 @@ FrameCamera camera_of(const FrameOptions& options) {
   return camera;
 }
 
-[[noreturn]] void refuse_file(const std::string& path, const char* lacks_and_advice) {
-  throw InvalidInput("camera-not-in-file", fmt::format("{} does not tell {}", path, lacks_and_advice));
-}
-
 FrameCamera camera_in(const std::string& path, const FrameOptions& options) {
-  const DronePicture told = drone_picture(read_picture_tags(path));
-  if (!told.focal_px) {
-    refuse_file(path,
-                "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a picture that was "
-                "not cut): give --agl with --fov or --focal-px");
-  }
-  FrameCamera camera;
-  camera.focal_px = told.focal_px;
-  camera.principal_px = told.principal_px;
-  camera.distortion = told.distortion;
-  camera.agl_m = options.agl_m > 0.0 ? options.agl_m : told.agl_m.value_or(told.takeoff_m.value_or(0.0));
-  if (camera.agl_m <= 0.0) refuse_file(path, "a height (RelativeAltitude or AboveGroundAltitude): give it with --agl");
-  set_attitude(camera, options.roll_deg ? options.roll_deg : told.roll_deg,
-               options.pitch_deg ? options.pitch_deg : told.pitch_deg);
-  return camera;
+  const KnownView known{options.agl_m > 0.0 ? std::optional(options.agl_m) : std::nullopt, options.roll_deg,
+                        options.pitch_deg};
+  return decoded(path, [&](const auto& bytes) { return camera_of(drone_picture(read_picture_tags(bytes)), known); });
 }
 
 }  // namespace

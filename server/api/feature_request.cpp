@@ -10,6 +10,7 @@
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
+#include "server/api/frame_scale.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -17,11 +18,9 @@ namespace {
 
 using http::InvalidField;
 
-constexpr Range kGsd{0.0, 100.0, true};
 constexpr Range kFeatureCell{0.0, 1000.0, true};
 
 constexpr std::string_view kKinds[] = {"feature_map", "frame"};
-constexpr std::string_view kLenses[] = {"perspective", "fisheye"};
 constexpr std::string_view kBorders[] = {"seen", "black"};
 
 void require_picture(const Content& content) {
@@ -76,55 +75,19 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   return map;
 }
 
-const std::vector<std::string>& camera_fields() {
-  static const std::vector<std::string> kFields{"fov_deg",    "focal_px", "principal_px", "lens",
-                                                "distortion", "agl_m",    "roll_deg",     "pitch_deg"};
-  return kFields;
-}
+struct SeenFrame {
+  GroundView view;
+  std::optional<FrameCamera> camera_in_file;
+};
 
-FrameCamera camera_of(const Fields& fields) {
-  FrameCamera camera;
-  if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
-    camera.horizontal_fov = Angle::degrees(*fov);
-  camera.focal_px = fields.optional_number("focal_px", kPositive);
-  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
-    throw InvalidField("missing-parameter", "fov_deg",
-                       "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px");
-  }
-  camera.lens = fields.word("lens", kLenses) == "fisheye" ? LensModel::kFisheye : LensModel::kPerspective;
-  if (const auto principal = fields.optional_numbers("principal_px", 2)) {
-    camera.principal_px = cv::Point2d(principal->at(0), principal->at(1));
-  }
-  camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
-  camera.agl_m = fields.number("agl_m", {0.0, 20'000.0, true});
-  const auto roll_deg = fields.optional_number("roll_deg", {-90.0, 90.0});
-  set_attitude(camera, roll_deg, fields.optional_number("pitch_deg", {-90.0, 90.0}));
-  return camera;
-}
-
-void require_straight_down(const Fields& fields) {
-  for (const std::string& name : camera_fields()) {
-    if (fields.has(name)) {
-      throw InvalidField(
-          "bad-parameter", name,
-          fmt::format("'{}' cannot be combined with gsd_m, which means a frame seen from straight above", name));
-    }
-  }
-}
-
-GroundView view_of(const Content& content, const RoadDetector& detector, const Limits& limits) {
+SeenFrame seen_frame(const Content& content, const RoadDetector& detector, const Limits& limits) {
   require_picture(content);
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
-  const GroundImage frame = frame_image(decode_image(content.image, limits.pixels),
-                                        fields.optional_number("gsd_m", kGsd).value_or(0.0), border);
-  std::optional<FrameCamera> camera;
-  if (fields.has("gsd_m")) {
-    require_straight_down(fields);
-  } else {
-    camera = camera_of(fields);
-  }
-  return ground_seen(frame, camera, detector, static_cast<double>(limits.pixels));
+  const FrameScale scale = parse_frame_scale(fields, content.image);
+  const GroundImage frame = frame_image(decode_image(content.image, limits.pixels), scale.gsd_m, border);
+  return {ground_seen(frame, scale.camera, detector, static_cast<double>(limits.pixels)),
+          scale.in_file ? scale.camera : std::nullopt};
 }
 
 /// Detectors draw a coarse frame in finer pixels of their own before they look at it.
@@ -157,7 +120,7 @@ void require_feature_map(const Fields& fields) {
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
-  static const std::vector<std::string> kFields = joined({"gsd_m", "unobserved", "cell_m", "seed"}, camera_fields());
+  static const std::vector<std::string> kFields = joined({"unobserved", "cell_m", "seed"}, frame_scale_fields());
   return kFields;
 }
 
@@ -200,7 +163,7 @@ Features detected(const Content& content, const RoadDetector& detector, double d
                   const std::stop_token& stop) {
   const double cell_m = content.fields.optional_number("cell_m", {0.1, 100.0}).value_or(default_cell_m);
   const int seed = content.fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1);
-  const GroundView view = view_of(content, detector, limits);
+  const auto [view, camera_in_file] = seen_frame(content, detector, limits);
   require_few_pixels(view.image, detector, limits);
   const double cells = static_cast<double>(view.image.pixels.total()) * std::pow(view.image.gsd_m / cell_m, 2.0);
   if (cells > static_cast<double>(limits.cells)) {
@@ -210,7 +173,7 @@ Features detected(const Content& content, const RoadDetector& detector, double d
   }
   const auto start = std::chrono::steady_clock::now();
   FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed), stop);
-  return {std::move(map), std::chrono::steady_clock::now() - start};
+  return {std::move(map), std::chrono::steady_clock::now() - start, camera_in_file};
 }
 
 }  // namespace roadfix::api

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/detect/frame_camera.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
 #include "server/api/fields.hpp"
@@ -40,6 +41,7 @@ bool shows_ground(const Content& content);
 struct Features {
   FeatureMap map;
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
+  std::optional<FrameCamera> camera_in_file;                             ///< of a frame with exif=true
 };
 
 /// How well the nadir is known as the client says, 1 sigma per axis: it knows more than a camera's description tells.

@@ -159,6 +159,16 @@ std::string Fields::word(const std::string& name, std::span<const std::string_vi
   return value;
 }
 
+bool Fields::flag(const std::string& name) const {
+  const Value* value = find(name);
+  if (value == nullptr) return false;
+  if (value->json.is_boolean()) return value->json.get<bool>();
+  if (value->from_text && value->json == "true") return true;
+  if (value->from_text && value->json == "false") return false;
+  throw InvalidField("bad-parameter", name,
+                     fmt::format("'{}' must be true or false, not {}", name, shown(value->json)));
+}
+
 std::optional<std::vector<double>> Fields::optional_numbers(const std::string& name, std::size_t min,
                                                             std::size_t max) const {
   const Value* value = find(name);

@@ -52,6 +52,8 @@ class Fields {
   std::string text(const std::string& name) const;
   /// One of the words; the first where the field is absent.
   std::string word(const std::string& name, std::span<const std::string_view> words) const;
+  /// JSON's true and false, or text of that; false where the field is absent.
+  bool flag(const std::string& name) const;
   /// So many numbers: a JSON array, or text with commas between them.
   std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t min, std::size_t max) const;
   std::optional<std::vector<double>> optional_numbers(const std::string& name, std::size_t count) const {

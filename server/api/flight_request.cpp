@@ -83,7 +83,7 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();
   }
-  return {combined(parts, static_cast<double>(limits.cells)), first.detect_time};
+  return {combined(parts, static_cast<double>(limits.cells)), first.detect_time, first.camera_in_file};
 }
 
 }  // namespace roadfix::api

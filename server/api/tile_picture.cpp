@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMaxSourceCellM = 4096.0;
 
-double source_cell(const MapView& map, double pixel_m) {
+double level_cell_near(const MapView& map, double pixel_m) {
   double cell_m = map.cell_m;
   while (cell_m * std::numbers::sqrt2 <= pixel_m && 2.0 * cell_m <= kMaxSourceCellM) cell_m *= 2.0;
   return cell_m;
@@ -60,7 +60,7 @@ std::optional<std::vector<std::uint8_t>> tile_png(const MapView& map, TileAddres
   const PixelToGrid ground(map.zone, tile, box);
   const double middle_y = double{kTilePixels} * tile.y + 0.5 * (box.top + box.bottom);
   const double pixel_m = metres_per_pixel(lat_lon({0.0, middle_y}, tile.z).lat_deg, tile.z);
-  const double cell_m = source_cell(map, pixel_m);
+  const double cell_m = level_cell_near(map, pixel_m);
   const GridBox needed = grown(intersection(ground.box(), map.extent), 2.0 * cell_m);
   if (needed.empty()) return std::nullopt;
   const RoadGrid grid = map.read(GridGeometry::covering(needed, cell_m));

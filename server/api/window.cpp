@@ -19,7 +19,7 @@ constexpr double kMaxSideM = 1'000'000.0;
 constexpr double kMaxWindowCellM = 4096.0;
 
 /// The coarsest cells of the map that are not larger than the window's.
-double source_cell(const MapView& map, double cell_m) {
+double level_cell_within(const MapView& map, double cell_m) {
   double source = map.cell_m;
   while (2.0 * source <= cell_m && 2.0 * source <= kMaxWindowCellM) source *= 2.0;
   return source;
@@ -102,7 +102,7 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
   }
   const int n_cols = static_cast<int>(cols);
   const int n_rows = static_cast<int>(rows);
-  const double source_m = source_cell(map, cell_m);
+  const double source_m = level_cell_within(map, cell_m);
   GridPose pose{map.zone.project(request.centre), Angle{}};
   if (request.heading) {
     pose.heading = map.zone.grid_from_true(*request.heading, pose.position);

@@ -103,6 +103,7 @@ function questionOf(form) {
   const { picture, what, prior, ...numbers } = Object.fromEntries(form);
   const told = Object.entries(numbers).filter(([, value]) => value !== '');
   const query = new URLSearchParams([['kind', what === 'cells' ? 'feature_map' : 'frame'], ...told]);
+  if (what === 'exif') query.set('exif', true);
   if (prior === 'circle') {
     const { lat, lng } = view.getCenter().wrap();
     query.set('lat', lat);

@@ -103,9 +103,16 @@ export function drawModes(view, layer, modes, status) {
   }
 }
 
+/// What a photo told of its camera, for the operator to see that it is so.
+function cameraRows({ camera }) {
+  if (!camera) return [];
+  const tilt = `roll ${degrees(camera.roll_deg, 1)}, pitch ${degrees(camera.pitch_deg, 1)}`;
+  return [['camera', `${camera.agl_m.toFixed(0)} m above ground, ${tilt}, focal length ${camera.focal_px.toFixed(0)} px`]];
+}
+
 export function showFix(output, fix, picture) {
   showStatus(output, fix.status, [fix.explanation ?? fix.reason]);
-  const rows = [['picture', picture], ['answered', new Date().toLocaleTimeString()], ['probability', fix.probability.toFixed(4)]];
+  const rows = [['picture', picture], ...cameraRows(fix), ['answered', new Date().toLocaleTimeString()], ['probability', fix.probability.toFixed(4)]];
   if (fix.pose) {
     rows.push(['position', place(fix.pose)], ['heading', `${degrees(fix.pose.heading_deg, 1)} ± ${degrees(fix.heading_sigma_deg, 1)}`]);
     rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m']);

@@ -6,6 +6,7 @@
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/flight_request.hpp"
+#include "server/api/frame_scale.hpp"
 #include "server/api/position_answer.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
@@ -41,7 +42,8 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   api::shorten(options, request.deadline);
   const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
   options.stop = watch.token();
-  const auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
+  auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
+  if (features.camera_in_file) answer["camera"] = api::to_json(*features.camera_in_file);
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));
   if (format.is_json()) return json_response(answer);
   return api::position_response(answer, format, time_of(request, time_us));

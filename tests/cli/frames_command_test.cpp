@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/bench/frames_csv.hpp"
+#include "tests/support/drone_jpeg.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -28,19 +28,10 @@ class FramesCommand : public ::testing::Test {
  protected:
   FramesCommand() { std::filesystem::create_directory(folder / "flight 1"); }
 
-  /// XMP stands in a segment APP1 behind the JPEG's first marker (XMP Specification, part 3).
   void picture(const std::string& name, const std::string& tags) const {
-    std::vector<unsigned char> jpeg;
-    cv::imencode(".jpg", cv::Mat(90, 120, CV_8UC1, cv::Scalar(128)), jpeg);
-    const std::string xmp = fmt::format(
-        "http://ns.adobe.com/xap/1.0/{0}<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><r:Description xmlns:r=\"r\" "
-        "xmlns:drone-dji=\"d\" {1}/></x:xmpmeta>",
-        '\0', tags);
-    const std::size_t length = xmp.size() + 2;
+    const auto jpeg = testing::drone_jpeg(cv::Mat(90, 120, CV_8UC1, cv::Scalar(128)), tags);
     std::ofstream file(folder / "flight 1" / name, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(jpeg.data()), 2);
-    file << "\xff\xe1" << static_cast<char>(length >> 8) << static_cast<char>(length & 0xff) << xmp;
-    file.write(reinterpret_cast<const char*>(jpeg.data()) + 2, static_cast<std::streamsize>(jpeg.size()) - 2);
+    file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   }
   static std::string tags(double height_m) {
     return fmt::format(

@@ -7,6 +7,7 @@
 
 #include "server/api/base64.hpp"
 #include "tests/e2e/served_town.hpp"
+#include "tests/support/drone_jpeg.hpp"
 
 namespace roadfix {
 namespace {
@@ -208,6 +209,12 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
   EXPECT_EQ(cols("&principal_px=199.5,149.5"), 100);
   EXPECT_GT(cols("&distortion=-0.1,0,0,0"), 105) << "its edges see farther";
   EXPECT_GT(cols("&lens=fisheye&distortion=0,0,0,0"), 150);
+  const auto jpeg =
+      testing::drone_jpeg(frame, R"(drone-dji:CalibratedFocalLength="200" drone-dji:RelativeAltitude="+100")");
+  const json of_drone =
+      testing::json_of(client_.Post("/v1/maps/town/fix?kind=frame&exif=true", testing::text_of(jpeg), "image/jpeg"));
+  EXPECT_EQ(of_drone["camera"]["agl_m"], 100.0) << of_drone;
+  EXPECT_EQ(of_drone["camera"]["focal_px"], 200.0);
   const json fix =
       testing::json_of(client_.Post("/v1/maps/town/fix?kind=frame&gsd_m=0.5", testing::text_of(png), "image/png"));
   EXPECT_EQ(fix["status"], "no_fix") << "a bare field shows no road";

@@ -1,6 +1,7 @@
 #include "tiles/sources/drone_picture.hpp"
 
-#include <cpl_minixml.h>
+#include <cpl_conv.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -8,18 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tiles/sources/gdal_session.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
-
-void collect(const CPLXMLNode* node, Tags& tags) {
-  for (; node != nullptr; node = node->psNext) {
-    const CPLXMLNode* child = node->psChild;
-    if (child != nullptr && child->eType == CXT_Text) tags.emplace(node->pszValue, child->pszValue);
-    collect(child, tags);
-  }
-}
 
 /// "+98.30", "(37) (45) (38.7)", "2023:02:09 11:05:10": the numbers, whatever stands between them.
 std::vector<double> numbers_in(std::string_view text) {
@@ -142,33 +135,11 @@ void set_lens(DronePicture& picture, const PictureTags& tags) {
   }
 }
 
+[[noreturn]] void refuse(const char* lacks_and_advice) {
+  throw InvalidInput("camera-not-in-file", fmt::format("the picture's file does not tell {}", lacks_and_advice));
+}
+
 }  // namespace
-
-Tags tags_of_xmp(const std::string& text) {
-  require_gdal();
-  const GdalMessages quiet;
-  const CPLXMLTreeCloser tree(CPLParseXMLString(text.c_str()));
-  Tags tags;
-  if (tree.get() == nullptr) return tags;
-  CPLStripXMLNamespace(tree.get(), nullptr, TRUE);
-  collect(tree.get(), tags);
-  return tags;
-}
-
-PictureTags read_picture_tags(const std::string& path) {
-  const DatasetPtr file = open_dataset(path, GDAL_OF_RASTER);
-  const GdalMessages quiet;
-  PictureTags tags;
-  tags.size = {file->GetRasterXSize(), file->GetRasterYSize()};
-  for (CSLConstList entry = file->GetMetadata(); entry != nullptr && *entry != nullptr; ++entry) {
-    const std::string_view text(*entry);
-    const auto equals = text.find('=');
-    if (equals != std::string_view::npos) tags.exif.emplace(text.substr(0, equals), text.substr(equals + 1));
-  }
-  CSLConstList xmp = file->GetMetadata("xml:XMP");
-  if (xmp != nullptr && *xmp != nullptr) tags.xmp = tags_of_xmp(*xmp);
-  return tags;
-}
 
 DronePicture drone_picture(const PictureTags& tags) {
   DronePicture picture;
@@ -179,6 +150,23 @@ DronePicture drone_picture(const PictureTags& tags) {
   set_attitude(picture, tags.xmp);
   set_lens(picture, tags);
   return picture;
+}
+
+FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
+  if (!picture.focal_px) {
+    refuse(
+        "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a JPEG that was not cut): "
+        "give its field of view or focal length and the height instead");
+  }
+  FrameCamera camera;
+  camera.focal_px = picture.focal_px;
+  camera.principal_px = picture.principal_px;
+  camera.distortion = picture.distortion;
+  camera.agl_m = known.agl_m.value_or(picture.agl_m.value_or(picture.takeoff_m.value_or(0.0)));
+  if (camera.agl_m <= 0.0) refuse("a height above ground (RelativeAltitude or AboveGroundAltitude): give it besides");
+  set_attitude(camera, known.roll_deg ? known.roll_deg : picture.roll_deg,
+               known.pitch_deg ? known.pitch_deg : picture.pitch_deg);
+  return camera;
 }
 
 }  // namespace roadfix

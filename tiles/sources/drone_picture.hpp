@@ -3,30 +3,14 @@
 // Camera:AboveGroundAltitude), which Parrot and others write.
 #pragma once
 
-#include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/detect/frame_camera.hpp"
 #include "core/geodesy/utm.hpp"
+#include "tiles/sources/picture_tags.hpp"
 
 namespace roadfix {
-
-using Tags = std::map<std::string, std::string>;
-
-/// As they stand in the file.
-struct PictureTags {
-  Tags exif;  ///< by GDAL's names: EXIF_FocalLength
-  Tags xmp;   ///< without prefixes: GimbalPitchDegree
-  cv::Size size;
-};
-
-/// Attributes and elements without children, wherever they stand; none where the text is no XML.
-Tags tags_of_xmp(const std::string& text);
-
-/// Throws NotFound ("source-not-found") or InvalidInput ("source-unreadable").
-PictureTags read_picture_tags(const std::string& path);
 
 /// What the tags say; nothing where they do not.
 struct DronePicture {
@@ -43,5 +27,16 @@ struct DronePicture {
 };
 
 DronePicture drone_picture(const PictureTags& tags);
+
+/// What somebody knows better than the picture's file.
+struct KnownView {
+  std::optional<double> agl_m;
+  std::optional<double> roll_deg;
+  std::optional<double> pitch_deg;
+};
+
+/// The camera that took it. Where only the height above the take-off is told, the ground below is taken to be as high
+/// as that place. Throws InvalidInput "camera-not-in-file" that says what is missing.
+FrameCamera camera_of(const DronePicture& picture, const KnownView& known);
 
 }  // namespace roadfix

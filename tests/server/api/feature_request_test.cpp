@@ -8,7 +8,10 @@
 
 #include "core/detect/frame_camera.hpp"
 #include "core/detect/image_codec.hpp"
+#include "core/units/error.hpp"
 #include "server/http/errors.hpp"
+#include "tests/support/code_of.hpp"
+#include "tests/support/drone_jpeg.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -105,6 +108,54 @@ TEST(FeatureRequest, RefusesWhatItWouldNotLookAt) {
   EXPECT_EQ(refused_beside({{"cell_m", 2}, {"cols", 2}}), "bad-parameter cols");
   EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"cells", "AP4="}}), "bad-parameter cells");
   EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"rows", 2}}), "bad-parameter rows");
+}
+
+constexpr const char* kDrone =
+    "drone-dji:RelativeAltitude=\"+40.00\" drone-dji:GimbalYawDegree=\"12\" drone-dji:GimbalPitchDegree=\"-80\" "
+    "drone-dji:GimbalRollDegree=\"0\" drone-dji:CalibratedFocalLength=\"30\"";
+
+Content photo(const nlohmann::json& request, const std::string& tags = kDrone) {
+  Content content;
+  content.fields.add({{"kind", "frame"}}, feature_fields());
+  content.fields.add(request, feature_fields());
+  content.image = testing::drone_jpeg(cv::Mat(20, 30, CV_8UC1, cv::Scalar(128)), tags);
+  return content;
+}
+
+Features seen(const Content& content) { return features_of(content, NoRoads(), 2.0, Limits{}, {}); }
+
+TEST(FeatureRequest, TakesTheCameraOfAPhotoFromItsFile) {
+  const Features told = seen(photo({{"focal_px", 30}, {"agl_m", 40}, {"roll_deg", 0}, {"pitch_deg", 10}}));
+  EXPECT_FALSE(told.camera_in_file);
+  const Features read = seen(photo({{"exif", true}}));
+  EXPECT_NEAR(read.map.nadir.row, told.map.nadir.row, 1e-6);
+  EXPECT_NEAR(read.map.nadir_sigma_m, told.map.nadir_sigma_m, 1e-6);
+  ASSERT_TRUE(read.camera_in_file);
+  EXPECT_DOUBLE_EQ(read.camera_in_file->agl_m, 40.0);
+  EXPECT_DOUBLE_EQ(read.camera_in_file->focal_px.value(), 30.0);
+  EXPECT_NEAR(read.camera_in_file->pitch.degrees(), 10.0, 1e-9);
+}
+
+TEST(FeatureRequest, BelievesTheClientMoreThanAPhotosFile) {
+  const FrameCamera camera =
+      seen(photo({{"exif", true}, {"agl_m", 55}, {"roll_deg", 1}, {"pitch_deg", -2}})).camera_in_file.value();
+  EXPECT_DOUBLE_EQ(camera.agl_m, 55.0);
+  EXPECT_NEAR(camera.roll.degrees(), 1.0, 1e-9);
+  EXPECT_NEAR(camera.pitch.degrees(), -2.0, 1e-9);
+}
+
+TEST(FeatureRequest, RefusesACameraThatIsToldTwiceOrNotAtAll) {
+  const auto complaint = [](const nlohmann::json& request) { return refused([&] { seen(photo(request)); }); };
+  EXPECT_EQ(complaint({{"exif", true}, {"focal_px", 30}}), "bad-parameter focal_px");
+  EXPECT_EQ(complaint({{"exif", true}, {"gsd_m", 1}}), "bad-parameter exif");
+  EXPECT_EQ(complaint({{"exif", false}, {"gsd_m", 1}}), "nothing");
+  EXPECT_EQ(complaint({{"exif", false}}), "missing-parameter fov_deg");
+  const auto code = [](const Content& content) { return testing::code_of([&] { seen(content); }); };
+  EXPECT_EQ(code(photo({{"exif", true}}, "")), "camera-not-in-file");
+  EXPECT_EQ(code(photo({{"exif", true}}, "drone-dji:CalibratedFocalLength=\"30\"")), "camera-not-in-file");
+  Content png = photo({{"exif", true}});
+  png.image = encode_feature_map(CellArray(20, 20, kNoRoad));
+  EXPECT_EQ(code(png), "camera-not-in-file");
 }
 
 }  // namespace

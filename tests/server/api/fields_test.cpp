@@ -93,6 +93,16 @@ TEST(Fields, RefuseJsonMembersOfAnotherTypeUnknownOnesAndRepeatedOnes) {
   EXPECT_EQ(code_of([&] { wrong.text("image"); }), "bad-parameter image");
 }
 
+TEST(Fields, ReadTrueAndFalse) {
+  Fields fields(http::Parameters{{"yes", "true"}, {"no", "false"}, {"maybe", "1"}});
+  fields.add(json{{"so", true}, {"not", false}, {"word", "true"}}, std::vector<std::string>{"so", "not", "word"});
+  for (const char* name : {"yes", "so"}) EXPECT_TRUE(fields.flag(name)) << name;
+  for (const char* name : {"no", "not", "none"}) EXPECT_FALSE(fields.flag(name)) << name;
+  for (const char* name : {"maybe", "word"}) {
+    EXPECT_EQ(code_of([&] { fields.flag(name); }), std::string("bad-parameter ") + name);
+  }
+}
+
 TEST(Fields, ReadListsOfNumbers) {
   const Fields text(
       http::Parameters{{"bbox", "1,2.5,-3,4"}, {"short", "1,2"}, {"long", "1,2,3,4,5"}, {"odd", "1,,3,4"}});

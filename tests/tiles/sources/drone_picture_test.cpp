@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <random>
+
+#include "tests/support/drone_jpeg.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roadfix {
 namespace {
@@ -125,6 +129,28 @@ TEST(XmpTags, AreAttributesAndElementsWithoutTheirPrefixes) {
   EXPECT_EQ(tags.at("RelativeAltitude"), "+9");
   EXPECT_EQ(tags.at("Yaw"), "3");
   EXPECT_THAT(tags_of_xmp("no <xml"), IsEmpty());
+}
+
+TEST(PictureTags, AreReadFromMemoryAsFromAFile) {
+  const auto jpeg =
+      testing::drone_jpeg(cv::Mat(90, 120, CV_8UC1, cv::Scalar(128)), "drone-dji:RelativeAltitude=\"+9\"");
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "a.jpg", std::ios::binary)
+      .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
+  for (const PictureTags& tags : {read_picture_tags(jpeg), read_picture_tags((folder / "a.jpg").string())}) {
+    EXPECT_EQ(tags.xmp.at("RelativeAltitude"), "+9");
+    EXPECT_EQ(tags.size, cv::Size(120, 90));
+  }
+}
+
+TEST(PictureTags, AreNoneOfWhatIsNoJpeg) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", cv::Mat(9, 9, CV_8UC1, cv::Scalar(1)), bytes);
+  for (std::size_t size : {std::size_t{0}, std::size_t{3}, bytes.size()}) {
+    const PictureTags tags = read_picture_tags(std::span(bytes).first(size));
+    EXPECT_THAT(tags.xmp, IsEmpty());
+    EXPECT_THAT(tags.exif, IsEmpty());
+  }
 }
 
 }  // namespace

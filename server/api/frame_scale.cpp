@@ -1,0 +1,94 @@
+#include "server/api/frame_scale.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "server/http/errors.hpp"
+#include "tiles/sources/drone_picture.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using http::InvalidField;
+
+constexpr Range kGsd{0.0, 100.0, true};
+constexpr Range kHeight{0.0, 20'000.0, true};
+constexpr Range kQuarterTurn{-90.0, 90.0};
+constexpr std::string_view kLenses[] = {"perspective", "fisheye"};
+
+const std::vector<std::string>& lens_fields() {
+  static const std::vector<std::string> kFields{"fov_deg", "focal_px", "principal_px", "lens", "distortion"};
+  return kFields;
+}
+
+const std::vector<std::string>& view_fields() {
+  static const std::vector<std::string> kFields{"agl_m", "roll_deg", "pitch_deg"};
+  return kFields;
+}
+
+void refuse(const Fields& fields, const std::vector<std::string>& names, std::string_view why) {
+  for (const std::string& name : names) {
+    if (fields.has(name)) {
+      throw InvalidField("bad-parameter", name, fmt::format("'{}' cannot be combined with {}", name, why));
+    }
+  }
+}
+
+FrameCamera told_camera(const Fields& fields) {
+  FrameCamera camera;
+  if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
+    camera.horizontal_fov = Angle::degrees(*fov);
+  camera.focal_px = fields.optional_number("focal_px", kPositive);
+  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
+    throw InvalidField("missing-parameter", "fov_deg",
+                       "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px, or exif=true where its file "
+                       "tells the camera");
+  }
+  camera.lens = fields.word("lens", kLenses) == "fisheye" ? LensModel::kFisheye : LensModel::kPerspective;
+  if (const auto principal = fields.optional_numbers("principal_px", 2)) {
+    camera.principal_px = cv::Point2d(principal->at(0), principal->at(1));
+  }
+  camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
+  camera.agl_m = fields.number("agl_m", kHeight);
+  const auto roll_deg = fields.optional_number("roll_deg", kQuarterTurn);
+  set_attitude(camera, roll_deg, fields.optional_number("pitch_deg", kQuarterTurn));
+  return camera;
+}
+
+FrameCamera camera_in(std::span<const std::uint8_t> picture, const Fields& fields) {
+  const KnownView known{fields.optional_number("agl_m", kHeight), fields.optional_number("roll_deg", kQuarterTurn),
+                        fields.optional_number("pitch_deg", kQuarterTurn)};
+  return camera_of(drone_picture(read_picture_tags(picture)), known);
+}
+
+}  // namespace
+
+const std::vector<std::string>& frame_scale_fields() {
+  static const std::vector<std::string> kFields = joined(joined({"gsd_m", "exif"}, lens_fields()), view_fields());
+  return kFields;
+}
+
+FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture) {
+  const bool exif = fields.flag("exif");
+  if (const auto gsd_m = fields.optional_number("gsd_m", kGsd)) {
+    const std::vector<std::string> exif_field(exif ? 1 : 0, "exif");
+    refuse(fields, joined(exif_field, joined(lens_fields(), view_fields())),
+           "gsd_m, which means a frame seen from straight above");
+    return {*gsd_m, std::nullopt, false};
+  }
+  if (!exif) return {0.0, told_camera(fields), false};
+  refuse(fields, lens_fields(), "exif=true, by which the file tells the lens");
+  return {0.0, camera_in(picture, fields), true};
+}
+
+nlohmann::json to_json(const FrameCamera& camera) {
+  nlohmann::json answer{
+      {"agl_m", camera.agl_m}, {"roll_deg", camera.roll.degrees()}, {"pitch_deg", camera.pitch.degrees()}};
+  if (camera.focal_px) answer["focal_px"] = *camera.focal_px;
+  if (camera.principal_px) answer["principal_px"] = {camera.principal_px->x, camera.principal_px->y};
+  if (!camera.distortion.empty()) answer["distortion"] = camera.distortion;
+  return answer;
+}
+
+}  // namespace roadfix::api

@@ -1,0 +1,31 @@
+// What the pixels of a frame measure on the ground, as its request says it: directly, by its camera, or by the drone's
+// notes in its file.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/detect/frame_camera.hpp"
+#include "server/api/fields.hpp"
+
+namespace roadfix::api {
+
+const std::vector<std::string>& frame_scale_fields();
+
+struct FrameScale {
+  double gsd_m = 0.0;                 ///< of a frame seen from straight above; 0 = by the camera
+  std::optional<FrameCamera> camera;  ///< where there is no gsd_m
+  bool in_file = false;               ///< the camera was read from the picture's file
+};
+
+/// `picture` are the bytes of the frame's file. Throws InvalidField, and InvalidInput "camera-not-in-file".
+FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);
+
+/// A camera that was read from a file, by the names of the fields that would tell it.
+nlohmann::json to_json(const FrameCamera& camera);
+
+}  // namespace roadfix::api

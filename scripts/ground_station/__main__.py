@@ -1,0 +1,130 @@
+"""A client of `roadfix serve` for ground stations and companion computers, in Python's standard library alone: a line
+of JSON in for each step, a line with the answer out.
+
+  {"time_us": 1700000000000000, "north_m": 12.5, "east_m": -3.0, "yaw_deg": 91.2, "image": "0001.jpg"}
+
+- north_m, east_m, yaw_deg: where the vehicle's own estimator believes to be, in its local frame. Origin and drift of
+  the frame do not matter: steps say the movement since the last one. yaw_deg, clockwise from north, is that of the
+  picture's upper edge.
+- image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.
+- time_us: when the frame was captured, increasing. Without it: now.
+- All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m ...
+"""
+import argparse
+import json
+import math
+import pathlib
+import socket
+import sys
+import time
+
+from service import Refused, Service, Silent
+from steps import NewestLine, all_lines, read_step
+from track import Track
+
+#: These carry no age: a late position would move a flying vehicle back to where it was.
+FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
+FORMATS = FORMATS_WITHOUT_AGE + ("global_position_sensor", "command_int")
+
+
+def parse_setting(text):
+    """NAME=VALUE, the value as JSON where it is some."""
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"'{text}': write NAME=VALUE")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
+
+
+def parse_address(text):
+    host, colon, port = text.rpartition(":")
+    if not host or not colon or not port.isdigit():
+        raise argparse.ArgumentTypeError(f"'{text}': write HOST:PORT")
+    return host.strip("[]"), int(port)
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(
+        prog="ground_station", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="example: python3 scripts/ground_station --map city --track lat=37.76 lon=38.27 radius_m=2000 "
+               "--frame fov_deg=78 pitch_deg=0 --live --format gps_input --send 127.0.0.1:14550 < steps")
+    parser.add_argument("steps", nargs="?", help="file of steps (default: standard input)")
+    parser.add_argument("--server", default="http://127.0.0.1:8080",
+                        help="address of the service, with user:password@ for a proxy that asks (default: %(default)s)")
+    parser.add_argument("--map", required=True, help="name of the map")
+    parser.add_argument("--track", nargs="+", type=parse_setting, default=[], metavar="NAME=VALUE",
+                        help="where the track begins and what the vehicle is: lat, lon and radius_m, scale_range and "
+                             "other members of POST /v1/tracks (default: anywhere on the map)")
+    parser.add_argument("--frame", nargs="+", type=parse_setting, default=[], metavar="NAME=VALUE",
+                        help="what is the same of all pictures: fov_deg, gsd_m, exif=true, cell_m of feature maps ...")
+    parser.add_argument("--live", action="store_true",
+                        help="of the steps that wait send only the newest; without it all of them, as of a recording")
+    parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
+    parser.add_argument("--patience", type=float, default=60.0, metavar="S",
+                        help="how long a step is sent again while the service is away or busy (default: %(default)g)")
+    parser.add_argument("--format", choices=FORMATS, help="message for the autopilot (docs/tracks.md)")
+    parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
+    parser.add_argument("--max-age", type=float, metavar="S",
+                        help="oldest message that is sent, counted since its step came (default: 0.5 of those that do not "
+                             "say their age: " + ", ".join(FORMATS_WITHOUT_AGE) + ")")
+    options = parser.parse_args(arguments)
+    if (options.format is None) != (options.send is None):
+        parser.error("--format and --send go together")
+    if options.max_age is None:
+        options.max_age = 0.5 if options.format in FORMATS_WITHOUT_AGE else math.inf
+    return options
+
+
+class Sender:
+    """Messages to an autopilot by UDP, unless they are too old."""
+
+    def __init__(self, address, max_age_s):
+        family, kind, protocol, _, self._address = socket.getaddrinfo(*address, type=socket.SOCK_DGRAM)[0]
+        self._socket = socket.socket(family, kind, protocol)
+        self._max_age_s = max_age_s
+
+    def send(self, packet, came):
+        age_s = time.monotonic() - came
+        if age_s > self._max_age_s:
+            print(f"a position is not sent: it is {age_s:.1f} s old", file=sys.stderr)
+        else:
+            self._socket.sendto(packet, self._address)
+
+
+def fly(lines, options):
+    """Whether all steps were taken."""
+    sender = Sender(options.send, options.max_age) if options.send else None
+    track = Track(Service(options.server, options.patience), {"map": options.map, **dict(options.track)}, options.state)
+    folder = pathlib.Path(options.steps or ".").parent
+    all_taken = True
+    for line in NewestLine(lines) if options.live else all_lines(lines):
+        try:
+            place, fields, image = read_step(line, folder, dict(options.frame))
+            send = sender and (lambda packet, came=line.came: sender.send(packet, came))
+            answer = track.step(place, fields, image, options.format, send)
+        except (ValueError, OSError, Refused, Silent) as error:
+            print(f"line {line.number}: {error}", file=sys.stderr)
+            all_taken = False
+            continue
+        print(json.dumps(answer), flush=True)
+    return all_taken
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    try:
+        if options.steps is None:
+            return 0 if fly(sys.stdin, options) else 1
+        with open(options.steps, encoding="utf-8") as lines:
+            return 0 if fly(lines, options) else 1
+    except (ValueError, OSError) as error:
+        print(f"ground_station: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

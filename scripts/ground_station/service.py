@@ -1,0 +1,90 @@
+"""HTTP with the service: what it refuses, and patience while it is away or busy."""
+import base64
+import http.client
+import json
+import time
+import urllib.parse
+
+ANSWER_TIME_S = 90.0  # a search may wait its turn for 30 s and take as long
+BUSY = (429, 502, 503, 504)
+
+
+class Silent(Exception):
+    """The service did not take a request within the client's patience; it may have taken it without being heard."""
+
+
+class Refused(Exception):
+    """The service's problem (RFC 9457): `status`, `code`, and what to do."""
+
+    def __init__(self, status, problem):
+        super().__init__(f"{status} {problem.get('code', '?')}: {problem.get('detail', '?')}")
+        self.status = status
+        self.problem = problem
+        self.code = problem.get("code")
+
+
+class Service:
+    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them."""
+
+    def __init__(self, url, patience_s=60.0):
+        self._url = urllib.parse.urlsplit(url)
+        if self._url.scheme not in ("http", "https") or not self._url.hostname:
+            raise ValueError(f"'{url}' is no address of a service: write http://HOST:PORT")
+        self._patience_s = patience_s
+        self._connection = None
+
+    def close(self):
+        if self._connection is not None:
+            self._connection.close()
+        self._connection = None
+
+    def ask(self, method, path, body=b"", content_type=None):
+        """The bytes of the answer, None for 204. Sends again while the service is away or busy."""
+        give_up = time.monotonic() + self._patience_s
+        pause_s = 0.05
+        while True:
+            wait_s = pause_s
+            try:
+                answer, content = self._send(method, path, body, content_type)
+                if answer.status not in BUSY:
+                    return self._checked(answer, content)
+                reason = str(Refused(answer.status, self._problem(content)))
+                wait_s = max(wait_s, self._retry_after_s(answer))
+            except (OSError, http.client.HTTPException) as error:
+                self.close()
+                reason = str(error) or type(error).__name__
+            if time.monotonic() + wait_s > give_up:
+                raise Silent(f"no answer of {self._url.hostname} within {self._patience_s:g} s ({reason})")
+            time.sleep(wait_s)
+            pause_s = min(2.0 * pause_s, 2.0)
+
+    def _send(self, method, path, body, content_type):
+        if self._connection is None:
+            secure = self._url.scheme == "https"
+            kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
+            self._connection = kind(self._url.hostname, self._url.port, timeout=ANSWER_TIME_S)
+        headers = {"Content-Type": content_type} if content_type else {}
+        if self._url.username is not None:
+            pair = f"{urllib.parse.unquote(self._url.username)}:{urllib.parse.unquote(self._url.password or '')}"
+            headers["Authorization"] = "Basic " + base64.b64encode(pair.encode()).decode()
+        self._connection.request(method, self._url.path.rstrip("/") + path, body, headers)
+        answer = self._connection.getresponse()
+        return answer, answer.read()
+
+    def _checked(self, answer, content):
+        if answer.status >= 400:
+            raise Refused(answer.status, self._problem(content))
+        return None if answer.status == 204 else content
+
+    @staticmethod
+    def _problem(content):
+        try:
+            problem = json.loads(content)
+        except ValueError:
+            problem = None
+        return problem if isinstance(problem, dict) else {"detail": content[:200].decode(errors="replace")}
+
+    @staticmethod
+    def _retry_after_s(answer):
+        value = answer.headers.get("Retry-After", "")
+        return float(value) if value.isdigit() else 0.0

@@ -1,0 +1,87 @@
+"""Steps as lines of JSON."""
+import json
+import pathlib
+import threading
+import time
+from typing import NamedTuple, Optional
+
+CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
+
+
+class Line(NamedTuple):
+    """A line and when it came, by time.monotonic(). `step` is what it says, None where it is no JSON object."""
+    number: int
+    came: float
+    step: Optional[dict]
+
+    @property
+    def has_picture(self):
+        return self.step is not None and self.step.get("image") is not None
+
+
+def _line(number, text):
+    try:
+        step = json.loads(text)
+    except ValueError:
+        step = None
+    return Line(number, time.monotonic(), step if isinstance(step, dict) else None)
+
+
+def all_lines(texts):
+    """Of a recording."""
+    for number, text in enumerate(texts, 1):
+        if text.strip():
+            yield _line(number, text)
+
+
+class NewestLine:
+    """Of a flight under way: of the lines that came since the last only the newest. A late frame is of no use, and
+    since movements are taken from places nothing is lost with it. A step without a picture displaces none with one."""
+
+    def __init__(self, texts):
+        self._changed = threading.Condition()
+        self._waiting = None
+        self._ended = False
+        threading.Thread(target=self._read, args=(texts,), daemon=True).start()
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting or self._ended)
+            line, self._waiting = self._waiting, None
+        if line is None:
+            raise StopIteration
+        return line
+
+    def _read(self, texts):
+        for line in all_lines(texts):
+            with self._changed:
+                if not (self._waiting and self._waiting.has_picture and not line.has_picture):
+                    self._waiting = line
+                self._changed.notify()
+        with self._changed:
+            self._ended = True
+            self._changed.notify()
+
+
+def read_step(line, folder, frame_fields):
+    """Place, fields and picture of a line. `frame_fields` are the same of all pictures. Throws ValueError, OSError."""
+    if line.step is None:
+        raise ValueError("a step is a JSON object, in one line")
+    step = dict(line.step)
+    try:
+        place = tuple(float(step.pop(name)) for name in ("north_m", "east_m", "yaw_deg"))
+    except KeyError as missing:
+        raise ValueError(f"a step needs {missing.args[0]}") from None
+    except TypeError:
+        raise ValueError("north_m, east_m and yaw_deg are numbers") from None
+    file = step.pop("image", None)
+    fields = {"time_us": time.time_ns() // 1000, **step}
+    if file is None:
+        return place, fields, None
+    fields = {**frame_fields, **fields}
+    if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
+        fields["kind"] = "frame"
+    return place, fields, pathlib.Path(folder, file).read_bytes()

@@ -1,0 +1,119 @@
+"""Makes steps for scripts/ground_station of what an autopilot tells by MAVLink and of pictures that a camera writes into
+a folder: a line of JSON for each picture.
+
+  ffmpeg -i rtsp://CAMERA/stream -vf fps=1 frames/%06d.jpg &
+  python3 scripts/mavlink_steps --listen 14551 --watch frames --camera level |
+    python3 scripts/ground_station --map city --frame fov_deg=78 --live
+
+Movements are the sum of velocities: of LOCAL_POSITION_NED, or with --by-air of airspeed and heading (VFR_HUD, ATTITUDE;
+give the track wind_sigma_m_s). Heights are those above ground of ALTITUDE (PX4) or TERRAIN_REPORT (ArduPilot), else
+above the take-off. A picture was taken when its file was last written, less --delay.
+"""
+import argparse
+import json
+import math
+import select
+import socket
+import sys
+import time
+
+from packets import messages
+from pictures import NewPictures
+from vehicle import LONGEST_HOLE_S, Unknown, Vehicle, turned
+
+LOOK_S = 0.1  # between two looks into the folder
+WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
+
+
+def parse_address(text):
+    host, _, port = text.rpartition(":")
+    if not port.isdigit():
+        raise argparse.ArgumentTypeError(f"'{text}': write PORT or HOST:PORT")
+    return host.strip("[]") or "0.0.0.0", int(port)
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(prog="mavlink_steps", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--listen", type=parse_address, default=("0.0.0.0", 14551), metavar="[HOST:]PORT",
+                        help="where MAVLink comes in by UDP (default: 14551)")
+    parser.add_argument("--watch", required=True, metavar="FOLDER", help="folder into which the camera writes")
+    parser.add_argument("--system", type=int, help="the vehicle's system id (default: that of the first message)")
+    parser.add_argument("--camera", choices=("body", "level"), required=True,
+                        help="body: fixed to the airframe, looking down; level: held straight down by a gimbal")
+    parser.add_argument("--camera-yaw", type=float, default=0.0, metavar="DEGREES",
+                        help="where the picture's upper edge points, clockwise from the nose (default: 0)")
+    parser.add_argument("--by-air", action="store_true", help="movements by airspeed and heading")
+    parser.add_argument("--agl", type=float, metavar="M", help="height above ground, instead of what the autopilot tells")
+    parser.add_argument("--takeoff-agl", type=float, default=0.0, metavar="M",
+                        help="how much higher than the ground in the pictures the take-off lay (default: 0)")
+    parser.add_argument("--delay", type=float, default=0.0, metavar="S",
+                        help="from the capture of a picture to its file (default: 0)")
+    return parser.parse_args(arguments)
+
+
+def step_of(path, captured, vehicle, options):
+    """Throws Unknown."""
+    (north_m, east_m), attitude = vehicle.seen_at(captured)
+    if options.camera == "level":
+        attitude = (0.0, 0.0, attitude[2])
+    roll, pitch, yaw = turned(attitude, math.radians(options.camera_yaw))
+    agl_m = options.agl if options.agl is not None else vehicle.agl_m()
+    if agl_m <= 0.0:
+        raise Unknown(f"it was taken {agl_m:.1f} m above ground")
+    return {"time_us": round(captured * 1e6), "north_m": round(north_m, 3), "east_m": round(east_m, 3),
+            "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
+            "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2), "image": str(path)}
+
+
+def hear(link, vehicle, system):
+    """Takes what has come; gives the system that is listened to."""
+    came = time.time()
+    for message in messages(link.recv(65535)):
+        system = message.system if system is None else system
+        if message.system == system:
+            vehicle.hear(message.name, message.fields, came)
+    return system
+
+
+def follow(link, pictures, vehicle, options):
+    system = options.system
+    waiting = []
+    looked = -math.inf
+    while True:
+        if select.select([link], [], [], LOOK_S)[0]:
+            system = hear(link, vehicle, system)
+        if time.monotonic() < looked + LOOK_S:
+            continue
+        looked = time.monotonic()
+        waiting += [(path, written - options.delay) for path, written in pictures()]
+        while waiting and (vehicle.knows(waiting[0][1]) or time.time() > waiting[0][1] + options.delay + WAIT_S):
+            path, captured = waiting.pop(0)
+            try:
+                print(json.dumps(step_of(path, captured, vehicle, options)), flush=True)
+                hole_s = vehicle.longest_hole_s()
+                if hole_s > LONGEST_HOLE_S:
+                    print(f"{path}: no velocity for {hole_s:.0f} s before it: the movement is a guess", file=sys.stderr)
+            except Unknown as why:
+                print(f"{path} is left out: {why}", file=sys.stderr)
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    vehicle = Vehicle(options.by_air, options.takeoff_agl)
+    try:
+        pictures = NewPictures(options.watch)
+        family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
+        with socket.socket(family, socket.SOCK_DGRAM) as link:
+            link.bind(options.listen)
+            print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)
+            follow(link, pictures, vehicle, options)
+    except OSError as error:
+        print(f"mavlink_steps: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

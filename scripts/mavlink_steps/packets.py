@@ -1,0 +1,71 @@
+"""MAVLink 1 and 2 packets (https://mavlink.io/en/guide/serialization.html) and the messages that tell how a vehicle
+moves, by common.xml."""
+import struct
+from typing import NamedTuple
+
+#: id: name, CRC_EXTRA, wire order of the fields that are used
+MESSAGES = {
+    30: ("ATTITUDE", 39, "<Ifff", ("time_boot_ms", "roll", "pitch", "yaw")),
+    32: ("LOCAL_POSITION_NED", 185, "<I6f", ("time_boot_ms", "x", "y", "z", "vx", "vy", "vz")),
+    74: ("VFR_HUD", 20, "<f", ("airspeed",)),
+    136: ("TERRAIN_REPORT", 1, "<iiffH", ("lat", "lon", "terrain_height", "current_height", "spacing")),
+    141: ("ALTITUDE", 47, "<Q6f", ("time_usec", "altitude_monotonic", "altitude_amsl", "altitude_local",
+                                   "altitude_relative", "altitude_terrain", "bottom_clearance")),
+}
+
+
+class Message(NamedTuple):
+    system: int
+    component: int
+    name: str
+    fields: dict
+
+
+def crc(data):
+    """CRC-16/MCRF4XX."""
+    value = 0xFFFF
+    for byte in data:
+        byte ^= value & 0xFF
+        byte ^= byte << 4 & 0xFF
+        value = value >> 8 ^ byte << 8 ^ byte << 3 ^ byte >> 4
+    return value & 0xFFFF
+
+
+def _packet_at(data, at):
+    """System, component, id, payload, the bytes that the CRC is of, the CRC, and where the packet ends; None for none."""
+    if data[at] == 0xFD and at + 12 <= len(data):
+        length, signed, message = data[at + 1], data[at + 2] & 1, int.from_bytes(data[at + 7:at + 10], "little")
+        system, component, begin = data[at + 5], data[at + 6], at + 10
+    elif data[at] == 0xFE and at + 8 <= len(data):
+        length, signed, message = data[at + 1], 0, data[at + 5]
+        system, component, begin = data[at + 3], data[at + 4], at + 6
+    else:
+        return None
+    end = begin + length
+    if end + 2 > len(data):
+        return None
+    told = int.from_bytes(data[end:end + 2], "little")
+    return system, component, message, data[begin:end], data[at + 1:end], told, end + 2 + 13 * signed
+
+
+def messages(data):
+    """Those of MESSAGES in a datagram. What is damaged, or something else, is left out."""
+    at = 0
+    while at < len(data):
+        packet = _packet_at(data, at)
+        if packet is None:
+            at += 1
+            continue
+        system, component, number, payload, checked, told, end = packet
+        known = MESSAGES.get(number)
+        if known is None:
+            at = end
+            continue
+        name, extra, layout, fields = known
+        if crc(checked + bytes([extra])) != told:
+            at += 1
+            continue
+        size = struct.calcsize(layout)
+        values = struct.unpack(layout, payload[:size].ljust(size, b"\0"))  # zeros at the end are not sent
+        yield Message(system, component, name, dict(zip(fields, values)))
+        at = end

@@ -1,0 +1,134 @@
+"""Where a vehicle was, which way it looked and how high it was, from what its autopilot tells."""
+import collections
+import math
+
+KEPT = 3000           # some minutes of telemetry
+LONGEST_HOLE_S = 2.0  # beyond it what lies between two messages is a guess
+
+
+class Unknown(Exception):
+    """What is not known of the vehicle at a time."""
+
+
+class BootClock:
+    """The autopilot's time since its start, as seconds of ours: messages are late by different amounts, so the least
+    late one counts. It may be forgotten by 0.1 ms a second, since clocks drift."""
+
+    def __init__(self):
+        self._offset = None
+        self._last = 0.0
+
+    def ours(self, boot_s, came):
+        if self._offset is None or boot_s < self._last - 1.0:  # the autopilot was started again
+            self._offset = came - boot_s
+        else:
+            self._offset = min(came - boot_s, self._offset + 1e-4 * max(0.0, boot_s - self._last))
+        self._last = boot_s
+        return boot_s + self._offset
+
+
+def _finite(*values):
+    return all(map(math.isfinite, values))
+
+
+def between(history, when, what):
+    """Values at a time, between those before and after; the last ones for a while after it."""
+    if not history or when < history[0][0] - LONGEST_HOLE_S or when > history[-1][0] + LONGEST_HOLE_S:
+        raise Unknown(f"no {what} of that time")
+    after = next((i for i in range(len(history) - 1, -1, -1) if history[i][0] <= when), -1) + 1
+    if after in (0, len(history)):
+        return history[min(after, len(history) - 1)][1:]
+    (t0, *before), (t1, *then) = history[after - 1], history[after]
+    if t1 - t0 > LONGEST_HOLE_S:
+        raise Unknown(f"no {what} of that time")
+    share = (when - t0) / (t1 - t0)
+    return tuple(a + share * (b - a) for a, b in zip(before, then))
+
+
+def turned(attitude, yaw):
+    """Roll, pitch and yaw (radians, aerospace convention) of a camera that is turned in the airframe about its
+    downward axis, clockwise seen from above."""
+    roll, pitch, heading = attitude
+    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+    cy, sy = math.cos(yaw), math.sin(yaw)
+    # Forward and right of the camera in axes that are level and point to the heading; down stays as it is.
+    forward = (cy * cp + sy * sr * sp, sy * cr, -cy * sp + sy * sr * cp)
+    right_down = sy * sp + cy * sr * cp
+    return (math.atan2(right_down, cr * cp), math.asin(max(-1.0, min(1.0, -forward[2]))),
+            heading + math.atan2(forward[1], forward[0]))
+
+
+class Vehicle:
+    """`by_air`: movements from airspeed and heading, as a track with wind_sigma_m_s takes them, instead of from the
+    estimator's velocity over ground. Positions are not used: they jump where the autopilot is told better ones."""
+
+    def __init__(self, by_air=False, takeoff_agl_m=0.0):
+        self._by_air = by_air
+        self._takeoff_agl_m = takeoff_agl_m
+        self._clock = BootClock()
+        self._places = collections.deque(maxlen=KEPT)     # time, north, east
+        self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
+        self._velocity = None
+        self._hole_s = 0.0
+        self._above_takeoff_m = None
+        self._above_ground_m = None
+
+    def hear(self, name, fields, came):
+        if not _finite(*fields.values()):
+            return
+        if name == "ATTITUDE":
+            self._turn(fields, self._clock.ours(fields["time_boot_ms"] / 1e3, came))
+        elif name == "LOCAL_POSITION_NED":
+            self._above_takeoff_m = -fields["z"]
+            if not self._by_air:
+                self._move((fields["vx"], fields["vy"]), self._clock.ours(fields["time_boot_ms"] / 1e3, came))
+        elif name == "VFR_HUD" and self._by_air and self._attitudes:
+            yaw = self._attitudes[-1][3]
+            self._move((fields["airspeed"] * math.cos(yaw), fields["airspeed"] * math.sin(yaw)), came)
+        elif name == "TERRAIN_REPORT" and fields["spacing"] > 0:
+            self._above_ground_m = fields["current_height"]
+        elif name == "ALTITUDE" and fields["bottom_clearance"] > 0.0:
+            self._above_ground_m = fields["bottom_clearance"]
+
+    def seen_at(self, when):
+        """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
+        place = between(self._places, when, "VFR_HUD" if self._by_air else "LOCAL_POSITION_NED")
+        return place, between(self._attitudes, when, "ATTITUDE")
+
+    def agl_m(self):
+        if self._above_ground_m is not None:
+            return self._above_ground_m
+        if self._above_takeoff_m is None:
+            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED)")
+        return self._above_takeoff_m + self._takeoff_agl_m
+
+    def longest_hole_s(self):
+        """Between two velocities, since it was asked last."""
+        hole_s, self._hole_s = self._hole_s, 0.0
+        return hole_s
+
+    def knows(self, when):
+        """Whether messages of that time and later ones have come."""
+        return all(history and history[-1][0] >= when for history in (self._places, self._attitudes))
+
+    def _turn(self, fields, when):
+        yaw = fields["yaw"]
+        if self._attitudes:
+            if when <= self._attitudes[-1][0]:
+                return
+            last = self._attitudes[-1][3]
+            yaw = last + math.remainder(yaw - last, math.tau)
+        self._attitudes.append((when, fields["roll"], fields["pitch"], yaw))
+
+    def _move(self, velocity, when):
+        if not self._places:
+            self._places.append((when, 0.0, 0.0))
+        elif when > self._places[-1][0]:
+            last, north, east = self._places[-1]
+            half_s = 0.5 * (when - last)
+            self._hole_s = max(self._hole_s, when - last)
+            self._places.append((when, north + half_s * (self._velocity[0] + velocity[0]),
+                                 east + half_s * (self._velocity[1] + velocity[1])))
+        else:
+            return
+        self._velocity = velocity

@@ -55,6 +55,11 @@ export function moveTo(view, pose, zoom) {
   view.setView(inView(view, pose), Math.max(view.getZoom(), zoom), { animate: false });
 }
 
+/// No direction of a camera is known to less than a tenth of a degree, however sharp the match.
+export function headingText(pose, sigma) {
+  return `${degrees(pose.heading_deg, 1)} ± ${degrees(Math.max(0.1, sigma), 1)}`;
+}
+
 function modeText(mode) {
   const [long, short] = mode.sigma_m;
   return `${place(mode.pose)}, heading ${degrees(mode.pose.heading_deg, 1)}, σ ${long.toFixed(1)} × ${short.toFixed(1)} m, weight ${mode.weight.toFixed(3)}`;
@@ -114,7 +119,7 @@ export function showFix(output, fix, picture) {
   showStatus(output, fix.status, [fix.explanation ?? fix.reason]);
   const rows = [['picture', picture], ...cameraRows(fix), ['answered', new Date().toLocaleTimeString()], ['probability', fix.probability.toFixed(4)]];
   if (fix.pose) {
-    rows.push(['position', place(fix.pose)], ['heading', `${degrees(fix.pose.heading_deg, 1)} ± ${degrees(fix.heading_sigma_deg, 1)}`]);
+    rows.push(['position', place(fix.pose)], ['heading', headingText(fix.pose, fix.heading_sigma_deg)]);
     rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m']);
   } else if (fix.modes.length) {
     rows.push(['hints', `${fix.modes.length}, not to be flown on`]);

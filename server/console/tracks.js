@@ -1,7 +1,7 @@
 // A track as the service has it now: a line of the places it was sure of, its last estimate with its ellipse, and how old
 // that is. It is asked for again and again and not read from the stream of events, in which a connection that hangs looks
 // like a vehicle that is silent, and steps that waited on a slow one look like news.
-import { drawModes, element, inView, moveTo, request, showOld, showProblem, showStatus, table } from './show.js';
+import { drawModes, element, headingText, inView, moveTo, request, showOld, showProblem, showStatus, table } from './show.js';
 
 const LIST_MS = 5000;
 const LOOK_MS = 1000;
@@ -118,7 +118,7 @@ export class Tracks {
       ['last step', chosen.age],
       ...(step.pose ? [
         ['position', `${step.pose.lat.toFixed(6)}, ${step.pose.lon.toFixed(6)}`],
-        ['heading', `${step.pose.heading_deg.toFixed(1)}° ± ${step.heading_sigma_deg.toFixed(1)}°`],
+        ['heading', headingText(step.pose, step.heading_sigma_deg)],
       ] : []),
       ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
       ['map', chosen.track.map.name],

@@ -6,13 +6,15 @@ of JSON in for each step, a line with the answer out.
 - north_m, east_m, yaw_deg: where the vehicle's own estimator believes to be, in its local frame. Origin and drift of
   the frame do not matter: steps say the movement since the last one. yaw_deg, clockwise from north, is that of the
   picture's upper edge.
+- origin: any text that is another one once the frame has another origin, as after a restart of the estimator. The track
+  then begins anew around the last place that was known.
 - image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.
 - time_us: when the frame was captured, increasing. Without it: now.
 - All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m ...
 """
 import argparse
 import json
-import math
+import os
 import pathlib
 import socket
 import sys
@@ -20,11 +22,12 @@ import time
 
 from service import Refused, Service, Silent
 from steps import NewestLine, all_lines, read_step
-from track import Track
+from track import FORGOTTEN_S, Track
 
-#: These carry no age: a late position would move a flying vehicle back to where it was.
+#: These say nothing of their age: a late position would move a flying vehicle back to where it was.
 FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
-FORMATS = FORMATS_WITHOUT_AGE + ("global_position_sensor", "command_int")
+#: These say how long the service took, but nothing of what was before.
+FORMATS_WITH_AGE = ("global_position_sensor", "command_int")
 
 
 def parse_setting(text):
@@ -64,16 +67,15 @@ def parse_arguments(arguments):
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
     parser.add_argument("--patience", type=float, default=60.0, metavar="S",
                         help="how long a step is sent again while the service is away or busy (default: %(default)g)")
-    parser.add_argument("--format", choices=FORMATS, help="message for the autopilot (docs/tracks.md)")
+    parser.add_argument("--format", choices=FORMATS_WITHOUT_AGE + FORMATS_WITH_AGE, help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
-    parser.add_argument("--max-age", type=float, metavar="S",
-                        help="oldest message that is sent, counted since its step came (default: 0.5 of those that do not "
-                             "say their age: " + ", ".join(FORMATS_WITHOUT_AGE) + ")")
+    parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
+                        help="oldest message that is sent, counted from time_us where that is of this computer's clock, "
+                             "else from when its line came; the time that the service took does not count in messages "
+                             "that say it: " + ", ".join(FORMATS_WITH_AGE) + " (default: %(default)g)")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
-    if options.max_age is None:
-        options.max_age = 0.5 if options.format in FORMATS_WITHOUT_AGE else math.inf
     return options
 
 
@@ -85,25 +87,39 @@ class Sender:
         self._socket = socket.socket(family, kind, protocol)
         self._max_age_s = max_age_s
 
-    def send(self, packet, came):
-        age_s = time.monotonic() - came
+    def send(self, packet, age_s):
         if age_s > self._max_age_s:
             print(f"a position is not sent: it is {age_s:.1f} s old", file=sys.stderr)
-        else:
+            return
+        try:
             self._socket.sendto(packet, self._address)
+        except OSError as error:  # the step is taken all the same
+            print(f"a position is not sent: {error}", file=sys.stderr)
+
+
+def captured(line, step):
+    """When, by time.monotonic(). A recording has a clock of its own."""
+    ago_s = time.time() - 1e-6 * step.fields["time_us"]
+    return min(line.came, time.monotonic() - ago_s) if 0.0 <= ago_s < FORGOTTEN_S else line.came
 
 
 def fly(lines, options):
     """Whether all steps were taken."""
     sender = Sender(options.send, options.max_age) if options.send else None
-    track = Track(Service(options.server, options.patience), {"map": options.map, **dict(options.track)}, options.state)
+    service = Service(options.server, options.patience)
+    track = Track(service, {"map": options.map, **dict(options.track)}, options.state)
     folder = pathlib.Path(options.steps or ".").parent
     all_taken = True
     for line in NewestLine(lines) if options.live else all_lines(lines):
         try:
-            place, fields, image = read_step(line, folder, dict(options.frame))
-            send = sender and (lambda packet, came=line.came: sender.send(packet, came))
-            answer = track.step(place, fields, image, options.format, send)
+            step = read_step(line, folder, dict(options.frame))
+            since = captured(line, step)
+
+            def send(packet, since=since):
+                until = service.asked if options.format in FORMATS_WITH_AGE else time.monotonic()
+                sender.send(packet, until - since)
+
+            answer = track.step(step.place, step.fields, step.image, step.origin, options.format, send)
         except (ValueError, OSError, Refused, Silent) as error:
             print(f"line {line.number}: {error}", file=sys.stderr)
             all_taken = False
@@ -119,6 +135,9 @@ def main(arguments=None):
             return 0 if fly(sys.stdin, options) else 1
         with open(options.steps, encoding="utf-8") as lines:
             return 0 if fly(lines, options) else 1
+    except BrokenPipeError:  # nobody reads the answers any more
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except (ValueError, OSError) as error:
         print(f"ground_station: {error}", file=sys.stderr)
         return 1

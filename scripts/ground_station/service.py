@@ -2,6 +2,7 @@
 import base64
 import http.client
 import json
+import math
 import time
 import urllib.parse
 
@@ -24,7 +25,8 @@ class Refused(Exception):
 
 
 class Service:
-    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them."""
+    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them. `asked` is when the
+    request that was answered last was sent, by time.monotonic()."""
 
     def __init__(self, url, patience_s=60.0):
         self._url = urllib.parse.urlsplit(url)
@@ -32,6 +34,7 @@ class Service:
             raise ValueError(f"'{url}' is no address of a service: write http://HOST:PORT")
         self._patience_s = patience_s
         self._connection = None
+        self.asked = -math.inf
 
     def close(self):
         if self._connection is not None:
@@ -44,6 +47,7 @@ class Service:
         pause_s = 0.05
         while True:
             wait_s = pause_s
+            self.asked = time.monotonic()
             try:
                 answer, content = self._send(method, path, body, content_type)
                 if answer.status not in BUSY:

@@ -49,7 +49,8 @@ class NewestLine:
 
     def __next__(self):
         with self._changed:
-            self._changed.wait_for(lambda: self._waiting or self._ended)
+            while not self._changed.wait_for(lambda: self._waiting or self._ended, timeout=1.0):
+                pass  # without a limit Ctrl-C would not be heard everywhere
             line, self._waiting = self._waiting, None
         if line is None:
             raise StopIteration
@@ -66,8 +67,15 @@ class NewestLine:
             self._changed.notify()
 
 
+class Step(NamedTuple):
+    place: tuple
+    origin: Optional[str]
+    fields: dict
+    image: Optional[bytes]
+
+
 def read_step(line, folder, frame_fields):
-    """Place, fields and picture of a line. `frame_fields` are the same of all pictures. Throws ValueError, OSError."""
+    """What a line says. `frame_fields` are the same of all pictures. Throws ValueError, OSError."""
     if line.step is None:
         raise ValueError("a step is a JSON object, in one line")
     step = dict(line.step)
@@ -77,11 +85,14 @@ def read_step(line, folder, frame_fields):
         raise ValueError(f"a step needs {missing.args[0]}") from None
     except TypeError:
         raise ValueError("north_m, east_m and yaw_deg are numbers") from None
+    origin = step.pop("origin", None)
     file = step.pop("image", None)
     fields = {"time_us": time.time_ns() // 1000, **step}
+    if not isinstance(fields["time_us"], (int, float)):
+        raise ValueError("time_us is a number")
     if file is None:
-        return place, fields, None
+        return Step(place, origin, fields, None)
     fields = {**frame_fields, **fields}
     if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
         fields["kind"] = "frame"
-    return place, fields, pathlib.Path(folder, file).read_bytes()
+    return Step(place, origin, fields, pathlib.Path(folder, file).read_bytes())

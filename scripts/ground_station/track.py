@@ -3,12 +3,17 @@ import json
 import math
 import os
 import pathlib
+import time
 import urllib.parse
 
 from service import Refused
 
 TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced")
 PRIOR = ("lat", "lon", "radius_m", "bbox")
+#: What was known longer ago is of another flight.
+FORGOTTEN_S = 600.0
+FASTEST_M_S = 50.0
+WIDEST_M = 10_000.0  # beyond it the last place says too little to begin a track around it
 
 
 def movement(before, now):
@@ -37,7 +42,7 @@ def as_query(fields):
 
 class Track:
     """A flight that the service follows. `request`: the members of POST /v1/tracks. With `state_file` a client that
-    was restarted goes on with the track that it had."""
+    was restarted goes on with the track that it had, unless that was long ago."""
 
     def __init__(self, service, request, state_file=None):
         self._service = service
@@ -45,40 +50,49 @@ class Track:
         self._file = pathlib.Path(state_file) if state_file else None
         self._state = {}
         if self._file and self._file.exists():
-            self._state = json.loads(self._file.read_text())
-            if self._state.get("map") != request["map"]:
-                raise ValueError(f"{self._file} is of a track over the map '{self._state.get('map')}': remove it, or "
-                                 "name another file")
+            state = json.loads(self._file.read_text())
+            if not isinstance(state, dict) or state.get("map") != request["map"]:
+                raise ValueError(f"{self._file} is not of a track over the map '{request['map']}': remove it, or name "
+                                 "another file")
+            if 0.0 <= time.time() - state.get("taken_s", -math.inf) < FORGOTTEN_S:
+                self._state = state
 
     @property
     def id(self):
         return self._state.get("id")
 
-    def step(self, place, fields, image=None, packet_format=None, send=None):
-        """The answer to a step. `place`: (north_m, east_m, yaw_deg); `fields`: time_us and other fields of a step;
-        `send` is called with the message for the autopilot in `packet_format`, if there is one."""
+    def step(self, place, fields, image=None, origin=None, packet_format=None, send=None):
+        """The answer to a step. `place`: (north_m, east_m, yaw_deg); where `origin` is another one than before, places
+        are too, and the movement between is not known. `fields`: time_us and other fields of a step; `send` is called
+        with the message for the autopilot in `packet_format`, if there is one."""
         if not self.id:
-            self._begin(self._request)
+            self._begin(self._request, origin)
+        elif origin != self._state["origin"]:
+            self._begin(self._request_near_the_last_place(), origin)
         try:
             return self._step(place, fields, image, packet_format, send)
         except Refused as refusal:
             if refusal.code not in TRACK_IS_GONE:
                 raise
         # The same map may have another version, or the service was away for longer than it keeps a silent track.
-        self._begin(self._request_near_the_last_place(place))
+        self._begin(self._request_near_the_last_place(), origin)
         return self._step(place, fields, image, packet_format, send)
 
-    def _begin(self, request):
+    def _begin(self, request, origin):
         track = json.loads(self._service.ask("POST", "/v1/tracks", json.dumps(request).encode(), "application/json"))
-        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "known": self._state.get("known")})
+        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
+                    "known": self._state.get("known"), "taken_s": time.time()})
 
-    def _request_near_the_last_place(self, place):
+    def _request_near_the_last_place(self):
         """Around the place that was known last, as far as the vehicle may have flown since."""
-        if not self._state.get("known"):
+        known = self._state.get("known")
+        if not known:
             return self._request
-        known = farther(self._state["known"], self._moved_to(place))
+        since_s = max(0.0, time.time() - self._state["taken_s"])
+        radius_m = 100.0 + 5.0 * known["sigma_m"] + known["flown_m"] + FASTEST_M_S * since_s
+        if radius_m > WIDEST_M:
+            return self._request
         rest = {name: value for name, value in self._request.items() if name not in PRIOR}
-        radius_m = 100.0 + 5.0 * known["sigma_m"] + known["flown_m"]
         return {**rest, "lat": known["lat"], "lon": known["lon"], "radius_m": radius_m}
 
     def _moved_to(self, place):
@@ -90,7 +104,7 @@ class Track:
         numbered = {**fields, "sequence": before["sequence"] + 1, **moved}
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
         self._keep({**before, "sequence": numbered["sequence"], "place": list(place),
-                    "known": farther(before["known"], moved)})
+                    "known": farther(before["known"], moved), "taken_s": time.time()})
         try:
             if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
                 packet = self._post({**numbered, "format": packet_format}, image)
@@ -117,5 +131,5 @@ class Track:
         self._state = state
         if self._file:
             written = self._file.with_name(self._file.name + ".part")
-            written.write_text(json.dumps(state))
+            written.write_text(json.dumps(self._state))
             os.replace(written, self._file)

@@ -12,10 +12,12 @@ above the take-off. A picture was taken when its file was last written, less --d
 import argparse
 import json
 import math
+import os
 import select
 import socket
 import sys
 import time
+import uuid
 
 from packets import messages
 from pictures import NewPictures
@@ -49,6 +51,7 @@ def parse_arguments(arguments):
                         help="how much higher than the ground in the pictures the take-off lay (default: 0)")
     parser.add_argument("--delay", type=float, default=0.0, metavar="S",
                         help="from the capture of a picture to its file (default: 0)")
+    parser.set_defaults(origin=uuid.uuid4().hex)  # sums of velocities begin anew with each start
     return parser.parse_args(arguments)
 
 
@@ -61,16 +64,19 @@ def step_of(path, captured, vehicle, options):
     agl_m = options.agl if options.agl is not None else vehicle.agl_m()
     if agl_m <= 0.0:
         raise Unknown(f"it was taken {agl_m:.1f} m above ground")
-    return {"time_us": round(captured * 1e6), "north_m": round(north_m, 3), "east_m": round(east_m, 3),
-            "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
-            "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2), "image": str(path)}
+    return {"time_us": round(captured * 1e6), "origin": options.origin, "north_m": round(north_m, 3),
+            "east_m": round(east_m, 3), "yaw_deg": round(math.degrees(yaw) % 360.0, 3),
+            "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3),
+            "agl_m": round(agl_m, 2), "image": str(path)}
 
 
 def hear(link, vehicle, system):
     """Takes what has come; gives the system that is listened to."""
     came = time.time()
     for message in messages(link.recv(65535)):
-        system = message.system if system is None else system
+        if system is None:
+            system = message.system
+            print(f"listening to system {system}", file=sys.stderr)
         if message.system == system:
             vehicle.hear(message.name, message.fields, came)
     return system
@@ -108,6 +114,9 @@ def main(arguments=None):
             link.bind(options.listen)
             print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)
             follow(link, pictures, vehicle, options)
+    except BrokenPipeError:  # nobody reads the steps any more
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except OSError as error:
         print(f"mavlink_steps: {error}", file=sys.stderr)
         return 1

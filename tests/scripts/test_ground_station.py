@@ -6,6 +6,8 @@ import json
 import math
 import os
 import random
+import socket
+import subprocess
 import sys
 import tempfile
 import threading
@@ -13,7 +15,8 @@ import time
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "ground_station"))
+PROGRAM = Path(__file__).resolve().parents[2] / "scripts" / "ground_station"
+sys.path.insert(0, str(PROGRAM))
 
 from service import Refused, Service, Silent  # noqa: E402
 from steps import NewestLine, all_lines, read_step  # noqa: E402
@@ -24,7 +27,7 @@ class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
     taken; then 200."""
 
-    def __init__(self, script=()):
+    def __init__(self, script=(), delay_s=0.0):
         self.script = list(script)
         self.requests = []
         fake = self
@@ -37,6 +40,7 @@ class FakeService:
 
             def do_POST(self):
                 body = self.rfile.read(int(self.headers["Content-Length"]))
+                time.sleep(delay_s if "/steps" in self.path else 0.0)
                 said = fake.script.pop(0) if fake.script and "/steps" in self.path else 200
                 if said == "hang up":
                     self.close_connection = True
@@ -46,7 +50,7 @@ class FakeService:
                     self.close_connection = True
                     return
                 status, answer = said if isinstance(said, tuple) else (said, {"code": "busy", "detail": "later"})
-                if status == 200:
+                if said == 200:
                     answer = {"id": "T"} if self.path == "/v1/tracks" else {"status": "searching"}
                 content = json.dumps(answer).encode()
                 self.send_response(status)
@@ -57,7 +61,7 @@ class FakeService:
                 self.wfile.write(content)
 
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True).start()
         self.url = f"http://127.0.0.1:{self.server.server_address[1]}"
 
     def __enter__(self):
@@ -130,11 +134,47 @@ class Steps(unittest.TestCase):
             self.assertEqual(fake.steps()[-1]["sequence"], 1)
             self.assertNotIn("forward_m", fake.steps()[-1])
 
+    def begun(self, fake):
+        """What the last track was begun with."""
+        return json.loads([body for path, body, _ in fake.requests if path == "/v1/tracks"][-1])
+
+    def test_begin_a_new_track_around_the_last_known_place_where_the_origin_is_another(self):
+        converged = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
+        with FakeService([converged]) as fake:
+            track, _ = self.fly(fake, 2)  # 10 m from the known place
+            track.step((900.0, 0.0, 0.0), {"time_us": 3}, origin="restarted")
+            begun = self.begun(fake)
+            self.assertEqual((begun["lat"], begun["lon"]), (7.0, 8.0))
+            self.assertAlmostEqual(begun["radius_m"], 100.0 + 20.0 + 10.0, delta=50.0 * 2.0)
+            self.assertNotIn("forward_m", fake.steps()[-1])
+            track.step((930.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 30.0)
+
+    def test_forget_a_flight_of_long_ago(self):
+        converged = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
+        for age_s, tracks in ((60.0, 1), (3600.0, 2)):
+            with FakeService([converged]) as fake, tempfile.TemporaryDirectory() as folder:
+                state = Path(folder, "state.json")
+                self.fly(fake, 1, state_file=state)
+                kept = json.loads(state.read_text())
+                state.write_text(json.dumps({**kept, "taken_s": kept["taken_s"] - age_s}))
+                self.fly(fake, 1, state_file=state)
+                self.assertEqual([path for path, _, _ in fake.requests].count("/v1/tracks"), tracks)
+                self.assertEqual(self.begun(fake)["lat"], 1, "where the operator says")
+
+    def test_are_not_looked_for_around_a_place_that_was_known_too_far_away(self):
+        converged = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
+        with FakeService([converged]) as fake:
+            track, _ = self.fly(fake, 1)
+            track.step((20_000.0, 0.0, 0.0), {"time_us": 3})
+            track.step((0.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
+            self.assertEqual(self.begun(fake)["lat"], 1)
+
     def test_refuse_the_state_of_another_map(self):
         with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
             state = os.path.join(folder, "state.json")
             self.fly(fake, 1, state_file=state)
-            with self.assertRaisesRegex(ValueError, "over the map 'm'"):
+            with self.assertRaisesRegex(ValueError, "not of a track over the map 'other'"):
                 Track(Service(fake.url), {"map": "other"}, state)
 
     def test_carry_the_password_of_a_proxy(self):
@@ -150,16 +190,18 @@ class Lines(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "a.jpg").write_bytes(b"\xff\xd8")
             text = '{"north_m": 1, "east_m": 2, "yaw_deg": 3, "image": "a.jpg", "agl_m": 90}'
-            place, fields, image = read_step(next(all_lines([text])), folder, {"fov_deg": 78, "agl_m": 50})
+            place, origin, fields, image = read_step(next(all_lines([text])), folder, {"fov_deg": 78, "agl_m": 50})
             self.assertEqual(place, (1.0, 2.0, 3.0))
+            self.assertIsNone(origin)
             self.assertEqual(image, b"\xff\xd8")
             self.assertEqual((fields["kind"], fields["fov_deg"], fields["agl_m"]), ("frame", 78, 90))
             self.assertLess(abs(fields["time_us"] / 1e6 - time.time()), 60.0)
-            self.assertNotIn("kind", read_step(next(all_lines([text])), folder, {"cell_m": 2})[1])
+            self.assertNotIn("kind", read_step(next(all_lines([text])), folder, {"cell_m": 2}).fields)
 
     def test_that_cannot_be_read_say_so(self):
         for text, message in (("[1]", "JSON object"), ('{"north_m": 1, "east_m": 2}', "needs yaw_deg"),
-                              ('{"north_m": null, "east_m": 2, "yaw_deg": 0}', "are numbers")):
+                              ('{"north_m": null, "east_m": 2, "yaw_deg": 0}', "are numbers"),
+                              ('{"north_m": 1, "east_m": 2, "yaw_deg": 0, "time_us": "now"}', "time_us is a number")):
             with self.assertRaisesRegex(ValueError, message):
                 read_step(next(all_lines([text])), ".", {})
 
@@ -181,6 +223,58 @@ class Lines(unittest.TestCase):
 
     def test_that_wait_when_the_input_ends_are_still_given(self):
         self.assertEqual([line.number for line in NewestLine(io.StringIO("\n{}\n"))], [2])
+
+
+class Positions(unittest.TestCase):
+    """What reaches an autopilot of a step that was captured some time ago."""
+
+    def setUp(self):
+        self.autopilot = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(self.autopilot.close)
+        self.autopilot.bind(("127.0.0.1", 0))
+        self.autopilot.setblocking(False)
+
+    def sent(self, packet_format, script=(), captured_s_ago=0.0, delay_s=0.0):
+        steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": (time.time() - captured_s_ago) * 1e6})
+        with FakeService(script, delay_s) as fake:
+            program = subprocess.run(
+                [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", packet_format,
+                 "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1]], input=steps + "\n", capture_output=True,
+                text=True, timeout=60)
+        self.assertEqual(program.returncode, 0, program.stderr)
+        try:
+            return bool(self.autopilot.recv(2048))
+        except BlockingIOError:
+            self.assertIn("is not sent: it is", program.stderr)
+            return False
+
+    def test_is_fresh(self):
+        for packet_format in ("gps_input", "global_position_sensor"):
+            self.assertTrue(self.sent(packet_format))
+
+    def test_is_not_what_was_captured_or_waited_for_long_ago(self):
+        for packet_format in ("gps_input", "global_position_sensor"):
+            self.assertFalse(self.sent(packet_format, captured_s_ago=3.0))
+            self.assertFalse(self.sent(packet_format, script=[503]), "a second until it was sent again")
+
+    def test_is_what_the_service_took_long_for_only_if_the_message_says_so(self):
+        self.assertTrue(self.sent("command_int", delay_s=0.8))
+        self.assertFalse(self.sent("nmea", delay_s=0.8))
+
+    def test_is_that_of_a_recording_whatever_its_clock(self):
+        self.assertTrue(self.sent("gps_input", captured_s_ago=1e6))
+
+
+class Program(unittest.TestCase):
+    def test_ends_quietly_when_nobody_reads_its_answers(self):
+        lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
+        with FakeService() as fake:
+            reader, writer = os.pipe()
+            os.close(reader)
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
+                                     input=lines, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
+            os.close(writer)
+        self.assertEqual((program.returncode, program.stderr), (1, ""))
 
 
 if __name__ == "__main__":

@@ -196,7 +196,7 @@ class Program(unittest.TestCase):
         self.program = subprocess.Popen(
             [sys.executable, "-B", str(PROGRAM), "--listen", "127.0.0.1:0", "--watch", self.folder.name, "--camera", "body"],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(self.program.communicate)
+        self.addCleanup(lambda: [self.program.wait(), self.program.stdout.close(), self.program.stderr.close()])
         self.addCleanup(self.program.terminate)
         self.port = int(self.program.stderr.readline().split()[-1])
         self.link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -224,6 +224,16 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(step["roll_deg"], math.degrees(0.02), places=2)
         self.assertAlmostEqual(step["pitch_deg"], math.degrees(-0.01), places=2)
         self.assertEqual(step["agl_m"], 120.0)
+
+    def test_ends_quietly_when_nobody_reads_its_steps(self):
+        self.tell(1000)
+        self.assertIn("system 7", self.program.stderr.readline())
+        self.program.stdout.close()
+        Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")
+        time.sleep(0.2)
+        self.tell(1400)
+        self.assertEqual(self.program.wait(timeout=20), 1)
+        self.assertEqual(self.program.stderr.read(), "")
 
     def test_says_why_a_picture_is_left_out(self):
         Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")

@@ -84,8 +84,9 @@ SeenFrame seen_frame(const Content& content, const RoadDetector& detector, const
   require_picture(content);
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
+  const cv::Mat pixels = decode_image(content.image, limits.pixels);
   const FrameScale scale = parse_frame_scale(fields, content.image);
-  const GroundImage frame = frame_image(decode_image(content.image, limits.pixels), scale.gsd_m, border);
+  const GroundImage frame = frame_image(pixels, scale.gsd_m, border);
   return {ground_seen(frame, scale.camera, detector, static_cast<double>(limits.pixels)),
           scale.in_file ? scale.camera : std::nullopt};
 }

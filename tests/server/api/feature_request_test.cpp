@@ -156,6 +156,8 @@ TEST(FeatureRequest, RefusesACameraThatIsToldTwiceOrNotAtAll) {
   Content png = photo({{"exif", true}});
   png.image = encode_feature_map(CellArray(20, 20, kNoRoad));
   EXPECT_EQ(code(png), "camera-not-in-file");
+  png.image = {'n', 'o', 'n', 'e'};
+  EXPECT_EQ(code(png), "image-format") << "which is the mistake to mend first";
 }
 
 }  // namespace

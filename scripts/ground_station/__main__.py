@@ -67,7 +67,8 @@ def parse_arguments(arguments):
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
     parser.add_argument("--patience", type=float, default=60.0, metavar="S",
                         help="how long a step is sent again while the service is away or busy (default: %(default)g)")
-    parser.add_argument("--format", choices=FORMATS_WITHOUT_AGE + FORMATS_WITH_AGE, help="message for the autopilot (docs/tracks.md)")
+    parser.add_argument("--format", choices=FORMATS_WITHOUT_AGE + FORMATS_WITH_AGE,
+                        help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
     parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
                         help="oldest message that is sent, counted from time_us where that is of this computer's clock, "

@@ -48,14 +48,18 @@ class Track:
         self._service = service
         self._request = dict(request)
         self._file = pathlib.Path(state_file) if state_file else None
-        self._state = {}
-        if self._file and self._file.exists():
+        self._state = self._read_state() if self._file and self._file.exists() else {}
+        self._keep(self._state)  # a file that cannot be written is told of before the flight
+
+    def _read_state(self):
+        try:
             state = json.loads(self._file.read_text())
-            if not isinstance(state, dict) or state.get("map") != request["map"]:
-                raise ValueError(f"{self._file} is not of a track over the map '{request['map']}': remove it, or name "
-                                 "another file")
-            if 0.0 <= time.time() - state.get("taken_s", -math.inf) < FORGOTTEN_S:
-                self._state = state
+        except ValueError:
+            state = None
+        if not isinstance(state, dict) or state.get("map", self._request["map"]) != self._request["map"]:
+            raise ValueError(f"{self._file} is not of a track over the map '{self._request['map']}': remove it, or name "
+                             "another file")
+        return state if 0.0 <= time.time() - state.get("taken_s", -math.inf) < FORGOTTEN_S else {}
 
     @property
     def id(self):
@@ -66,34 +70,37 @@ class Track:
         are too, and the movement between is not known. `fields`: time_us and other fields of a step; `send` is called
         with the message for the autopilot in `packet_format`, if there is one."""
         if not self.id:
-            self._begin(self._request, origin)
+            self._begin(origin)
         elif origin != self._state["origin"]:
-            self._begin(self._request_near_the_last_place(), origin)
+            self._begin_near_the_last_place(origin)
         try:
             return self._step(place, fields, image, packet_format, send)
         except Refused as refusal:
             if refusal.code not in TRACK_IS_GONE:
                 raise
         # The same map may have another version, or the service was away for longer than it keeps a silent track.
-        self._begin(self._request_near_the_last_place(), origin)
+        self._begin_near_the_last_place(origin)
         return self._step(place, fields, image, packet_format, send)
 
-    def _begin(self, request, origin):
+    def _begin(self, origin, known=None, prior=None):
+        request = self._request
+        if prior:
+            request = {**{name: value for name, value in request.items() if name not in PRIOR}, **prior}
         track = json.loads(self._service.ask("POST", "/v1/tracks", json.dumps(request).encode(), "application/json"))
-        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
-                    "known": self._state.get("known"), "taken_s": time.time()})
+        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin, "known": known,
+                    "taken_s": time.time()})
 
-    def _request_near_the_last_place(self):
+    def _begin_near_the_last_place(self, origin):
         """Around the place that was known last, as far as the vehicle may have flown since."""
         known = self._state.get("known")
-        if not known:
-            return self._request
-        since_s = max(0.0, time.time() - self._state["taken_s"])
-        radius_m = 100.0 + 5.0 * known["sigma_m"] + known["flown_m"] + FASTEST_M_S * since_s
-        if radius_m > WIDEST_M:
-            return self._request
-        rest = {name: value for name, value in self._request.items() if name not in PRIOR}
-        return {**rest, "lat": known["lat"], "lon": known["lon"], "radius_m": radius_m}
+        if known:
+            since_s = max(0.0, time.time() - self._state["taken_s"])
+            known = {**known, "flown_m": known["flown_m"] + FASTEST_M_S * since_s}
+            radius_m = 100.0 + 5.0 * known["sigma_m"] + known["flown_m"]
+            if radius_m <= WIDEST_M:
+                self._begin(origin, known, {"lat": known["lat"], "lon": known["lon"], "radius_m": radius_m})
+                return
+        self._begin(origin)
 
     def _moved_to(self, place):
         return movement(self._state["place"], place) if "place" in self._state else {}

@@ -150,6 +150,17 @@ class Steps(unittest.TestCase):
             track.step((930.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
             self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 30.0)
 
+    def test_know_less_of_the_last_known_place_with_every_restart(self):
+        converged = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
+        with FakeService([converged]) as fake:
+            track, _ = self.fly(fake, 1)
+            radii_m = []
+            for origin in ("a", "b"):
+                time.sleep(0.5)
+                track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin=origin)
+                radii_m.append(self.begun(fake)["radius_m"])
+            self.assertGreater(radii_m[1], radii_m[0] + 20.0)
+
     def test_forget_a_flight_of_long_ago(self):
         converged = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
         for age_s, tracks in ((60.0, 1), (3600.0, 2)):
@@ -176,6 +187,13 @@ class Steps(unittest.TestCase):
             self.fly(fake, 1, state_file=state)
             with self.assertRaisesRegex(ValueError, "not of a track over the map 'other'"):
                 Track(Service(fake.url), {"map": "other"}, state)
+            Path(state).write_text("no state")
+            with self.assertRaisesRegex(ValueError, "not of a track over the map 'm'"):
+                Track(Service(fake.url), {"map": "m"}, state)
+
+    def test_are_not_begun_with_a_state_that_cannot_be_written(self):
+        with FakeService() as fake, self.assertRaises(OSError):
+            Track(Service(fake.url), {"map": "m"}, "/nowhere/state.json")
 
     def test_carry_the_password_of_a_proxy(self):
         with FakeService() as fake:

@@ -12,6 +12,7 @@
 #include "cli/bench/calibrate.hpp"
 #include "cli/bench/curves.hpp"
 #include "cli/bench/honesty.hpp"
+#include "cli/bench/queries.hpp"
 #include "cli/bench/run.hpp"
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
@@ -22,6 +23,7 @@
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "core/detect/make_detector.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -70,16 +72,13 @@ class TaskProgress {
 };
 
 nlohmann::json document(const BenchArguments& arguments, const std::string& detector,
-                        const std::vector<bench::SetResult>& results) {
+                        const std::vector<bench::SetResult>& results, const std::vector<std::string>& left_out) {
   nlohmann::json sets = nlohmann::json::array();
   for (const auto& result : results) sets.push_back(to_json(result));
-  return {{"roadfix", ROADFIX_VERSION},
-          {"manifest", arguments.manifest},
-          {"seed", arguments.options.seed},
-          {"cell_m", arguments.cell_m},
-          {"detector", detector},
-          {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
-          {"results", sets}};
+  return {{"roadfix", ROADFIX_VERSION},     {"manifest", arguments.manifest},
+          {"seed", arguments.options.seed}, {"cell_m", arguments.cell_m},
+          {"detector", detector},           {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
+          {"left_out", left_out},           {"results", sets}};
 }
 
 /// What the calibration was learned from, for those who read the file.
@@ -148,14 +147,23 @@ void run_bench(BenchArguments& arguments) {
   options.progress = [&](const std::string& task, std::int64_t done, std::int64_t total) {
     asking.update(task, done, total);
   };
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
   fmt::print("detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
              bench::to_table(results));
   const bench::Honesty honesty = bench::honesty_of(bench::road_outcomes(results));
   fmt::print("\n{}", bench::to_text(honesty));
-  if (!arguments.json_file.empty()) write_json(document(arguments, detector->describe(), results), arguments.json_file);
+  if (!arguments.json_file.empty()) {
+    write_json(document(arguments, detector->describe(), results, left_out), arguments.json_file);
+  }
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
   if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results);
+  if (!left_out.empty()) {
+    throw InvalidInput(bench::kNoPlaceForQuery,
+                       fmt::format("{} of {} sets of queries could not be asked:\n  {}", left_out.size(),
+                                   manifest.queries.size(), fmt::join(left_out, "\n  ")));
+  }
 }
 
 }  // namespace

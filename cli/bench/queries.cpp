@@ -90,7 +90,7 @@ GridPose draw(const PoseSampling& sampling, const QuerySet& set, Random& random)
   const auto pose = draw_pose(sampling, random);
   if (pose) return *pose;
   throw InvalidInput(
-      "no-place-for-query",
+      kNoPlaceForQuery,
       fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its observed part "
                   "and the map '{}'",
                   describe(set), set.footprint.width_m, set.footprint.height_m, set.map));

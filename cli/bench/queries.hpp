@@ -17,9 +17,11 @@ struct QueryDrawing {
   int limit = 0;          ///< at most so many; 0 = all
 };
 
+/// Code of the InvalidInput where no pose fits.
+inline constexpr const char* kNoPlaceForQuery = "no-place-for-query";
+
 /// `map` is searched; simulated queries are cut out of `from`; of camera frames what `detector` makes use of is kept.
-/// Throws InvalidInput "no-place-for-query" where no pose fits, "frames-csv" naming line and column, and what reading
-/// the imagery throws.
+/// Throws InvalidInput kNoPlaceForQuery, "frames-csv" naming line and column, and what reading the imagery throws.
 std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
                                 const RoadDetector& detector, const QueryDrawing& drawing);
 

@@ -73,6 +73,18 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   return outcomes;
 }
 
+/// Nothing where no place was found for them: the other sets are worth asking all the same.
+std::vector<Query> queries_of(const QuerySet& set, std::size_t number, const MapView& map, const MapView& from,
+                              const BenchOptions& options) {
+  try {
+    return make_queries(set, map, from, *options.maps.detector, {options.seed, number, options.limit});
+  } catch (const InvalidInput& error) {
+    if (error.code() != kNoPlaceForQuery) throw;
+    options.left_out(error.what());
+    return {};
+  }
+}
+
 }  // namespace
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
@@ -89,8 +101,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
-      const auto queries =
-          make_queries(set, map, maps.at(set.from), *options.maps.detector, {options.seed, i, options.limit});
+      const std::vector<Query> queries = queries_of(set, i, map, maps.at(set.from), options);
+      if (queries.empty()) continue;
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;
         const std::string task = fmt::format("{} {}", name, describe(set));

@@ -18,9 +18,11 @@ struct BenchOptions {
   FixOptions fix;
   std::filesystem::path pictures;  ///< folder for a picture of every query and method; empty = none
   std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;
+  std::function<void(const std::string& why)> left_out;  ///< told of each set for whose queries there is no place
 };
 
-/// Throws IoFailure "picture-unwritable", Interrupted "bench-stopped" when maps.stop is requested.
+/// Of the sets of queries that could be asked. Throws IoFailure "picture-unwritable", Interrupted "bench-stopped" when
+/// maps.stop is requested.
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options);
 
 }  // namespace roadfix::bench

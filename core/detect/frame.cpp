@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/detect/blank_ground.hpp"
 #include "core/detect/ground_scale.hpp"
 #include "core/units/error.hpp"
 
@@ -162,9 +163,11 @@ GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera
   constexpr double kFarthestGroundM = 3000.0;
   const double nominal_m = camera ? nominal_gsd_m(*camera, frame.pixels.size()) : frame.gsd_m;
   require_roads_visible(nominal_m);
-  if (!camera) return rectified(frame);
   const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-  return rectify(frame.pixels, frame.observed, *camera, gsd_m, kFarthestGroundM, max_pixels);
+  GroundView view =
+      camera ? rectify(frame.pixels, frame.observed, *camera, gsd_m, kFarthestGroundM, max_pixels) : rectified(frame);
+  exclude_blank(view.image);
+  return view;
 }
 
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,

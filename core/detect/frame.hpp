@@ -33,8 +33,8 @@ void require_roads_visible(double gsd_m);
 
 /// What the frame shows of the ground. Without a camera it was seen straight from above, in pixels of frame.gsd_m. With
 /// one, which says what gsd_m does not: rectify() up to 3 km from the nadir point, farther than which ground is seen
-/// too flat to tell a road, in pixels that the detector makes use of. Throws "frame-too-coarse" and "frame-too-fine"
-/// too.
+/// too flat to tell a road, in pixels that the detector makes use of. Blank areas (exclude_blank) were not seen. Throws
+/// "frame-too-coarse" and "frame-too-fine" too.
 GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels);
 

@@ -29,7 +29,10 @@ class FramesCommand : public ::testing::Test {
   FramesCommand() { std::filesystem::create_directory(folder / "flight 1"); }
 
   void picture(const std::string& name, const std::string& tags) const {
-    const auto jpeg = testing::drone_jpeg(cv::Mat(90, 120, CV_8UC1, cv::Scalar(128)), tags);
+    cv::Mat ground(90, 120, CV_8UC1);
+    cv::theRNG().state = 1;
+    cv::randu(ground, 0, 256);
+    const auto jpeg = testing::drone_jpeg(ground, tags);
     std::ofstream file(folder / "flight 1" / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   }

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "core/detect/blank_ground.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/georeference.hpp"
@@ -72,10 +73,10 @@ struct Mosaic::Handle {
 };
 
 Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
-    : options_(options), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
+    : options_(options), rule_(rule), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
   std::vector<float> values;
-  for (std::string& path : paths) add_image(std::move(path), rule, values);
-  choose_ranges(rule, std::move(values));
+  for (std::string& path : paths) add_image(std::move(path), values);
+  choose_ranges(std::move(values));
   if (rule == ValueRule::kShare) channels_ = 1;
   if (!options.collar) return;
   for (Image& image : images_) {
@@ -85,14 +86,14 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
 }
 
 /// Adds to `values` what is sampled of an image whose type does not say its range.
-void Mosaic::add_image(std::string path, ValueRule rule, std::vector<float>& values) {
+void Mosaic::add_image(std::string path, std::vector<float>& values) {
   RasterFile file(path, options_);
-  if (rule == ValueRule::kShare && !images_.empty()) {
+  if (rule_ == ValueRule::kShare && !images_.empty()) {
     require_same_kind(RasterFile(images_.front().path, options_), file);
   }
   const Georeference georeference(file, zone_);
   Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
-              rule == ValueRule::kPicture ? file.declared_range() : std::nullopt};
+              rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt};
   extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
   channels_ = std::max(channels_, file.channels());
@@ -103,14 +104,14 @@ void Mosaic::add_image(std::string path, ValueRule rule, std::vector<float>& val
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
     image.sampled = sampled_in(sample);
-    const std::vector<float> ground = rule == ValueRule::kPicture ? without_fill(sample) : sample;
+    const std::vector<float> ground = rule_ == ValueRule::kPicture ? without_fill(sample) : sample;
     values.insert(values.end(), ground.begin(), ground.end());
   }
   images_.push_back(std::move(image));
 }
 
-void Mosaic::choose_ranges(ValueRule rule, std::vector<float> values) {
-  if (rule == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
+void Mosaic::choose_ranges(std::vector<float> values) {
+  if (rule_ == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
     const auto [min, max] = std::ranges::minmax_element(values);
     sampled_ = {static_cast<double>(*min), static_cast<double>(*max)};
   }
@@ -118,10 +119,10 @@ void Mosaic::choose_ranges(ValueRule rule, std::vector<float> values) {
   if (all_declared) {
     range_ = *images_.front().declared;
   } else {
-    range_ = rule == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
+    range_ = rule_ == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   }
   // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
-  const bool masks = rule == ValueRule::kShare && integers_ &&
+  const bool masks = rule_ == ValueRule::kShare && integers_ &&
                      std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
@@ -145,6 +146,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
     std::unique_ptr<Handle> handle = borrow(i, gsd_m);
     warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));
+    if (rule_ == ValueRule::kPicture) exclude_blank(result);
   }
   return result;
 }

@@ -50,18 +50,20 @@ class Mosaic {
   /// Of the image whose place is the least certain.
   const PositionError& position_error() const { return position_error_; }
 
-  /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed. Thread-safe.
+  /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed, nor is what pictures
+  /// show blank (exclude_blank). Thread-safe.
   GroundImage view(const GridBox& box, double gsd_m) const;
 
  private:
   struct Image;
   struct Handle;
-  void add_image(std::string path, ValueRule rule, std::vector<float>& values);
-  void choose_ranges(ValueRule rule, std::vector<float> values);
+  void add_image(std::string path, std::vector<float>& values);
+  void choose_ranges(std::vector<float> values);
   std::unique_ptr<Handle> borrow(std::size_t image, double gsd_m) const;
   void give_back(std::unique_ptr<Handle> handle) const;
 
   RasterOptions options_;
+  ValueRule rule_;
   UtmZone zone_;
   std::vector<Image> images_;
   GridBox extent_;

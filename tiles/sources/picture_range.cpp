@@ -2,29 +2,30 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 namespace roadfix {
 namespace {
 
 constexpr double kBeyondRange = 0.005;  // of the values, at either end
 
-}  // namespace
-
-std::optional<Fill> fill_of(const std::vector<float>& values) {
+/// The more frequent one of the two ends of the values, if it is frequent and the rest differ.
+std::optional<float> fill_of(const std::vector<float>& values) {
   if (values.empty()) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(values);
   if (std::ranges::all_of(values, [&, a = low, b = high](float v) { return v == a || v == b; })) return std::nullopt;
-  const auto share = [&values](float value) {
-    return static_cast<double>(std::ranges::count(values, value)) / static_cast<double>(values.size());
-  };
-  const Fill dark{low, true, share(low)};
-  const Fill bright{high, false, share(high)};
-  const Fill& fill = dark.share >= bright.share ? dark : bright;
-  return fill.share >= kBeyondRange ? std::optional(fill) : std::nullopt;
+  const std::ptrdiff_t dark = std::ranges::count(values, low);
+  const std::ptrdiff_t bright = std::ranges::count(values, high);
+  if (static_cast<double>(std::max(dark, bright)) < kBeyondRange * static_cast<double>(values.size())) {
+    return std::nullopt;
+  }
+  return dark >= bright ? low : high;
 }
 
+}  // namespace
+
 std::vector<float> without_fill(std::vector<float> values) {
-  if (const std::optional<Fill> fill = fill_of(values)) std::erase(values, fill->value);
+  if (const std::optional<float> fill = fill_of(values)) std::erase(values, *fill);
   return values;
 }
 

@@ -12,7 +12,6 @@
 #include "core/detect/frame.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/band_notes.hpp"
-#include "tiles/sources/collar_note.hpp"
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/mosaic.hpp"
 #include "tiles/sources/road_rules.hpp"
@@ -83,7 +82,6 @@ class Imagery final : public CellSource {
     summary_.chosen_gsd_m = gsd_m_;
     state_position(mosaic_, kImagerySigmaM, summary_);
     std::optional<std::string> note = note_on_likely_roads(paths.front(), options);
-    if (!note) note = note_on_collar(paths, options);
     if (note) summary_.notes.push_back(std::move(*note));
     RasterFile first(paths.front(), options);
     for (std::string& about : notes_on_bands(first)) summary_.notes.push_back(std::move(about));

@@ -271,10 +271,29 @@ TEST_F(BenchRun, GivesTheSameAnswersWithAnotherNumberOfJobsAndAFoundMap) {
   }
 }
 
-TEST_F(BenchRun, RefusesAFootprintThatFitsNowhere) {
-  EXPECT_THAT(
-      [&] { run(R"({"map": "town", "image": "town.png", "count": 1, "footprint_m": [2000, 100]})", "\"sift\""); },
-      ThrowsMessage<InvalidInput>(HasSubstr("2000 x 100 m")));
+TEST_F(BenchRun, AsksTheOtherSetsWhereAFootprintFitsNowhere) {
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  const auto results = run(
+      std::string(R"({"map": "town", "image": "town.png", "count": 1, "footprint_m": [2000, 100]}, )") + kImageQueries,
+      "\"roads\"");
+  EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("2000 x 100 m")));
+  ASSERT_EQ(results.size(), 1U);
+  EXPECT_EQ(results[0].outcomes.size(), 3U);
+}
+
+TEST_F(BenchRun, LooksAtNothingThatIsPaintedWithoutBeingMarked) {
+  cv::Mat picture = cv::imread(folder / "town.png");
+  picture.colRange(0, 320).setTo(cv::Scalar::all(255));
+  cv::imwrite(folder / "painted.png", picture);
+  std::filesystem::copy_file(folder / "town.pgw", folder / "painted.pgw");
+  std::filesystem::copy_file(folder / "town.png.aux.xml", folder / "painted.png.aux.xml");
+  const auto results =
+      run(R"({"map": "town", "image": "painted.png", "count": 6, "footprint_m": [200, 200]})", "\"roads\"");
+  for (const Outcome& outcome : results.at(0).outcomes) {
+    const GridPoint at = UtmZone::from_epsg(32634).value().project(outcome.truth.value().position);
+    EXPECT_GT(at.east_m, 400'000 + 320 + 100);
+  }
 }
 
 TEST_F(BenchRun, KeepsMapsOfTheSameNameApart) {
@@ -283,7 +302,7 @@ TEST_F(BenchRun, KeepsMapsOfTheSameNameApart) {
   for (const char* file : {"town.png", "town.pgw", "town.png.aux.xml"}) {
     std::filesystem::copy_file(folder / file, other / file);
   }
-  cv::imwrite(other / "town.png", cv::Mat(700, 700, CV_8UC3, cv::Scalar::all(10)));
+  cv::imwrite(other / "town.png", cv::imread(folder / "town.png") / 2);
   const MapBuilding& building = options.maps;
   const MapView here = build_map({"town", {{folder / "town.png", "imagery"}}}, building);
   const MapView there = build_map({"town", {{other / "town.png", "imagery"}}}, building);

@@ -34,12 +34,13 @@ cv::Mat coloured(const cv::Mat& pixels) {
 
 double strongest_of(const CellArray& cells) {
   constexpr double kShare = 0.98;
+  constexpr double kFaintest = 0.25;
   std::vector<Cell> seen;
   std::ranges::copy_if(cells.cells(), std::back_inserter(seen), [](Cell c) { return is_observed(c) && c > 0; });
   if (seen.empty()) return 1.0;
   const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size() - 1));
   std::ranges::nth_element(seen, at);
-  return probability(*at);
+  return std::max(kFaintest, probability(*at));
 }
 
 cv::Mat side_by_side(const std::vector<Panel>& panels, int height_px) {

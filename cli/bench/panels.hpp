@@ -18,7 +18,7 @@ struct Panel {
 cv::Mat coloured(const cv::Mat& pixels);
 
 /// The probability that a picture of the cells draws strongest: detectors are seldom sure in places that they have not
-/// seen. 1 where nothing was observed.
+/// seen. At least 0.25, so that ground without roads stays dark; 1 where nothing was observed.
 double strongest_of(const CellArray& cells);
 
 /// All panels brought to one height; at least one.

@@ -28,6 +28,12 @@ TEST(Agreement, IsWhiteWhereBothHaveRoadAndColouredWhereOneHas) {
   for (int col = 0; col < picture.cols; ++col) EXPECT_EQ(picture.at<cv::Vec3b>(0, col), expected[col]) << col;
 }
 
+TEST(Agreement, IsDarkWhereTheMapIsSureOfNoRoadAnywhere) {
+  const CellArray field(8, 8, cell_from_probability(0.02));
+  const cv::Mat picture = agreement(field, field);
+  EXPECT_LT(picture.at<cv::Vec3b>(4, 4)[0], 40);
+}
+
 TEST(Agreement, PutsTheMapUnderTheNadirAndNotUnderTheMiddle) {
   const RoadGrid grid = town();
   const MapView map = testing::view_of(grid);

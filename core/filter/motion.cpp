@@ -80,7 +80,19 @@ void ScaleWalk::operator()(ParticleState& state, RandomStream& random) const {
 }
 
 void ConstantVelocityMotion::operator()(ParticleState& state, RandomStream& random) const {
-  drift(state, random, seconds, velocity_walk);
+  const double sine = std::sin(state.heading_rad);
+  const double cosine = std::cos(state.heading_rad);
+  state.drift_east_m_s += joins.forward_m_s * sine + joins.right_m_s * cosine;
+  state.drift_north_m_s += joins.forward_m_s * cosine - joins.right_m_s * sine;
+  // White acceleration, integrated over the step: what it does to the place, half of it follows from the velocity.
+  const double walked = velocity_walk * std::sqrt(seconds);
+  const auto go_on = [&](double& place_m, double& velocity_m_s) {
+    const double change = walked * random.normal();
+    place_m += seconds * (velocity_m_s + 0.5 * change + walked / std::sqrt(12.0) * random.normal());
+    velocity_m_s += change;
+  };
+  go_on(state.east_m, state.drift_east_m_s);
+  go_on(state.north_m, state.drift_north_m_s);
   state.heading_rad = wrapped(state.heading_rad + heading_walk_rad * std::sqrt(seconds) * random.normal());
 }
 

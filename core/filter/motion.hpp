@@ -64,11 +64,20 @@ struct ScaleWalk {
   void operator()(ParticleState& state, RandomStream& random) const;
 };
 
-/// Nothing is told: the drift goes on, changed by white acceleration, and the heading wanders.
+/// Over the ground, ahead of a body and to its right.
+struct BodyVelocity {
+  double forward_m_s = 0.0;
+  double right_m_s = 0.0;
+  friend bool operator==(const BodyVelocity&, const BodyVelocity&) = default;
+};
+
+/// Nothing is told: the drift, which is all of the velocity then, goes on, changed by white acceleration, and the
+/// heading wanders.
 struct ConstantVelocityMotion {
   double seconds = 0.0;
   double velocity_walk = 1.0;      ///< m/s per square root of a second and axis
   double heading_walk_rad = 0.05;  ///< per square root of a second
+  BodyVelocity joins;              ///< the drift at first: what moved the particle beside it until now
 
   void operator()(ParticleState& state, RandomStream& random) const;
 };

@@ -29,6 +29,7 @@ ParticleState uniform_draw(const AcceptanceRegion& region, const PoseRegion& pos
 }
 
 void draw_drift(const AcceptanceRegion& region, ParticleState& state, RandomStream& random) {
+  state.drift_east_m_s = state.drift_north_m_s = 0.0;
   if (region.drift_sigma_m_s == 0.0) return;
   state.drift_east_m_s = region.drift_sigma_m_s * random.normal();
   state.drift_north_m_s = region.drift_sigma_m_s * random.normal();

@@ -21,7 +21,7 @@ struct AcceptanceRegion {
 /// `poses` is not empty, and meets the circle in more than a point.
 ParticleState uniform_draw(const AcceptanceRegion& region, const PoseRegion& poses, RandomStream& random);
 
-/// Gives the particle a drift as new ones have it.
+/// Gives the particle a drift as new ones have it, in place of its own.
 void draw_drift(const AcceptanceRegion& region, ParticleState& state, RandomStream& random);
 
 }  // namespace roadfix

@@ -37,7 +37,8 @@ struct Wind {
 
 /// Takes the place of what a step does not tell.
 struct VehicleNoise {
-  /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was.
+  /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was, and may
+  /// change by half of itself within a second.
   struct Planar {
     Gaussian speed_m_s;
     Gaussian turn_rate_rad_s;
@@ -113,6 +114,8 @@ struct TrackerState {
   RecentFrames recent;
   std::optional<std::int64_t> looked_time_us;  ///< time of the last search around the claimed place
   bool drifts = false;  ///< such a search found the vehicle beside it: a wind is learned though none was told
+  std::optional<BodyVelocity> velocity;  ///< that the last odometry told
+  bool coasts = false;  ///< the last step told no motion: the drift of the particles is all of their velocity
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };
 

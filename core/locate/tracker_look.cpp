@@ -49,7 +49,7 @@ void Tracker::Step::look_around() {
   const std::optional<Fix> fix = search_for(seen, *around, {.looks_beyond_prior = false});
   if (!fix || !fix->complete || !is_beside(*fix, belief, map.zone)) return;
   state_.claim.reject();
-  if (!state_.drifts) {
+  if (!state_.drifts && !coasts()) {
     state_.drifts = true;
     filter_.widen_drift(wind().sigma_m_s);
   }

@@ -23,8 +23,17 @@ constexpr double kScaleWalkShare = 0.03;
 // was told.
 constexpr double kWidenedM = 4.0;
 
+// Of a vehicle that no odometry tells of: so much of its speed, and at least so many m/s, its velocity changes by
+// within a second (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
+constexpr double kManoeuvreShare = 0.5;
+constexpr double kLeastManoeuvreMS = 1.0;
+
 // 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told.
 constexpr double kFoundWindMS = 5.0;
+
+double speed_of(const std::optional<BodyVelocity>& velocity) {
+  return velocity ? std::hypot(velocity->forward_m_s, velocity->right_m_s) : 0.0;
+}
 
 }  // namespace
 
@@ -91,6 +100,8 @@ void Tracker::Step::move() {
     filter_.start_uniformly(tracker_.region_.poses);
     forget_support();
     state_.recent.clear();
+    state_.velocity.reset();
+    state_.coasts = coasts();
     return;
   }
   if (!predict_motion()) forget_support();
@@ -117,6 +128,7 @@ Wind Tracker::Step::wind() const {
 AcceptanceRegion Tracker::Step::region() const {
   AcceptanceRegion region = tracker_.region_;
   region.drift_sigma_m_s = wind().sigma_m_s;
+  if (coasts()) region.drift_sigma_m_s = std::max(region.drift_sigma_m_s, speed_of(state_.velocity));
   return region;
 }
 
@@ -124,20 +136,35 @@ AcceptanceRegion Tracker::Step::region() const {
 bool Tracker::Step::predict_motion() {
   const VehicleNoise& vehicle = settings_.vehicle;
   const double wind_walk = wind().walk;
+  const bool coasted = std::exchange(state_.coasts, coasts());
   if (input_.odometry) {
     const OdometryCovariance told = input_.covariance ? *input_.covariance : covariance_of(*input_.odometry, vehicle);
-    const OdometryMotion as_told(*input_.odometry, told, seconds(), wind_walk);
-    carry_frames_on(*input_.odometry, told);
-    if (estimate_.missed_steps == 0) return predict(as_told);
     const auto [odometry, covariance] =
         with_lost_steps(*input_.odometry, told, static_cast<double>(estimate_.missed_steps));
-    return predict(OdometryMotion(odometry, covariance, seconds(), wind_walk));
+    const OdometryMotion motion(odometry, covariance, seconds(), wind_walk);
+    carry_frames_on(*input_.odometry, told);
+    state_.velocity = {odometry.forward_m / seconds(), odometry.right_m / seconds()};
+    if (!coasted) return predict(motion);
+    return predict([&motion, region = region()](ParticleState& state, RandomStream& random) {
+      draw_drift(region, state, random);
+      motion(state, random);
+    });
   }
   state_.recent.clear();
   if (vehicle.planar) {
     return predict(PlanarMotion{vehicle.planar->speed_m_s, vehicle.planar->turn_rate_rad_s, seconds(), wind_walk});
   }
-  return predict(ConstantVelocityMotion{seconds()});
+  return coast(!coasted);
+}
+
+bool Tracker::Step::coasts() const { return !input_.odometry && !settings_.vehicle.planar; }
+
+/// On with the velocity that odometry told, if any did.
+bool Tracker::Step::coast(bool begins) {
+  ConstantVelocityMotion motion{seconds()};
+  motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_of(state_.velocity));
+  if (begins) motion.joins = state_.velocity.value_or(BodyVelocity{});
+  return predict(motion);
 }
 
 /// Only where the odometry tells how the ground below goes on, and the frames how large it is.

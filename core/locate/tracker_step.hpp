@@ -27,6 +27,8 @@ class Tracker::Step {
 
   void move();
   bool predict_motion();
+  bool coasts() const;
+  bool coast(bool begins);
   Wind wind() const;
   AcceptanceRegion region() const;
   template <MotionModel Motion>

@@ -25,6 +25,15 @@ json cluster_json(const TrackCluster& cluster) {
 
 json json_of(std::optional<std::int64_t> time_us) { return time_us ? json(*time_us) : json(); }
 
+json json_of(const std::optional<BodyVelocity>& velocity) {
+  return velocity ? json::array({velocity->forward_m_s, velocity->right_m_s}) : json();
+}
+
+std::optional<BodyVelocity> velocity_of(const json& velocity) {
+  if (velocity.is_null()) return std::nullopt;
+  return BodyVelocity{velocity.at(0), velocity.at(1)};
+}
+
 /// Throws where it is no whole number; get() would take any, and one beyond the range for anything.
 std::int64_t whole(const json& number) { return number.get_ref<const json::number_integer_t&>(); }
 
@@ -107,6 +116,8 @@ json counters_json(const TrackerState& state) {
           {"accepted_time_us", json_of(state.accepted_time_us)},
           {"looked_time_us", json_of(state.looked_time_us)},
           {"drifts", state.drifts},
+          {"velocity", json_of(state.velocity)},
+          {"coasts", state.coasts},
           {"nadir_sigma_m", state.nadir_sigma_m}};
 }
 
@@ -124,10 +135,12 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.claim.supported = whole(counters.at("supported"));
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
-    // Programs from before did not look around, and told no nadir_sigma_m of frames.
+    // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity.
     state.looked_time_us = time_of(counters.value("looked_time_us", json()));
     state.drifts = counters.value("drifts", false);
     state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
+    state.velocity = velocity_of(counters.value("velocity", json()));
+    state.coasts = counters.value("coasts", false);
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
                                                  error.what() + "): delete the track and begin a new one");

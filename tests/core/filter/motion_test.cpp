@@ -130,6 +130,40 @@ TEST(OdometryMotion, RefusesWhatIsNoCovarianceAndNoNumber) {
   EXPECT_EQ(refusal({}, {}), "taken");
 }
 
+TEST(ConstantVelocityMotion, TakesUpTheVelocityOfTheBodyAlongItsHeading) {
+  ConstantVelocityMotion motion{2.0, 0.0, 0.0};
+  motion.joins = {10.0, 3.0};
+  const ParticleState end = moved(motion, {0.0, 0.0, std::numbers::pi / 2, 1.0, -1.0});  // to the east
+  EXPECT_NEAR(end.drift_east_m_s, 11.0, 1e-12);
+  EXPECT_NEAR(end.drift_north_m_s, -4.0, 1e-12);
+  EXPECT_NEAR(end.east_m, 22.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -8.0, 1e-12);
+}
+
+TEST(ConstantVelocityMotion, SpreadsAsMuchInOneStepAsInMany) {
+  constexpr int kParticles = 20'000;
+  for (const int steps : {1, 2, 8}) {
+    const ConstantVelocityMotion motion{4.0 / steps, 3.0, 0.0};
+    double places = 0.0;
+    double velocities = 0.0;
+    double both = 0.0;
+    for (int i = 0; i < kParticles; ++i) {
+      ParticleState state;
+      for (int k = 0; k < steps; ++k) {
+        RandomStream random(Draw::kMotion, {7, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(i)});
+        motion(state, random);
+      }
+      places += state.east_m * state.east_m / kParticles;
+      velocities += state.drift_east_m_s * state.drift_east_m_s / kParticles;
+      both += state.east_m * state.drift_east_m_s / kParticles;
+    }
+    // Of white acceleration q over t: q t^3 / 3, q t and q t^2 / 2. Five sigma of what 20,000 draws tell.
+    EXPECT_NEAR(places, 9.0 * 64.0 / 3.0, 5.0 * std::sqrt(2.0 / kParticles) * 192.0) << steps;
+    EXPECT_NEAR(velocities, 9.0 * 4.0, 5.0 * std::sqrt(2.0 / kParticles) * 36.0) << steps;
+    EXPECT_NEAR(both, 9.0 * 16.0 / 2.0, 5.0 * std::sqrt(2.0 / kParticles) * 83.0) << steps;
+  }
+}
+
 TEST(ConstantVelocityMotion, GoesOnAsItWent) {
   const ParticleState end = moved(ConstantVelocityMotion{2.0, 0.0, 0.0}, {1.0, 1.0, 0.5, 10.0, -4.0});
   EXPECT_NEAR(end.east_m, 21.0, 1e-12);

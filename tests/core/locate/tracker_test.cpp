@@ -238,6 +238,46 @@ TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
   EXPECT_LT(error_m(last, flight.pose()), 15.0);
 }
 
+TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
+  for (const std::uint64_t seed : {21, 22, 23, 24}) {
+    const Tracker tracker(view_, settings());
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    const bool claimed = fly(tracker, flight, 8).converged;
+    for (int second = 1; second <= 12; ++second) {
+      StepInput step = flight.step(false);  // 20 m/s, turning
+      step.odometry.reset();
+      const TrackEstimate estimate = advance(tracker, step);
+      if (second == 1) {
+        EXPECT_EQ(estimate.converged, claimed);
+      }
+      if (estimate.converged) {
+        EXPECT_LT(error_m(estimate, flight.pose()), 15.0) << "seed " << seed << ", second " << second;
+      }
+      EXPECT_FALSE(estimate.converged && second > 4) << "seed " << seed;
+    }
+  }
+}
+
+TEST_F(Track, FollowsFramesWithoutOdometryAndKeepsNoWindOfThem) {
+  for (const std::uint64_t seed : {31, 32, 33}) {
+    const Tracker tracker(view_, settings());
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    fly(tracker, flight, 8);
+    for (int i = 0; i < 10; ++i) {
+      StepInput step = flight.step();
+      step.odometry.reset();
+      EXPECT_LT(error_m(advance(tracker, step), flight.pose()), 15.0) << "seed " << seed << ", step " << i;
+    }
+    EXPECT_FALSE(state_.drifts);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_LT(error_m(advance(tracker, flight.step(false)), flight.pose()), 20.0)
+          << "seed " << seed << ", step " << i;
+    }
+  }
+}
+
 TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 6);

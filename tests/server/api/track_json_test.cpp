@@ -24,6 +24,8 @@ TrackerState flown() {
   state.looked_time_us = 40'000'000;
   state.drifts = true;
   state.nadir_sigma_m = 5.25;
+  state.velocity = BodyVelocity{14.5, -0.25};
+  state.coasts = true;
   return state;
 }
 
@@ -32,6 +34,7 @@ TEST(TrackCounters, ComeBackAsTheyWere) {
   TrackerState blind = flown();
   blind.accepted_time_us.reset();
   blind.looked_time_us.reset();
+  blind.velocity.reset();
   EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
 }
 
@@ -39,11 +42,13 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   nlohmann::json before = counters_json(flown());
   before.erase("looked_time_us");
   before.erase("drifts");
-  before.erase("nadir_sigma_m");
+  for (const char* name : {"nadir_sigma_m", "velocity", "coasts"}) before.erase(name);
   const TrackerState state = state_of(before, {});
   EXPECT_FALSE(state.looked_time_us);
   EXPECT_FALSE(state.drifts);
   EXPECT_EQ(state.nadir_sigma_m, 0.0);
+  EXPECT_FALSE(state.velocity);
+  EXPECT_FALSE(state.coasts);
   EXPECT_EQ(state.sequence, 41);
 }
 
@@ -54,7 +59,7 @@ TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
     damaged.erase(name);
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
   }
-  for (const std::string name : {"searched", "accepted_time_us", "looked_time_us", "drifts"}) {
+  for (const std::string name : {"searched", "accepted_time_us", "looked_time_us", "drifts", "velocity", "coasts"}) {
     nlohmann::json damaged = good;
     damaged[name] = "soon";
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;

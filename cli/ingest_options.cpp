@@ -34,7 +34,7 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");
   command.add_option(
       "--nodata-color", a.collar,
-      "Colour of a collar around the imagery (white, black or R,G,B) that is narrower than 16 m: wider ones are found");
+      "Colour of the collar around the imagery: white, black or R,G,B; for one that does not fill a corner");
   command.add_option("--layer", a.vectors.layer, "Only this layer of vector files");
   command.add_option("--extent", a.vectors.extent,
                      "Ground that road lines cover: W,S,E,N in degrees or a polygon file");

@@ -10,6 +10,7 @@
 
 #include "core/detect/blank_ground.hpp"
 #include "core/detect/ground_scale.hpp"
+#include "core/detect/painted_border.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -160,12 +161,17 @@ void require_roads_visible(double gsd_m) {
 
 GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels) {
+  // Farther away ground is seen too flat to tell a road.
   constexpr double kFarthestGroundM = 3000.0;
+  constexpr double kFarthestHeights = 5.0;
   const double nominal_m = camera ? nominal_gsd_m(*camera, frame.pixels.size()) : frame.gsd_m;
   require_roads_visible(nominal_m);
   const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
+  const double farthest_m = camera ? std::min(kFarthestGroundM, kFarthestHeights * camera->agl_m) : 0.0;
+  GroundImage seen = frame;
+  exclude_painted_border(seen);
   GroundView view =
-      camera ? rectify(frame.pixels, frame.observed, *camera, gsd_m, kFarthestGroundM, max_pixels) : rectified(frame);
+      camera ? rectify(seen.pixels, seen.observed, *camera, gsd_m, farthest_m, max_pixels) : rectified(std::move(seen));
   exclude_blank(view.image);
   return view;
 }

@@ -32,8 +32,9 @@ inline constexpr double kFinestGsdM = 0.001;
 void require_roads_visible(double gsd_m);
 
 /// What the frame shows of the ground. Without a camera it was seen straight from above, in pixels of frame.gsd_m. With
-/// one, which says what gsd_m does not: rectify() up to 3 km from the nadir point, farther than which ground is seen
-/// too flat to tell a road, in pixels that the detector makes use of. Blank areas (exclude_blank) were not seen. Throws
+/// one, which says what gsd_m does not: rectify() up to five times its height from the nadir point, and 3 km, farther
+/// than which ground is seen too flat to tell a road, in pixels that the detector makes use of. A painted border
+/// (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws
 /// "frame-too-coarse" and "frame-too-fine" too.
 GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels);

@@ -7,23 +7,23 @@
 #include <charconv>
 #include <opencv2/imgproc.hpp>
 
+#include "core/detect/painted_border.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
 
 constexpr int kMaxSamples = 1024;
-constexpr int kGreyTolerance = 8;
 constexpr std::uint8_t kReached = 128;
 
 cv::Mat like(const cv::Mat& values, Rgb colour) {
   cv::Mat result;
   if (values.channels() == 1) {
     const int grey = (299 * colour.red + 587 * colour.green + 114 * colour.blue + 500) / 1000;
-    cv::inRange(values, cv::Scalar(grey - kGreyTolerance), cv::Scalar(grey + kGreyTolerance), result);
+    cv::inRange(values, cv::Scalar(grey - kBorderTolerance), cv::Scalar(grey + kBorderTolerance), result);
   } else {
     const cv::Scalar bgr(colour.blue, colour.green, colour.red);
-    cv::inRange(values, bgr - cv::Scalar::all(kGreyTolerance), bgr + cv::Scalar::all(kGreyTolerance), result);
+    cv::inRange(values, bgr - cv::Scalar::all(kBorderTolerance), bgr + cv::Scalar::all(kBorderTolerance), result);
   }
   return result;
 }
@@ -72,6 +72,24 @@ void Collar::clear(cv::Rect window, RasterPixels& pixels) const {
       if (connected_.at<std::uint8_t>(y, x) != 0) pixels.valid.at<std::uint8_t>(row, col) = 0;
     }
   }
+}
+
+std::optional<Rgb> find_collar(RasterFile& file, const ValueRange& range) {
+  const cv::Size size = file.size();
+  if (size.width < 2 * kCornerPx || size.height < 2 * kCornerPx) return std::nullopt;
+  for (const int x : {0, size.width - kCornerPx}) {
+    for (const int y : {0, size.height - kCornerPx}) {
+      const RasterPixels corner = file.read({x, y, kCornerPx, kCornerPx}, range);
+      if (cv::countNonZero(corner.valid) < corner.valid.size().area()) continue;
+      const auto colour = painted_colour(corner.values);
+      if (!colour) continue;
+      const auto level = [&](int channel) {
+        return cv::saturate_cast<std::uint8_t>((*colour)[corner.values.channels() == 1 ? 0 : channel]);
+      };
+      return Rgb{level(2), level(1), level(0)};
+    }
+  }
+  return std::nullopt;
 }
 
 Rgb parse_colour(const std::string& text) {

@@ -52,6 +52,19 @@ void require_same_kind(const RasterFile& first, const RasterFile& other) {
                                  first.path(), kind_of_values(first), other.path(), kind_of_values(other)));
 }
 
+bool looks_like_heights(const RasterFile& file) { return file.channels() == 1 && !file.holds_integers(); }
+
+/// A model of heights beside an orthophoto would hide it, as the first by name.
+void require_no_heights_beside_colours(const RasterFile& first, const RasterFile& other) {
+  for (const auto& [heights, colours] : {std::pair{&first, &other}, {&other, &first}}) {
+    if (!looks_like_heights(*heights) || colours->channels() < 3) continue;
+    throw InvalidInput("imagery-mixed",
+                       fmt::format("{} has colours, but {} has one band of real numbers, as heights have: ingest the "
+                                   "orthophoto itself; if both are imagery, one by one",
+                                   colours->path(), heights->path()));
+  }
+}
+
 }  // namespace
 
 struct Mosaic::Image {
@@ -78,18 +91,15 @@ Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, Val
   for (std::string& path : paths) add_image(std::move(path), values);
   choose_ranges(std::move(values));
   if (rule == ValueRule::kShare) channels_ = 1;
-  if (!options.collar) return;
-  for (Image& image : images_) {
-    RasterFile file(image.path, options);
-    image.collar = std::make_shared<Collar>(file, *options.collar, image.range);
-  }
+  if (rule == ValueRule::kPicture || options.collar) find_collars();
 }
 
 /// Adds to `values` what is sampled of an image whose type does not say its range.
 void Mosaic::add_image(std::string path, std::vector<float>& values) {
   RasterFile file(path, options_);
-  if (rule_ == ValueRule::kShare && !images_.empty()) {
-    require_same_kind(RasterFile(images_.front().path, options_), file);
+  if (!images_.empty()) {
+    const RasterFile first(images_.front().path, options_);
+    rule_ == ValueRule::kShare ? require_same_kind(first, file) : require_no_heights_beside_colours(first, file);
   }
   const Georeference georeference(file, zone_);
   Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
@@ -127,6 +137,14 @@ void Mosaic::choose_ranges(std::vector<float> values) {
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
     if (masks && image.sampled.max == 1.0F) image.range = {0.0, 1.0};
+  }
+}
+
+void Mosaic::find_collars() {
+  for (Image& image : images_) {
+    RasterFile file(image.path, options_);
+    const std::optional<Rgb> colour = options_.collar ? options_.collar : find_collar(file, image.range);
+    if (colour) image.collar = std::make_shared<Collar>(file, *colour, image.range);
   }
 }
 

@@ -33,7 +33,8 @@ enum class ValueRule {
 
 class Mosaic {
  public:
-  /// Throws what RasterFile and Georeference throw, and InvalidInput ("road-values-mixed") for shares of several types.
+  /// Throws what RasterFile and Georeference throw, and InvalidInput ("road-values-mixed") for shares of several types,
+  /// ("imagery-mixed") for what looks like heights beside colours.
   Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone);
   ~Mosaic();
 
@@ -59,6 +60,7 @@ class Mosaic {
   struct Handle;
   void add_image(std::string path, std::vector<float>& values);
   void choose_ranges(std::vector<float> values);
+  void find_collars();
   std::unique_ptr<Handle> borrow(std::size_t image, double gsd_m) const;
   void give_back(std::unique_ptr<Handle> handle) const;
 

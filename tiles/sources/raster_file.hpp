@@ -24,7 +24,7 @@ struct Rgb {
 /// What the user says about rasters that the files do not.
 struct RasterOptions {
   std::string crs;            ///< replaces that of the file; needed beside a bare world file
-  std::optional<Rgb> collar;  ///< colour of the declared collar, see collar.hpp
+  std::optional<Rgb> collar;  ///< its colour, where it is declared (collar.hpp)
 };
 
 /// Values of the file that become 0 and 255; what lies beyond is clamped.

@@ -60,6 +60,9 @@ class BenchRun : public ::testing::Test {
         if (town.cells.at(x / 2, y / 2) == kRoad) picture.at<cv::Vec3b>(y, x) = {230, 230, 230};
       }
     }
+    cv::Mat grain(picture.size(), CV_8UC3);
+    cv::randu(grain, 0, 8);
+    picture += grain;  // no sensor sees ground in one colour
     cv::imwrite(folder / "town.png", picture);
     std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n3999999.5\n";
     std::ofstream(folder / "town.png.aux.xml") << "<PAMDataset><SRS>EPSG:32634</SRS></PAMDataset>";

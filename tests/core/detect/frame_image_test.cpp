@@ -9,16 +9,30 @@
 namespace roadfix {
 namespace {
 
+/// Noise, of which no corner is of one colour.
+cv::Mat noise(cv::Size size, int type) {
+  cv::Mat frame(size, type);
+  cv::theRNG().state = 5;
+  cv::randu(frame, 20, 230);
+  return frame;
+}
+
 TEST(FrameImage, BlackThatReachesTheRimWasNotSeenAndBlackInsideWas) {
-  cv::Mat frame(40, 60, CV_8UC3, cv::Scalar(90, 100, 110));
-  frame(cv::Rect(0, 0, 10, 40)).setTo(cv::Scalar(0, 2, 4));
+  cv::Mat frame = noise({60, 40}, CV_8UC3);
+  frame(cv::Rect(0, 0, 10, 20)).setTo(cv::Scalar(0, 2, 4));
   frame(cv::Rect(30, 15, 8, 8)).setTo(cv::Scalar::all(0));
   const GroundImage image = frame_image(frame, 0.5, Border::kBlackUnseen);
-  EXPECT_EQ(image.observed.at<unsigned char>(20, 5), 0);
+  EXPECT_EQ(image.observed.at<unsigned char>(10, 5), 0);
   EXPECT_EQ(image.observed.at<unsigned char>(20, 10), 255);
   EXPECT_EQ(image.observed.at<unsigned char>(18, 33), 255);
-  EXPECT_EQ(cv::countNonZero(image.observed), 50 * 40);
+  EXPECT_EQ(cv::countNonZero(image.observed), 60 * 40 - 10 * 20);
+}
+
+TEST(FrameImage, BlackThatFillsNoCornerWasSeenUnlessSaidOtherwise) {
+  cv::Mat frame = noise({60, 40}, CV_8UC3);
+  frame(cv::Rect(20, 0, 10, 30)).setTo(cv::Scalar::all(0));
   EXPECT_EQ(cv::countNonZero(frame_image(frame, 0.5).observed), 60 * 40);
+  EXPECT_EQ(cv::countNonZero(frame_image(frame, 0.5, Border::kBlackUnseen).observed), 60 * 40 - 10 * 30);
 }
 
 TEST(FrameImage, AlphaSaysWhatWasSeen) {

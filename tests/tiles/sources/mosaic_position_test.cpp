@@ -116,6 +116,8 @@ TEST_P(Position, IsRightToATenthOfACell) {
     const double x = t[0] + (col + 0.5) * t[1] + (row + 0.5) * t[2];
     const double y = t[3] + (col + 0.5) * t[4] + (row + 0.5) * t[5];
     const GridPoint p = crs.plane(x, y);
+    const auto at_end = [](int place) { return place < 8 || place >= 292; };
+    if (at_end(col) && at_end(row)) return 100.0 + 9.0 * ((col + row) % 2);  // no painted corner
     return band == 1 ? std::round(east_ramp(p)) : std::round(north_ramp(p));
   });
   const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);

@@ -25,9 +25,9 @@ using testing::write_raster;
 
 class MosaicTest : public ::testing::Test {
  protected:
-  /// What is added to a value so that no ground is blank: 0 or kTexture, in squares of 8 pixels.
+  /// What is added to a value so that no ground is blank: 0 or kTexture, in squares of 4 pixels.
   static constexpr double kTexture = 6.0;
-  static double texture(int col, int row) { return (col / 8 + row / 8) % 2 == 0 ? 0.0 : kTexture; }
+  static double texture(int col, int row) { return (col / 4 + row / 4) % 2 == 0 ? 0.0 : kTexture; }
   /// Of the view's pixels, those of a square of that value.
   static cv::Mat of_value(const GroundImage& view, double value) {
     return (view.pixels >= value) & (view.pixels <= value + kTexture);
@@ -123,7 +123,8 @@ TEST_F(MosaicTest, BytesStayAsTheyAreBesideImagesOfOtherTypes) {
       write_raster(folder / "wide.tif", deep, [](int, int col, int) { return 1000.0 + 10.0 * col; });
   RasterSpec bit{.creation = {"NBITS=1"}};
   bit.transform = {kCentre.east_m + 128, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
-  const std::string drawn = write_raster(folder / "drawn.tif", bit, [](int, int, int) { return 1.0; });
+  const std::string drawn =
+      write_raster(folder / "drawn.tif", bit, [](int, int col, int row) { return (col + row) % 2 == 0 ? 1.0 : 0.0; });
   const std::string bytes = square("bytes.tif", 0, 0, 64, 100);
   for (const auto& paths : {std::vector{bytes, wide, drawn}, std::vector{drawn, wide, bytes}}) {
     const Mosaic mosaic(paths, {}, ValueRule::kPicture, kZone);
@@ -165,6 +166,41 @@ TEST_F(MosaicTest, APaintedCollarHidesNoOtherImageAndIsNotObserved) {
   const Mosaic both({path, square("b.tif", 0, 0, 64, 150)}, {}, ValueRule::kPicture, kZone);
   const GroundImage merged = both.view(box(0, 0, 200), 1.0);
   EXPECT_EQ(cv::countNonZero(of_value(merged, 150) & (merged.observed != 0)), 64 * 64);
+}
+
+TEST_F(MosaicTest, TheThinWedgesBesideATurnedImageAreNotObserved) {
+  RasterSpec spec{.width = 400, .height = 400, .bands = 3};
+  spec.transform = {kCentre.east_m, 1.0, 0.0, kCentre.north_m + 400, 0.0, -1.0};
+  const auto inside = [](int col, int row) { return 50 * row > 400 - col && 50 * (399 - row) > col; };
+  for (const double painted : {0.0, 255.0, 77.0}) {
+    const std::string path = write_raster(folder / "a.tif", spec, [&](int, int col, int row) {
+      return inside(col, row) ? 90.0 + texture(col, row) : painted;
+    });
+    const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+    const GroundImage view = mosaic.view(box(0, 0, 400), 1.0);
+    for (int row = 0; row < 400; ++row) {
+      for (int col = 0; col < 400; ++col) {
+        ASSERT_EQ(view.observed.at<std::uint8_t>(row, col) != 0, inside(col, row)) << painted << col << ' ' << row;
+      }
+    }
+  }
+}
+
+TEST_F(MosaicTest, HeightsBesideAnOrthophotoAreRefusedWhicheverComesFirst) {
+  RasterSpec colours{.width = 64, .height = 64, .bands = 3};
+  RasterSpec heights{.width = 64, .height = 64, .type = GDT_Float32};
+  for (RasterSpec* spec : {&colours, &heights}) {
+    spec->transform = {kCentre.east_m, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
+  }
+  const std::string dsm = write_raster(folder / "dsm.tif", heights, [](int, int col, int) { return 500.0 + col; });
+  const std::string ortho = write_raster(folder / "ortho.tif", colours, [](int, int col, int) { return 2.0 * col; });
+  const std::string grey = square("grey.tif", 0, 0, 64, 100);
+  const auto refusal = [&](std::vector<std::string> paths) {
+    return testing::code_of([&] { Mosaic(std::move(paths), {}, ValueRule::kPicture, kZone); });
+  };
+  EXPECT_EQ(refusal({dsm, ortho}), "imagery-mixed");
+  EXPECT_EQ(refusal({ortho, dsm}), "imagery-mixed");
+  EXPECT_EQ(refusal({grey, ortho}), "no error");
 }
 
 TEST_F(MosaicTest, ShareOfRoadMayBeTheSameEverywhere) {

@@ -1,0 +1,24 @@
+// Borders that were painted around what a picture shows, and are marked by nothing: the wedges beside a turned or
+// reprojected picture, the collar of an orthophoto, a letter box.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "core/detect/road_detector.hpp"
+
+namespace roadfix {
+
+/// Side of the squares in a picture's corners that tell its border's colour.
+inline constexpr int kCornerPx = 8;
+/// Lossy codecs blur a border by so many levels where it meets the ground.
+inline constexpr int kBorderTolerance = 8;
+
+/// The one colour (0..255, as in `corner`) that all pixels of a corner have, pure black or white within what codecs
+/// change of them; nullopt where ground is seen, which is never that even. CV_8UC1 or CV_8UC3.
+std::optional<cv::Scalar> painted_colour(const cv::Mat& corner);
+
+/// Marks as not observed what is connected to the picture's rim in the colour of a painted corner.
+void exclude_painted_border(GroundImage& image);
+
+}  // namespace roadfix

@@ -13,21 +13,18 @@ of JSON in for each step, a line with the answer out.
 - All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m ...
 """
 import argparse
+import functools
 import json
 import os
 import pathlib
-import socket
 import sys
 import time
 
+from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from service import Refused, Service, Silent
+from state import FORGOTTEN_S
 from steps import NewestLine, all_lines, read_step
-from track import FORGOTTEN_S, Track
-
-#: These say nothing of their age: a late position would move a flying vehicle back to where it was.
-FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
-#: These say how long the service took, but nothing of what was before.
-FORMATS_WITH_AGE = ("global_position_sensor", "command_int")
+from track import Track
 
 
 def parse_setting(text):
@@ -66,36 +63,22 @@ def parse_arguments(arguments):
                         help="of the steps that wait send only the newest; without it all of them, as of a recording")
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
     parser.add_argument("--patience", type=float, default=60.0, metavar="S",
-                        help="how long a step is sent again while the service is away or busy (default: %(default)g)")
-    parser.add_argument("--format", choices=FORMATS_WITHOUT_AGE + FORMATS_WITH_AGE,
+                        help="how long a step is sent again while the service is away or busy (default: %(default)g). "
+                             "Half of what is left is the time for an answer, so that a cut connection is noticed and "
+                             "the step sent again; what the service computes meanwhile is not lost, the repetition "
+                             "gets it. A search may take half a minute: with much less patience its answer is missed, "
+                             "though the step counts")
+    parser.add_argument("--format", choices=(*FORMATS_WITHOUT_AGE, *PROCESSING),
                         help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
     parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
                         help="oldest message that is sent, counted from time_us where that is of this computer's clock, "
-                             "else from when its line came; the time that the service took does not count in messages "
-                             "that say it: " + ", ".join(FORMATS_WITH_AGE) + " (default: %(default)g)")
+                             "else from when its line came, until it is sent; what messages say of it themselves does "
+                             "not count: " + ", ".join(PROCESSING) + " (default: %(default)g)")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
     return options
-
-
-class Sender:
-    """Messages to an autopilot by UDP, unless they are too old."""
-
-    def __init__(self, address, max_age_s):
-        family, kind, protocol, _, self._address = socket.getaddrinfo(*address, type=socket.SOCK_DGRAM)[0]
-        self._socket = socket.socket(family, kind, protocol)
-        self._max_age_s = max_age_s
-
-    def send(self, packet, age_s):
-        if age_s > self._max_age_s:
-            print(f"a position is not sent: it is {age_s:.1f} s old", file=sys.stderr)
-            return
-        try:
-            self._socket.sendto(packet, self._address)
-        except OSError as error:  # the step is taken all the same
-            print(f"a position is not sent: {error}", file=sys.stderr)
 
 
 def captured(line, step):
@@ -106,7 +89,7 @@ def captured(line, step):
 
 def fly(lines, options):
     """Whether all steps were taken."""
-    sender = Sender(options.send, options.max_age) if options.send else None
+    sender = Sender(options.format, options.send, options.max_age) if options.send else None
     service = Service(options.server, options.patience)
     track = Track(service, {"map": options.map, **dict(options.track)}, options.state)
     folder = pathlib.Path(options.steps or ".").parent
@@ -114,12 +97,7 @@ def fly(lines, options):
     for line in NewestLine(lines) if options.live else all_lines(lines):
         try:
             step = read_step(line, folder, dict(options.frame))
-            since = captured(line, step)
-
-            def send(packet, since=since):
-                until = service.asked if options.format in FORMATS_WITH_AGE else time.monotonic()
-                sender.send(packet, until - since)
-
+            send = functools.partial(sender.send, captured(line, step)) if sender else None
             answer = track.step(step.place, step.fields, step.image, step.origin, options.format, send)
         except (ValueError, OSError, Refused, Silent) as error:
             print(f"line {line.number}: {error}", file=sys.stderr)
@@ -133,8 +111,9 @@ def main(arguments=None):
     options = parse_arguments(arguments)
     try:
         if options.steps is None:
+            sys.stdin.reconfigure(encoding="utf-8", errors="replace")  # a bad byte spoils its line alone
             return 0 if fly(sys.stdin, options) else 1
-        with open(options.steps, encoding="utf-8") as lines:
+        with open(options.steps, encoding="utf-8", errors="replace") as lines:
             return 0 if fly(lines, options) else 1
     except BrokenPipeError:  # nobody reads the answers any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -2,11 +2,11 @@
 import base64
 import http.client
 import json
-import math
 import time
 import urllib.parse
 
 ANSWER_TIME_S = 90.0  # a search may wait its turn for 30 s and take as long
+SHORTEST_S = 0.2      # an attempt
 BUSY = (429, 502, 503, 504)
 
 
@@ -25,8 +25,7 @@ class Refused(Exception):
 
 
 class Service:
-    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them. `asked` is when the
-    request that was answered last was sent, by time.monotonic()."""
+    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them."""
 
     def __init__(self, url, patience_s=60.0):
         self._url = urllib.parse.urlsplit(url)
@@ -34,21 +33,20 @@ class Service:
             raise ValueError(f"'{url}' is no address of a service: write http://HOST:PORT")
         self._patience_s = patience_s
         self._connection = None
-        self.asked = -math.inf
 
     def close(self):
         if self._connection is not None:
             self._connection.close()
         self._connection = None
 
-    def ask(self, method, path, body=b"", content_type=None):
+    def ask(self, method, path, body=None, content_type=None):
         """The bytes of the answer, None for 204. Sends again while the service is away or busy."""
         give_up = time.monotonic() + self._patience_s
         pause_s = 0.05
         while True:
             wait_s = pause_s
-            self.asked = time.monotonic()
             try:
+                self._connect(give_up - time.monotonic())
                 answer, content = self._send(method, path, body, content_type)
                 if answer.status not in BUSY:
                     return self._checked(answer, content)
@@ -62,11 +60,18 @@ class Service:
             time.sleep(wait_s)
             pause_s = min(2.0 * pause_s, 2.0)
 
-    def _send(self, method, path, body, content_type):
+    def _connect(self, left_s):
+        """For one attempt. A cut link says nothing: half of the time that is left remains for others. A step that the
+        service is at meanwhile is not lost, since it is processed once."""
         if self._connection is None:
             secure = self._url.scheme == "https"
             kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
-            self._connection = kind(self._url.hostname, self._url.port, timeout=ANSWER_TIME_S)
+            self._connection = kind(self._url.hostname, self._url.port)
+        self._connection.timeout = max(SHORTEST_S, min(ANSWER_TIME_S, 0.5 * left_s))
+        if self._connection.sock is not None:
+            self._connection.sock.settimeout(self._connection.timeout)
+
+    def _send(self, method, path, body, content_type):
         headers = {"Content-Type": content_type} if content_type else {}
         if self._url.username is not None:
             pair = f"{urllib.parse.unquote(self._url.username)}:{urllib.parse.unquote(self._url.password or '')}"

@@ -1,6 +1,7 @@
 """Steps as lines of JSON."""
 import json
 import pathlib
+import sys
 import threading
 import time
 from typing import NamedTuple, Optional
@@ -22,7 +23,7 @@ class Line(NamedTuple):
 def _line(number, text):
     try:
         step = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         step = None
     return Line(number, time.monotonic(), step if isinstance(step, dict) else None)
 
@@ -57,14 +58,16 @@ class NewestLine:
         return line
 
     def _read(self, texts):
-        for line in all_lines(texts):
+        try:
+            for line in all_lines(texts):
+                with self._changed:
+                    if not (self._waiting and self._waiting.has_picture and not line.has_picture):
+                        self._waiting = line
+                    self._changed.notify()
+        finally:
             with self._changed:
-                if not (self._waiting and self._waiting.has_picture and not line.has_picture):
-                    self._waiting = line
+                self._ended = True
                 self._changed.notify()
-        with self._changed:
-            self._ended = True
-            self._changed.notify()
 
 
 class Step(NamedTuple):
@@ -74,24 +77,31 @@ class Step(NamedTuple):
     image: Optional[bytes]
 
 
+def _is_number(value):
+    """A finite one: the place of a step with another would make all movements after it unknown."""
+    return isinstance(value, (int, float)) and abs(value) <= sys.float_info.max
+
+
 def read_step(line, folder, frame_fields):
     """What a line says. `frame_fields` are the same of all pictures. Throws ValueError, OSError."""
     if line.step is None:
         raise ValueError("a step is a JSON object, in one line")
     step = dict(line.step)
     try:
-        place = tuple(float(step.pop(name)) for name in ("north_m", "east_m", "yaw_deg"))
+        place = tuple(step.pop(name) for name in ("north_m", "east_m", "yaw_deg"))
     except KeyError as missing:
         raise ValueError(f"a step needs {missing.args[0]}") from None
-    except TypeError:
-        raise ValueError("north_m, east_m and yaw_deg are numbers") from None
+    if not all(map(_is_number, place)):
+        raise ValueError("north_m, east_m and yaw_deg are numbers")
     origin = step.pop("origin", None)
     file = step.pop("image", None)
     fields = {"time_us": time.time_ns() // 1000, **step}
-    if not isinstance(fields["time_us"], (int, float)):
+    if not _is_number(fields["time_us"]):
         raise ValueError("time_us is a number")
     if file is None:
         return Step(place, origin, fields, None)
+    if not isinstance(file, str):
+        raise ValueError("image is the name of a file")
     fields = {**frame_fields, **fields}
     if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
         fields["kind"] = "frame"

@@ -1,17 +1,18 @@
 """A flight that the service follows, told where the vehicle's own estimator believes to be."""
 import json
 import math
-import os
-import pathlib
 import time
 import urllib.parse
 
-from service import Refused
+from service import Refused, Silent
+from state import StateFile
 
-TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced")
+#: The last two: another client flew it, or the state file could not be written and is older than the track.
+TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced", "step-differs", "step-late")
+MOVEMENT = ("forward_m", "right_m", "turn_deg")
 PRIOR = ("lat", "lon", "radius_m", "bbox")
-#: What was known longer ago is of another flight.
-FORGOTTEN_S = 600.0
+SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
+KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
 FASTEST_M_S = 50.0
 WIDEST_M = 10_000.0  # beyond it the last place says too little to begin a track around it
 
@@ -47,19 +48,9 @@ class Track:
     def __init__(self, service, request, state_file=None):
         self._service = service
         self._request = dict(request)
-        self._file = pathlib.Path(state_file) if state_file else None
-        self._state = self._read_state() if self._file and self._file.exists() else {}
-        self._keep(self._state)  # a file that cannot be written is told of before the flight
-
-    def _read_state(self):
-        try:
-            state = json.loads(self._file.read_text())
-        except ValueError:
-            state = None
-        if not isinstance(state, dict) or state.get("map", self._request["map"]) != self._request["map"]:
-            raise ValueError(f"{self._file} is not of a track over the map '{self._request['map']}': remove it, or name "
-                             "another file")
-        return state if 0.0 <= time.time() - state.get("taken_s", -math.inf) < FORGOTTEN_S else {}
+        self._file = StateFile(state_file, request["map"])
+        self._state = self._file.read()
+        self._file.write(self._state)  # one that cannot be written is told of before the flight
 
     @property
     def id(self):
@@ -74,21 +65,54 @@ class Track:
         elif origin != self._state["origin"]:
             self._begin_near_the_last_place(origin)
         try:
+            self._settle()
             return self._step(place, fields, image, packet_format, send)
         except Refused as refusal:
-            if refusal.code not in TRACK_IS_GONE:
+            if not self._is_over(refusal, fields):
                 raise
-        # The same map may have another version, or the service was away for longer than it keeps a silent track.
-        self._begin_near_the_last_place(origin)
+            code = refusal.code
+        # The service may have been at the step without an answer still when it was asked about it.
+        if code != "step-differs" or not self._settle():
+            self._begin_near_the_last_place(origin)
         return self._step(place, fields, image, packet_format, send)
+
+    def _is_over(self, refusal, fields):
+        """Whether the track takes no step like that any more. The same map may have another version, the service may
+        have been away for longer than it keeps a silent track, or a clock or the vehicle's frame jumped."""
+        if refusal.code == "time-backwards":
+            return fields["time_us"] < self._state.get("time_us", math.inf) - SET_BACK_US
+        if refusal.code == "parameter-out-of-range":
+            return refusal.problem.get("field") in MOVEMENT
+        return refusal.code in TRACK_IS_GONE
+
+    def _settle(self):
+        """Whether there is a step without an answer that was taken after all. The next movement is then that since it,
+        else since the step before it."""
+        asked = self._state.get("asked")
+        if not asked:
+            return False
+        last = json.loads(self._service.ask("GET", f"/v1/tracks/{self.id}")).get("last", {})
+        taken = all(last.get(name) == asked[name] for name in ("sequence", "time_us"))
+        if taken:
+            self._moved_on(asked, last)
+        return taken
 
     def _begin(self, origin, known=None, prior=None):
         request = self._request
         if prior:
             request = {**{name: value for name, value in request.items() if name not in PRIOR}, **prior}
         track = json.loads(self._service.ask("POST", "/v1/tracks", json.dumps(request).encode(), "application/json"))
+        former = [*self._state.get("former", []), self.id] if self.id else []
         self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin, "known": known,
-                    "taken_s": time.time()})
+                    "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
+        for track_id in former[:-KEPT_TRACKS]:
+            self._end(track_id)
+
+    def _end(self, track_id):
+        try:
+            self._service.ask("DELETE", f"/v1/tracks/{track_id}")
+        except (Refused, Silent):  # it has ended by itself, or will
+            pass
 
     def _begin_near_the_last_place(self, origin):
         """Around the place that was known last, as far as the vehicle may have flown since."""
@@ -108,10 +132,13 @@ class Track:
     def _step(self, place, fields, image, packet_format, send):
         before = self._state
         moved = self._moved_to(place)
+        if not moved:  # the first step of a track has no movement that it could be the covariance of
+            fields = {name: value for name, value in fields.items() if name != "covariance"}
         numbered = {**fields, "sequence": before["sequence"] + 1, **moved}
+        asked = {"sequence": numbered["sequence"], "time_us": fields["time_us"], "place": list(place),
+                 "known": farther(before["known"], moved), "taken_s": time.time()}
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
-        self._keep({**before, "sequence": numbered["sequence"], "place": list(place),
-                    "known": farther(before["known"], moved), "taken_s": time.time()})
+        self._keep({**before, "asked": asked})
         try:
             if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
                 packet = self._post({**numbered, "format": packet_format}, image)
@@ -121,11 +148,17 @@ class Track:
         except Refused:
             self._keep(before)
             raise
+        self._moved_on(asked, answer)
+        return answer
+
+    def _moved_on(self, asked, answer):
+        """With a step that the service has taken."""
+        state = {**self._state, **asked}
+        del state["asked"]
         if answer["status"] == "converged":
             pose = answer["pose"]
-            known = {"lat": pose["lat"], "lon": pose["lon"], "sigma_m": max(answer["sigma_m"]), "flown_m": 0.0}
-            self._keep({**self._state, "known": known})
-        return answer
+            state["known"] = {"lat": pose["lat"], "lon": pose["lon"], "sigma_m": max(answer["sigma_m"]), "flown_m": 0.0}
+        self._keep(state)
 
     def _post(self, fields, image):
         path = f"/v1/tracks/{self.id}/steps"
@@ -136,7 +169,4 @@ class Track:
 
     def _keep(self, state):
         self._state = state
-        if self._file:
-            written = self._file.with_name(self._file.name + ".part")
-            written.write_text(json.dumps(self._state))
-            os.replace(written, self._file)
+        self._file.keep(state)

@@ -10,7 +10,6 @@ give the track wind_sigma_m_s). Heights are those above ground of ALTITUDE (PX4)
 above the take-off. A picture was taken when its file was last written, less --delay.
 """
 import argparse
-import json
 import math
 import os
 import select
@@ -19,12 +18,14 @@ import sys
 import time
 import uuid
 
+from autopilot import Autopilot
+from clock import WallClock
+from lines import Lines
 from packets import messages
 from pictures import NewPictures
-from vehicle import LONGEST_HOLE_S, Unknown, Vehicle, turned
+from vehicle import Vehicle
 
 LOOK_S = 0.1  # between two looks into the folder
-WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
 
 
 def parse_address(text):
@@ -41,6 +42,8 @@ def parse_arguments(arguments):
                         help="where MAVLink comes in by UDP (default: 14551)")
     parser.add_argument("--watch", required=True, metavar="FOLDER", help="folder into which the camera writes")
     parser.add_argument("--system", type=int, help="the vehicle's system id (default: that of the first message)")
+    parser.add_argument("--component", type=int, default=1,
+                        help="the autopilot's component id; others of the system are ignored (default: %(default)d)")
     parser.add_argument("--camera", choices=("body", "level"), required=True,
                         help="body: fixed to the airframe, looking down; level: held straight down by a gimbal")
     parser.add_argument("--camera-yaw", type=float, default=0.0, metavar="DEGREES",
@@ -55,65 +58,41 @@ def parse_arguments(arguments):
     return parser.parse_args(arguments)
 
 
-def step_of(path, captured, vehicle, options):
-    """Throws Unknown."""
-    (north_m, east_m), attitude = vehicle.seen_at(captured)
-    if options.camera == "level":
-        attitude = (0.0, 0.0, attitude[2])
-    roll, pitch, yaw = turned(attitude, math.radians(options.camera_yaw))
-    agl_m = options.agl if options.agl is not None else vehicle.agl_m()
-    if agl_m <= 0.0:
-        raise Unknown(f"it was taken {agl_m:.1f} m above ground")
-    return {"time_us": round(captured * 1e6), "origin": options.origin, "north_m": round(north_m, 3),
-            "east_m": round(east_m, 3), "yaw_deg": round(math.degrees(yaw) % 360.0, 3),
-            "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3),
-            "agl_m": round(agl_m, 2), "image": str(path)}
-
-
-def hear(link, vehicle, system):
-    """Takes what has come; gives the system that is listened to."""
-    came = time.time()
+def hear(link, autopilot, vehicle):
+    """Takes what has come."""
+    came = time.monotonic()
     for message in messages(link.recv(65535)):
-        if system is None:
-            system = message.system
-            print(f"listening to system {system}", file=sys.stderr)
-        if message.system == system:
+        if autopilot.sent(message):
             vehicle.hear(message.name, message.fields, came)
-    return system
 
 
-def follow(link, pictures, vehicle, options):
-    system = options.system
-    waiting = []
+def follow(link, pictures, clock, options):
+    vehicle = Vehicle(options.by_air, options.takeoff_agl)
+    autopilot = Autopilot(options.system, options.component)
+    lines = Lines(vehicle, clock, options)
     looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
-            system = hear(link, vehicle, system)
+            hear(link, autopilot, vehicle)
         if time.monotonic() < looked + LOOK_S:
             continue
         looked = time.monotonic()
-        waiting += [(path, written - options.delay) for path, written in pictures()]
-        while waiting and (vehicle.knows(waiting[0][1]) or time.time() > waiting[0][1] + options.delay + WAIT_S):
-            path, captured = waiting.pop(0)
-            try:
-                print(json.dumps(step_of(path, captured, vehicle, options)), flush=True)
-                hole_s = vehicle.longest_hole_s()
-                if hole_s > LONGEST_HOLE_S:
-                    print(f"{path}: no velocity for {hole_s:.0f} s before it: the movement is a guess", file=sys.stderr)
-            except Unknown as why:
-                print(f"{path} is left out: {why}", file=sys.stderr)
+        clock.look()
+        for path, written in pictures():
+            lines.add(path, written - options.delay)
+        lines.print_due()
 
 
 def main(arguments=None):
     options = parse_arguments(arguments)
-    vehicle = Vehicle(options.by_air, options.takeoff_agl)
+    clock = WallClock()
     try:
-        pictures = NewPictures(options.watch)
+        pictures = NewPictures(options.watch, clock)
         family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
         with socket.socket(family, socket.SOCK_DGRAM) as link:
             link.bind(options.listen)
             print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)
-            follow(link, pictures, vehicle, options)
+            follow(link, pictures, clock, options)
     except BrokenPipeError:  # nobody reads the steps any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

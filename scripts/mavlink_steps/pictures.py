@@ -7,26 +7,38 @@ QUIET_S = 1.0  # a file that ends otherwise, as some cameras' do, is taken once 
 
 
 class NewPictures:
-    """Those that are written after this was made."""
+    """Those that are written after this was made. `clock`: a WallClock, by which files have their dates."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, clock):
         self._folder = pathlib.Path(folder)
+        self._clock = clock
+        self._written = {}  # of those that are not complete: date of the file, and time.monotonic() of that
         self._known = {path.name for path in self._candidates()}
 
     def __call__(self):
-        """Path and time of each that is complete since the last call, the oldest first."""
+        """Path and time.monotonic() of each that is complete since the last call, the oldest first."""
         complete = []
         for path in self._candidates():
             if path.name in self._known:
                 continue
             try:
-                written = path.stat().st_mtime
-                if self._is_whole(path) or time.time() - written > QUIET_S:
+                written = self._last_written(path)
+                if self._is_whole(path) or time.monotonic() - written > QUIET_S:
                     complete.append((written, path))
             except OSError:  # renamed or removed meanwhile
                 continue
-        self._known.update(path.name for _, path in complete)
+        for _, path in complete:
+            self._known.add(path.name)
+            del self._written[path.name]
         return [(path, written) for written, path in sorted(complete)]
+
+    def _last_written(self, path):
+        """By the clock as it was set when the file was first seen with its date."""
+        date_s = path.stat().st_mtime
+        seen = self._written.get(path.name)
+        if seen is None or seen[0] != date_s:
+            seen = self._written[path.name] = (date_s, self._clock.monotonic(date_s))
+        return seen[1]
 
     def _candidates(self):
         return [path for path in self._folder.iterdir() if path.suffix.lower() in ENDINGS]

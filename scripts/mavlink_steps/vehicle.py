@@ -2,6 +2,8 @@
 import collections
 import math
 
+from heights import Heights
+
 KEPT = 3000           # some minutes of telemetry
 LONGEST_HOLE_S = 2.0  # beyond it what lies between two messages is a guess
 
@@ -11,7 +13,7 @@ class Unknown(Exception):
 
 
 class BootClock:
-    """The autopilot's time since its start, as seconds of ours: messages are late by different amounts, so the least
+    """The autopilot's time since its start, as time.monotonic(): messages are late by different amounts, so the least
     late one counts. It may be forgotten by 0.1 ms a second, since clocks drift."""
 
     def __init__(self):
@@ -60,75 +62,89 @@ def turned(attitude, yaw):
 
 class Vehicle:
     """`by_air`: movements from airspeed and heading, as a track with wind_sigma_m_s takes them, instead of from the
-    estimator's velocity over ground. Positions are not used: they jump where the autopilot is told better ones."""
+    estimator's velocity over ground. Positions are not used: they jump where the autopilot is told better ones. All
+    times are those of time.monotonic()."""
 
     def __init__(self, by_air=False, takeoff_agl_m=0.0):
         self._by_air = by_air
-        self._takeoff_agl_m = takeoff_agl_m
+        self._heights = Heights(takeoff_agl_m)
         self._clock = BootClock()
         self._places = collections.deque(maxlen=KEPT)     # time, north, east
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
         self._velocity = None
-        self._hole_s = 0.0
-        self._above_takeoff_m = None
-        self._above_ground_m = None
+        self._holes = []  # when each ended
+        self._heard = -math.inf
 
     def hear(self, name, fields, came):
-        if not _finite(*fields.values()):
-            return
+        self._heard = came
         if name == "ATTITUDE":
-            self._turn(fields, self._clock.ours(fields["time_boot_ms"] / 1e3, came))
+            self._turn(fields, came)
         elif name == "LOCAL_POSITION_NED":
-            self._above_takeoff_m = -fields["z"]
+            if math.isfinite(fields["z"]):
+                self._heights.tell_above_takeoff(-fields["z"], came)
             if not self._by_air:
                 self._move((fields["vx"], fields["vy"]), self._clock.ours(fields["time_boot_ms"] / 1e3, came))
-        elif name == "VFR_HUD" and self._by_air and self._attitudes:
-            yaw = self._attitudes[-1][3]
-            self._move((fields["airspeed"] * math.cos(yaw), fields["airspeed"] * math.sin(yaw)), came)
-        elif name == "TERRAIN_REPORT" and fields["spacing"] > 0:
-            self._above_ground_m = fields["current_height"]
-        elif name == "ALTITUDE" and fields["bottom_clearance"] > 0.0:
-            self._above_ground_m = fields["bottom_clearance"]
+        elif name == "VFR_HUD" and self._by_air:
+            self._move_by_air(fields["airspeed"], came)
+        elif name == "TERRAIN_REPORT":
+            self._hear_of_terrain(fields["current_height"], fields["spacing"] > 0, came)
+        elif name == "ALTITUDE":
+            self._heights.tell_above_ground(fields["bottom_clearance"], came)
 
     def seen_at(self, when):
         """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
         place = between(self._places, when, "VFR_HUD" if self._by_air else "LOCAL_POSITION_NED")
         return place, between(self._attitudes, when, "ATTITUDE")
 
-    def agl_m(self):
-        if self._above_ground_m is not None:
-            return self._above_ground_m
-        if self._above_takeoff_m is None:
-            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED)")
-        return self._above_takeoff_m + self._takeoff_agl_m
+    def holes_before(self, when):
+        """How many there were in the velocities: the movement between a place before one and a place after it is not
+        known."""
+        return sum(ended <= when for ended in self._holes)
 
-    def longest_hole_s(self):
-        """Between two velocities, since it was asked last."""
-        hole_s, self._hole_s = self._hole_s, 0.0
-        return hole_s
+    def agl_m(self):
+        """As of the last message. Throws Unknown."""
+        height_m = self._heights.agl_m(self._heard)
+        if height_m is None:
+            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED)")
+        return height_m
 
     def knows(self, when):
         """Whether messages of that time and later ones have come."""
         return all(history and history[-1][0] >= when for history in (self._places, self._attitudes))
 
-    def _turn(self, fields, when):
-        yaw = fields["yaw"]
+    def _hear_of_terrain(self, height_m, is_known, came):
+        # Without any height it is the answer to a question about a place of which nothing is known. Those about other
+        # places cannot be told from the vehicle's own.
+        if is_known or height_m != 0.0:
+            self._heights.tell_above_ground(height_m if is_known else math.nan, came)
+
+    def _turn(self, fields, came):
+        attitude = (fields["roll"], fields["pitch"], fields["yaw"])
+        if not _finite(*attitude):
+            return
+        when = self._clock.ours(fields["time_boot_ms"] / 1e3, came)
+        roll, pitch, yaw = attitude
         if self._attitudes:
             if when <= self._attitudes[-1][0]:
                 return
             last = self._attitudes[-1][3]
             yaw = last + math.remainder(yaw - last, math.tau)
-        self._attitudes.append((when, fields["roll"], fields["pitch"], yaw))
+        self._attitudes.append((when, roll, pitch, yaw))
+
+    def _move_by_air(self, airspeed, came):
+        if self._attitudes and came - self._attitudes[-1][0] <= LONGEST_HOLE_S:
+            yaw = self._attitudes[-1][3]
+            self._move((airspeed * math.cos(yaw), airspeed * math.sin(yaw)), came)
 
     def _move(self, velocity, when):
-        if not self._places:
-            self._places.append((when, 0.0, 0.0))
-        elif when > self._places[-1][0]:
-            last, north, east = self._places[-1]
-            half_s = 0.5 * (when - last)
-            self._hole_s = max(self._hole_s, when - last)
-            self._places.append((when, north + half_s * (self._velocity[0] + velocity[0]),
-                                 east + half_s * (self._velocity[1] + velocity[1])))
-        else:
+        if not _finite(*velocity) or (self._places and when <= self._places[-1][0]):
             return
+        last, north, east = self._places[-1] if self._places else (when, 0.0, 0.0)
+        if when - last > LONGEST_HOLE_S:
+            self._holes.append(when)
+        elif self._velocity:
+            half_s = 0.5 * (when - last)
+            north += half_s * (self._velocity[0] + velocity[0])
+            east += half_s * (self._velocity[1] + velocity[1])
+        self._places.append((when, north, east))
         self._velocity = velocity

@@ -1,0 +1,44 @@
+"""Positions to an autopilot by UDP, unless they are too old."""
+import socket
+import struct
+import sys
+import time
+
+#: These say nothing of their age: a late position would move a flying vehicle back to where it was.
+FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
+#: These say how long the service took, but nothing of the way to it and back: where in the payload, in which unit.
+PROCESSING = {"global_position_sensor": ("<8xI", 1e-6), "command_int": ("<4xf", 1.0)}
+HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
+
+
+def told_age_s(packet_format, packet):
+    """How old a message says that its position is."""
+    if packet_format in FORMATS_WITHOUT_AGE:
+        return 0.0
+    layout, unit_s = PROCESSING[packet_format]
+    size = struct.calcsize(layout)
+    payload = packet[HEAD:-CHECKSUM][:size].ljust(size, b"\0")  # zeros at the end are not sent
+    return unit_s * struct.unpack(layout, payload)[0]
+
+
+class Sender:
+    """`max_age_s`: how much older than it says a position may be."""
+
+    def __init__(self, packet_format, address, max_age_s):
+        family, kind, protocol, _, self._address = socket.getaddrinfo(*address, type=socket.SOCK_DGRAM)[0]
+        self._socket = socket.socket(family, kind, protocol)
+        self._format = packet_format
+        self._max_age_s = max_age_s
+
+    def send(self, captured, packet):
+        """`captured`: when, by time.monotonic()."""
+        told_s = told_age_s(self._format, packet)
+        age_s = time.monotonic() - captured - told_s
+        if age_s > self._max_age_s:
+            than_told = f"er than the {told_s:.1f} s that it says" if told_s else ""
+            print(f"a position is not sent: it is {age_s:.1f} s old{than_told}", file=sys.stderr)
+            return
+        try:
+            self._socket.sendto(packet, self._address)
+        except OSError as error:  # the step is taken all the same
+            print(f"a position is not sent: {error}", file=sys.stderr)

@@ -1,0 +1,68 @@
+"""Lines of steps for scripts/ground_station."""
+import collections
+import json
+import math
+import sys
+import time
+
+from vehicle import LONGEST_HOLE_S, Unknown, turned
+
+WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
+
+
+class Lines:
+    """Pictures, and what the autopilot tells of the time at which each was taken. `clock`: a WallClock."""
+
+    def __init__(self, vehicle, clock, options):
+        self._vehicle = vehicle
+        self._clock = clock
+        self._options = options
+        self._waiting = collections.deque()  # path, time.monotonic()
+        self._origin = None
+        self._last_us = -math.inf
+
+    def add(self, path, captured):
+        ahead_s = captured - time.monotonic()
+        if ahead_s > WAIT_S:  # it would keep back all that come after it
+            print(f"{path} is left out: its time lies {ahead_s:.1f} s ahead", file=sys.stderr)
+        else:
+            self._waiting.append((path, captured))
+
+    def print_due(self):
+        """Those that wait for nothing more."""
+        while self._waiting and self._is_due(self._waiting[0][1]):
+            path, captured = self._waiting.popleft()
+            try:
+                step = self._step(path, captured)
+            except Unknown as why:
+                print(f"{path} is left out: {why}", file=sys.stderr)
+                continue
+            self._last_us = step["time_us"]
+            self._take_origin(step)
+            print(json.dumps(step), flush=True)
+
+    def _is_due(self, captured):
+        return self._vehicle.knows(captured) or time.monotonic() > captured + self._options.delay + WAIT_S
+
+    def _step(self, path, captured):
+        """Throws Unknown."""
+        (north_m, east_m), attitude = self._vehicle.seen_at(captured)
+        if self._options.camera == "level":
+            attitude = (0.0, 0.0, attitude[2])
+        roll, pitch, yaw = turned(attitude, math.radians(self._options.camera_yaw))
+        agl_m = self._options.agl if self._options.agl is not None else self._vehicle.agl_m()
+        if agl_m <= 0.0:
+            raise Unknown(f"it was taken {agl_m:.1f} m above ground")
+        time_us = self._clock.date_us(captured)
+        if time_us <= self._last_us:
+            raise Unknown("it was not taken after the one before it")
+        return {"time_us": time_us, "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
+                "north_m": round(north_m, 3), "east_m": round(east_m, 3),
+                "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
+                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2), "image": str(path)}
+
+    def _take_origin(self, step):
+        if self._origin not in (None, step["origin"]):
+            print(f"{step['image']}: no velocity for more than {LONGEST_HOLE_S:g} s before it: the movement is not "
+                  "known", file=sys.stderr)
+        self._origin = step["origin"]

@@ -1,0 +1,115 @@
+"""A service that fails in every way, for the tests of the ground station's client."""
+import contextlib
+import http.server
+import json
+import struct
+import sys
+import threading
+import time
+import urllib.parse
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = ROOT / "scripts" / "ground_station"
+sys.path.insert(0, str(PROGRAM))
+
+CONVERGED = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
+
+
+def step_of(path, body):
+    """The fields of a step, however it was sent."""
+    if body.startswith(b"{"):
+        return json.loads(body)
+    return dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(path).query))
+
+
+def packet_of(packet_format, told_s):
+    """Where the messages that say it have how long the service took."""
+    return {"global_position_sensor": struct.pack("<10xQI30x", 0, round(1e6 * told_s)),
+            "command_int": struct.pack("<10xff30x", 0.0, told_s)}.get(packet_format, b"a position")
+
+
+class FakeService:
+    """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
+    taken, "still at it" where it takes the one before that it had not told of; then 200. A step takes `delay_s` when
+    it comes first, and messages say that it took `told_s`."""
+
+    def __init__(self, script=(), delay_s=0.0, told_s=None):
+        self.script = list(script)
+        self.requests = []
+        self.last = {}    # step that was taken
+        self.before = {}  # step that came
+        self.ended = []   # tracks
+        self.came = set()
+        fake = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            protocol_version = "HTTP/1.1"
+
+            def log_message(self, *_):
+                pass
+
+            def answer(self, status, content):
+                self.send_response(status)
+                self.send_header("Content-Length", str(len(content)))
+                if status == 503:
+                    self.send_header("Retry-After", "1")
+                self.end_headers()
+                with contextlib.suppress(ConnectionError):  # a client that waits no longer
+                    self.wfile.write(content)
+
+            def do_GET(self):
+                last = {"last": {"status": "searching", **fake.last}} if fake.last else {}
+                self.answer(200, json.dumps({"id": "T", **last}).encode())
+
+            def do_DELETE(self):
+                fake.ended.append(self.path)
+                self.answer(204, b"")
+
+            def do_POST(self):
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                if self.path == "/v1/tracks":
+                    fake.requests.append((self.path, body, dict(self.headers)))
+                    fake.last = {}
+                    self.answer(201, b'{"id": "T"}')
+                    return
+                step = step_of(self.path, body)
+                if (self.path, body) not in fake.came:
+                    fake.came.add((self.path, body))
+                    time.sleep(delay_s)
+                said = fake.script.pop(0) if fake.script else 200
+                before, fake.before = fake.before, {name: int(step[name]) for name in ("sequence", "time_us")}
+                if said == "hang up":
+                    self.close_connection = True
+                    return
+                fake.requests.append((self.path, body, dict(self.headers)))
+                if said == "still at it":
+                    fake.last = before
+                    said = (409, {"code": "step-differs"})
+                status, answer = said if isinstance(said, tuple) else (said, {"code": "busy", "detail": "later"})
+                if status in (200, "lose"):
+                    fake.last = fake.before
+                if status == "lose":
+                    self.close_connection = True
+                elif said == 200 and step.get("format", "json") != "json":
+                    self.answer(200, packet_of(step["format"], delay_s if told_s is None else told_s))
+                else:
+                    self.answer(status, json.dumps({"status": "searching"} if said == 200 else answer).encode())
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True).start()
+        self.url = f"http://127.0.0.1:{self.server.server_address[1]}"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.server.shutdown()
+        self.server.server_close()
+
+    def steps(self):
+        return [step_of(path, body) for path, body, _ in self.requests if "/steps" in path]
+
+    def begun(self):
+        """What each track was begun with."""
+        return [json.loads(body) for path, body, _ in self.requests if path == "/v1/tracks"]

@@ -1,0 +1,234 @@
+#!/usr/bin/python3
+"""A flight that the ground station's client follows: movements against rotations, and a service that is busy, hangs up,
+or forgets."""
+import json
+import math
+import os
+import random
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from fake_service import CONVERGED, FakeService
+from words import said
+
+from service import Refused, Service, Silent
+from track import Track, movement
+
+
+class Movement(unittest.TestCase):
+    def test_takes_the_vehicle_from_the_first_place_to_the_second(self):
+        draw = random.Random(1)
+        for _ in range(200):
+            before, now = ([draw.uniform(-500, 500), draw.uniform(-500, 500), draw.uniform(-720, 720)] for _ in range(2))
+            moved = movement(before, now)
+            ahead = complex(math.cos(math.radians(before[2])), math.sin(math.radians(before[2])))  # north + i east
+            flown = ahead * complex(moved["forward_m"], moved["right_m"])
+            self.assertAlmostEqual(before[0] + flown.real, now[0], places=6)
+            self.assertAlmostEqual(before[1] + flown.imag, now[1], places=6)
+            self.assertLessEqual(abs(moved["turn_deg"]), 180.0)
+            self.assertAlmostEqual(math.cos(math.radians(before[2] + moved["turn_deg"] - now[2])), 1.0, places=9)
+
+    def test_turns_the_short_way_round(self):
+        self.assertAlmostEqual(movement((0, 0, 350.0), (0, 0, 10.0))["turn_deg"], 20.0)
+
+
+class Steps(unittest.TestCase):
+    def fly(self, fake, count, patience_s=10.0, **options):
+        service = Service(fake.url, patience_s)
+        self.addCleanup(service.close)
+        track = Track(service, {"map": "m", "lat": 1, "lon": 2, "radius_m": 3}, **options)
+        return track, [track.step((10.0 * i, 0.0, 0.0), {"time_us": i + 1}) for i in range(count)]
+
+    def test_are_sent_again_with_the_same_number_while_the_service_is_away_or_busy(self):
+        with FakeService([200, "hang up", "lose", 503, 502, 200]) as fake:
+            began = time.monotonic()
+            self.fly(fake, 2)
+            self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2, 2, 2, 2])
+            self.assertEqual(len({json.dumps(s) for s in fake.steps()[1:]}), 1, "each as the first")
+            self.assertGreater(time.monotonic() - began, 1.0, "Retry-After")
+
+    def test_that_may_have_been_taken_keep_their_number(self):
+        with FakeService([200] + ["lose"] * 100) as fake:
+            track, _ = self.fly(fake, 1, patience_s=0.2)
+            with self.assertRaises(Silent):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            fake.script.clear()
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual(fake.steps()[-1]["sequence"], 3)
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 15.0)
+
+    def test_that_never_arrived_leave_no_gap_in_numbers_and_movement(self):
+        with FakeService([200] + ["hang up"] * 100) as fake:
+            track, _ = self.fly(fake, 1, patience_s=0.2)
+            for i in (2, 3):
+                with self.assertRaises(Silent):
+                    track.step((10.0, 0.0, 0.0), {"time_us": i})
+            fake.script.clear()
+            track.step((25.0, 0.0, 0.0), {"time_us": 4})
+            self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2])
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 25.0)
+
+    def test_are_the_next_ones_of_a_client_that_was_stopped_while_it_waited(self):
+        for fate, sequence, forward_m in (("lose", 3, 15.0), ("hang up", 2, 25.0)):
+            with FakeService([200] + [fate] * 100) as fake, tempfile.TemporaryDirectory() as folder:
+                state = Path(folder, "state.json")
+                track, _ = self.fly(fake, 1, patience_s=0.2, state_file=state)
+                with self.assertRaises(Silent):
+                    track.step((10.0, 0.0, 0.0), {"time_us": 2})
+                fake.script.clear()
+                Track(track._service, {"map": "m"}, state).step((25.0, 0.0, 0.0), {"time_us": 3})
+                self.assertEqual(fake.steps()[-1]["sequence"], sequence)
+                self.assertAlmostEqual(fake.steps()[-1]["forward_m"], forward_m)
+                self.assertEqual(len(fake.begun()), 1)
+
+    def test_come_after_one_that_the_service_was_still_at_when_it_was_asked(self):
+        with FakeService([200] + ["hang up"] * 100) as fake:
+            track, _ = self.fly(fake, 1, patience_s=0.2)
+            with self.assertRaises(Silent):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            fake.script = ["still at it"]
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2, 3])
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 15.0)
+            self.assertEqual(len(fake.begun()), 1)
+
+    def test_that_were_refused_leave_no_gap_in_numbers_and_movement(self):
+        with FakeService([200, (422, {"code": "image-damaged", "detail": "no picture"})]) as fake:
+            track, _ = self.fly(fake, 1)
+            with self.assertRaisesRegex(Refused, "422 image-damaged: no picture"):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual(fake.steps()[-1]["sequence"], 2)
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 25.0)
+
+    def test_begin_a_new_track_without_a_movement_where_theirs_has_ended(self):
+        with FakeService([200, (410, {"code": "track-ended"})]) as fake:
+            self.fly(fake, 2)
+            self.assertEqual([path for path, _, _ in fake.requests],
+                             ["/v1/tracks", "/v1/tracks/T/steps", "/v1/tracks/T/steps", "/v1/tracks", "/v1/tracks/T/steps"])
+            self.assertEqual(fake.steps()[-1]["sequence"], 1)
+            self.assertNotIn("forward_m", fake.steps()[-1])
+
+    def test_begin_a_new_track_around_the_last_known_place_where_this_one_takes_none_any_more(self):
+        for refusal in ((409, {"code": "time-backwards"}),
+                        (400, {"code": "parameter-out-of-range", "field": "right_m"}),
+                        (409, {"code": "step-differs"}), (409, {"code": "step-late"})):
+            with FakeService([CONVERGED, refusal]) as fake:
+                track, _ = self.fly(fake, 0)
+                track.step((0.0, 0.0, 0.0), {"time_us": 5_000_000})
+                track.step((4e6, 0.0, 0.0), {"time_us": 2_000_000})
+                self.assertEqual((fake.begun()[-1]["lat"], fake.begun()[-1]["lon"]), (7.0, 8.0))
+                self.assertEqual(fake.steps()[-1]["sequence"], 1)
+                self.assertNotIn("forward_m", fake.steps()[-1])
+                track.step((4e6 + 30.0, 0.0, 0.0), {"time_us": 3_000_000})
+                self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 30.0)
+
+    def test_keep_their_track_where_only_one_of_them_is_wrong(self):
+        for refusal in ((409, {"code": "time-backwards"}), (400, {"code": "parameter-out-of-range", "field": "agl_m"}),
+                        (400, {"code": "missing-parameter", "field": "forward_m"})):
+            with FakeService([CONVERGED, refusal]) as fake:
+                track, _ = self.fly(fake, 0)
+                track.step((0.0, 0.0, 0.0), {"time_us": 5_000_000})
+                with self.assertRaises(Refused):
+                    track.step((10.0, 0.0, 0.0), {"time_us": 4_500_000})
+                self.assertEqual(len(fake.begun()), 1)
+
+    def test_leave_only_so_many_tracks_behind(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 0)
+            for i in range(12):
+                track.step((0.0, 0.0, 0.0), {"time_us": i}, origin=i)
+            self.assertEqual((len(fake.begun()), fake.ended), (12, ["/v1/tracks/T"] * 3))
+
+    def test_say_nothing_of_the_covariance_of_a_movement_that_is_not_known(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 0)
+            for i in (1, 2):
+                track.step((10.0 * i, 0.0, 0.0), {"time_us": i, "covariance": [1.0] * 9})
+            self.assertEqual(["covariance" in step for step in fake.steps()], [False, True])
+
+    def test_begin_a_new_track_around_the_last_known_place_where_the_origin_is_another(self):
+        with FakeService([CONVERGED]) as fake:
+            track, _ = self.fly(fake, 2)  # 10 m from the known place
+            track.step((900.0, 0.0, 0.0), {"time_us": 3}, origin="restarted")
+            begun = fake.begun()[-1]
+            self.assertEqual((begun["lat"], begun["lon"]), (7.0, 8.0))
+            self.assertAlmostEqual(begun["radius_m"], 100.0 + 20.0 + 10.0, delta=50.0 * 2.0)
+            self.assertNotIn("forward_m", fake.steps()[-1])
+            track.step((930.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
+            self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 30.0)
+
+    def test_know_less_of_the_last_known_place_with_every_restart(self):
+        with FakeService([CONVERGED]) as fake:
+            track, _ = self.fly(fake, 1)
+            radii_m = []
+            for origin in ("a", "b"):
+                time.sleep(0.5)
+                track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin=origin)
+                radii_m.append(fake.begun()[-1]["radius_m"])
+            self.assertGreater(radii_m[1], radii_m[0] + 20.0)
+
+    def test_forget_a_flight_of_long_ago(self):
+        for age_s, tracks in ((60.0, 1), (3600.0, 2)):
+            with FakeService([CONVERGED]) as fake, tempfile.TemporaryDirectory() as folder:
+                state = Path(folder, "state.json")
+                self.fly(fake, 1, state_file=state)
+                kept = json.loads(state.read_text())
+                state.write_text(json.dumps({**kept, "taken_s": kept["taken_s"] - age_s}))
+                self.fly(fake, 1, state_file=state)
+                self.assertEqual(len(fake.begun()), tracks)
+                self.assertEqual(fake.begun()[-1]["lat"], 1, "where the operator says")
+
+    def test_are_not_looked_for_around_a_place_that_was_known_too_far_away(self):
+        with FakeService([CONVERGED]) as fake:
+            track, _ = self.fly(fake, 1)
+            track.step((20_000.0, 0.0, 0.0), {"time_us": 3})
+            track.step((0.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
+            self.assertEqual(fake.begun()[-1]["lat"], 1)
+
+    def test_refuse_the_state_of_another_map(self):
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
+            state = os.path.join(folder, "state.json")
+            self.fly(fake, 1, state_file=state)
+            with self.assertRaisesRegex(ValueError, "not of a track over the map 'other'"):
+                Track(Service(fake.url), {"map": "other"}, state)
+            kept = Path(state).read_text()
+            for damaged in ("no state", "[" * 100_000, kept.replace("0.0", "NaN", 1),
+                            kept.replace("0.0", "Infinity", 1)):
+                Path(state).write_text(damaged)
+                with self.assertRaisesRegex(ValueError, "not of a track over the map 'm'"):
+                    Track(Service(fake.url), {"map": "m"}, state)
+
+    def test_are_not_begun_with_a_state_that_cannot_be_written(self):
+        with FakeService() as fake, self.assertRaises(OSError):
+            Track(Service(fake.url), {"map": "m"}, "/nowhere/state.json")
+
+    def test_go_on_while_the_disk_is_full(self):
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder, said() as words:
+            state = Path(folder, "state.json")
+            track, _ = self.fly(fake, 1, state_file=state)
+            full = Path(folder, "state.json.part")
+            full.symlink_to("/dev/full")
+            for i in (2, 3):
+                track.step((10.0 * i, 0.0, 0.0), {"time_us": i})
+            self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2, 3])
+            self.assertEqual(words.getvalue().count("is not kept up to date"), 1)
+            full.unlink()
+            track.step((40.0, 0.0, 0.0), {"time_us": 4})
+            self.assertEqual(json.loads(state.read_text())["sequence"], 4)
+            full.symlink_to("/dev/full")
+            track.step((50.0, 0.0, 0.0), {"time_us": 5})
+            self.assertEqual(words.getvalue().count("is not kept up to date"), 2)
+
+    def test_carry_the_password_of_a_proxy(self):
+        with FakeService() as fake:
+            service = Service(fake.url.replace("http://", "http://me:p%40ss@"))
+            self.addCleanup(service.close)
+            Track(service, {"map": "m"}).step((0.0, 0.0, 0.0), {"time_us": 1})
+            self.assertEqual(fake.requests[-1][2]["Authorization"], "Basic bWU6cEBzcw==")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Where a vehicle was and how high: angles against rotation matrices, and flights whose truth is known."""
+import math
+import random
+import sys
+import unittest
+from pathlib import Path
+
+from words import said
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
+
+from vehicle import Unknown, Vehicle, turned  # noqa: E402
+
+
+def about(axis, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return {0: ((1, 0, 0), (0, c, -s), (0, s, c)), 1: ((c, 0, s), (0, 1, 0), (-s, 0, c)),
+            2: ((c, -s, 0), (s, c, 0), (0, 0, 1))}[axis]
+
+
+def product(*matrices):
+    result, *others = matrices
+    for other in others:
+        result = tuple(tuple(sum(row[k] * other[k][j] for k in range(3)) for j in range(3)) for row in result)
+    return result
+
+
+def rotation(roll, pitch, yaw):
+    return product(about(2, yaw), about(1, pitch), about(0, roll))
+
+
+class Camera(unittest.TestCase):
+    def test_that_is_turned_in_the_airframe_has_the_attitude_of_both_rotations(self):
+        draw = random.Random(3)
+        for _ in range(300):
+            attitude = (draw.uniform(-1.4, 1.4), draw.uniform(-1.4, 1.4), draw.uniform(-9, 9))
+            yaw = draw.uniform(-4, 4)
+            expected = product(rotation(*attitude), about(2, yaw))
+            actual = rotation(*turned(attitude, yaw))
+            for row, other in zip(actual, expected):
+                for a, b in zip(row, other):
+                    self.assertAlmostEqual(a, b, places=9)
+
+
+class Flights(unittest.TestCase):
+    def test_round_a_circle_come_back_whatever_the_links_delays(self):
+        draw = random.Random(4)
+        vehicle = Vehicle()
+        radius_m, rate = 100.0, math.tau / 60.0  # once a minute
+        for i in range(601):
+            t = 0.1 * i
+            came = 1000.0 + t + (0.0 if i % 7 == 0 else draw.uniform(0.0, 0.05))
+            yaw = math.remainder(rate * t, math.tau)
+            vehicle.hear("ATTITUDE", {"time_boot_ms": round(1e3 * t), "roll": 0.1, "pitch": 0.0, "yaw": yaw}, came)
+            velocity = (radius_m * rate * math.cos(rate * t), radius_m * rate * math.sin(rate * t))
+            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": round(1e3 * t), "z": -80.0, "vx": velocity[0],
+                                                "vy": velocity[1]}, came)
+        for t in (15.03, 30.0, 44.97, 59.9):
+            (north, east), (roll, _, yaw) = vehicle.seen_at(1000.0 + t)
+            self.assertAlmostEqual(north, radius_m * math.sin(rate * t), delta=0.15)
+            self.assertAlmostEqual(east, radius_m * (1.0 - math.cos(rate * t)), delta=0.15)
+            self.assertAlmostEqual(math.remainder(yaw - rate * t, math.tau), 0.0, delta=0.002)
+            self.assertAlmostEqual(roll, 0.1)
+        self.assertEqual(vehicle.agl_m(), 80.0)
+
+    def test_by_air_go_where_the_nose_points(self):
+        vehicle = Vehicle(by_air=True)
+        for i in range(11):
+            vehicle.hear("ATTITUDE", {"time_boot_ms": 100 * i, "roll": 0, "pitch": 0, "yaw": 0.5 * math.pi}, 5.0 + 0.1 * i)
+            vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 5.0 + 0.1 * i)
+            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 100 * i, "z": -9, "vx": 3.0, "vy": 0.0}, 5.0 + 0.1 * i)
+        (north, east), _ = vehicle.seen_at(6.0)
+        self.assertAlmostEqual(north, 0.0, places=6)
+        self.assertAlmostEqual(east, 20.0, places=6)
+
+    def test_are_high_above_ground_where_the_autopilot_knows_it_and_else_above_the_take_off(self):
+        vehicle = Vehicle(takeoff_agl_m=12.0)
+        with self.assertRaises(Unknown):
+            vehicle.agl_m()
+        vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 0, "z": -80.0, "vx": 0.0, "vy": 0.0}, 1.0)
+        self.assertEqual(vehicle.agl_m(), 92.0)
+        vehicle.hear("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 1.0)
+        vehicle.hear("ALTITUDE", {"bottom_clearance": math.nan}, 1.0)
+        self.assertEqual(vehicle.agl_m(), 92.0, "neither knows the ground")
+        vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
+        with said() as words:
+            self.assertEqual(vehicle.agl_m(), 70.0)
+        self.assertEqual(words.getvalue(), "the height above ground is known now\n")
+
+    def climb(self, vehicle, height_m, came):
+        vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": round(1e3 * came), "z": -height_m, "vx": 0.0, "vy": 0.0},
+                     came)
+
+    def test_are_no_longer_as_high_above_ground_as_was_told_seconds_ago(self):
+        vehicle = Vehicle(takeoff_agl_m=12.0)
+        with said() as words:
+            vehicle.hear("ALTITUDE", {"bottom_clearance": 35.0}, 1.0)
+            for came in (1.5, 2.0, 3.0, 4.0, 5.0):
+                self.climb(vehicle, 50.0 * came, came)
+                self.assertEqual(vehicle.agl_m(), 35.0 if came < 3.5 else 50.0 * came + 12.0)
+            self.assertEqual(words.getvalue().count("not known any more"), 1)
+            vehicle.hear("ALTITUDE", {"bottom_clearance": 36.0}, 5.0)
+            self.assertEqual((vehicle.agl_m(), vehicle.agl_m()), (36.0, 36.0))
+            self.assertEqual(words.getvalue().count("known now"), 1)
+
+    def test_are_no_longer_above_ground_that_the_autopilot_lost(self):
+        for name, fields, height_m in (
+                ("ALTITUDE", {"bottom_clearance": math.nan}, 80.0), ("ALTITUDE", {"bottom_clearance": -1.0}, 80.0),
+                ("ALTITUDE", {"bottom_clearance": math.inf}, 80.0),
+                ("TERRAIN_REPORT", {"spacing": 0, "current_height": 300.0}, 80.0),
+                ("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 70.0),  # of another place, asked for
+                ("ALTITUDE", {"bottom_clearance": 60.0, "altitude_terrain": math.nan}, 60.0)):
+            vehicle = Vehicle()
+            self.climb(vehicle, 80.0, 1.0)
+            vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
+            vehicle.hear(name, fields, 1.1)
+            self.assertEqual(vehicle.agl_m(), height_m, (name, fields))
+
+    def test_by_air_have_a_height_where_the_velocity_over_ground_is_unknown(self):
+        vehicle = Vehicle(by_air=True)
+        vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 0, "z": -80.0, "vx": math.nan, "vy": math.nan}, 1.0)
+        self.assertEqual(vehicle.agl_m(), 80.0)
+
+    def test_have_no_height_that_was_heard_long_ago(self):
+        vehicle = Vehicle(by_air=True)
+        self.climb(vehicle, 80.0, 1.0)
+        vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 9.0)
+        with self.assertRaisesRegex(Unknown, "no height"):
+            vehicle.agl_m()
+
+    def test_are_unknown_where_nothing_was_heard(self):
+        vehicle = Vehicle()
+        for boot_ms in (0, 1000, 21000, 22000):
+            vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, boot_ms / 1e3)
+            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 1, "vy": 0}, boot_ms / 1e3)
+        self.assertEqual([vehicle.holes_before(when) for when in (0.0, 1.0, 20.9, 21.0, 22.0)], [0, 0, 0, 1, 1])
+        self.assertAlmostEqual(vehicle.seen_at(21.0)[0][0], 1.0, msg="nothing is guessed")
+        self.assertAlmostEqual(vehicle.seen_at(22.0)[0][0] - vehicle.seen_at(21.0)[0][0], 1.0)
+        self.assertAlmostEqual(vehicle.seen_at(0.5)[0][0], 0.5)
+        for when in (-5.0, 10.0, 25.0):
+            with self.assertRaises(Unknown):
+                vehicle.seen_at(when)
+
+    def test_outlast_a_restart_of_the_autopilot(self):
+        vehicle = Vehicle()
+        for came, boot_ms in ((100.0, 90_000), (101.0, 91_000), (103.0, 500), (104.0, 1500)):
+            vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, came)
+            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 2, "vy": 0}, came)
+        self.assertAlmostEqual(vehicle.seen_at(104.0)[0][0], 8.0, places=2)
+
+
+    def test_by_air_do_not_go_where_the_nose_pointed_long_ago(self):
+        vehicle = Vehicle(by_air=True)
+        vehicle.hear("ATTITUDE", {"time_boot_ms": 0, "roll": 0, "pitch": 0, "yaw": 0}, 5.0)
+        for i in range(100):
+            vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 5.0 + 0.1 * i)
+        vehicle.hear("ATTITUDE", {"time_boot_ms": 10_000, "roll": 0, "pitch": 0, "yaw": 0}, 15.0)
+        vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 15.0)
+        self.assertEqual(vehicle.holes_before(15.0), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

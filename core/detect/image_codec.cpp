@@ -109,6 +109,14 @@ CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
 }
 
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
+  constexpr int kLongestSide = 1'000'000;  // of libpng
+  if (std::max(cells.cols(), cells.rows()) > kLongestSide) {
+    throw LimitExceeded(
+        "too-many-cells",
+        fmt::format("a PNG has at most {} columns and rows, not {} x {}: ask for larger cells, a smaller "
+                    "window or another format",
+                    kLongestSide, cells.cols(), cells.rows()));
+  }
   cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4);
   for (int row = 0; row < cells.rows(); ++row) {
     for (int col = 0; col < cells.cols(); ++col) {

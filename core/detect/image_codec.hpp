@@ -36,7 +36,8 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels);
 /// ("feature-map-coloured").
 CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels);
 
-/// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell.
+/// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell; LimitExceeded
+/// ("too-many-cells") for more in a row or column than a PNG holds.
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
 
 /// A picture of the ground as PNG, of which decode_image() and frame_image() make the same again (grey as BGR where not

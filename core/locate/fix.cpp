@@ -144,7 +144,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
         "roads are";
   }
   fix.probability = decision.probability;
-  for (std::size_t i = 0; i < decision.weights.size(); ++i) {
+  const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.max_modes)));
+  for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
   fix.figures = decision.figures;

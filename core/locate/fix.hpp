@@ -20,8 +20,8 @@
 namespace roadfix {
 
 struct FixOptions {
-  double confidence = 0.99;  ///< status is `fix` only if the probability of the best mode reaches it
-  int max_modes = 8;
+  double confidence = 0.99;      ///< status is `fix` only if the probability of the best mode reaches it
+  int max_modes = kRankedModes;  ///< told at most; fewer change nothing else
   /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
   /// [0, kMaxScaleRange].
   double scale_range = 0.0;

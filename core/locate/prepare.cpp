@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kLargestSideM = 20'000.0;
 constexpr int kMaxCellsAcross = 8192;
-constexpr double kMaxSidesOff = 10.0;  // a telephoto camera looks less far ahead
+// Further off the least turn moves the footprint by more than it takes to tell places apart.
+constexpr double kMaxSidesOff = 3.0;
 
 void require_usable(const FeatureMap& features) {
   if (features.cells.empty()) {
@@ -46,15 +47,41 @@ void require_nadir_near(const FeatureMap& features, double cell_m) {
   if (off <= max_off && off + 0.5 * std::hypot(cols, rows) <= max_reach) return;
   throw InvalidInput("nadir-out-of-range",
                      fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
-                                 "{} cells: check nadir_col and nadir_row, at most ten times the longer side is "
-                                 "allowed, and {} cells of the map to the farthest corner",
-                                 off, cols, rows, kMaxCellsAcross));
+                                 "{} cells: check nadir_col and nadir_row, at most {:.0f} times the longer side "
+                                 "of what was observed is allowed, and {} cells of the map to the farthest corner",
+                                 off, cols, rows, kMaxSidesOff, kMaxCellsAcross));
+}
+
+/// Without the rows and columns around that hold nothing observed: how large a canvas is says nothing. As it was where
+/// nothing was observed at all.
+FeatureMap cropped_to_observed(const FeatureMap& features) {
+  const CellArray& cells = features.cells;
+  int first_col = cells.cols();
+  int last_col = -1;
+  int first_row = cells.rows();
+  int last_row = -1;
+  for (int row = 0; row < cells.rows(); ++row) {
+    for (int col = 0; col < cells.cols(); ++col) {
+      if (!is_observed(cells.at(col, row))) continue;
+      first_col = std::min(first_col, col);
+      last_col = std::max(last_col, col);
+      first_row = std::min(first_row, row);
+      last_row = row;
+    }
+  }
+  if (last_row < 0) return features;
+  FeatureMap result = features;
+  result.cells = CellArray(last_col - first_col + 1, last_row - first_row + 1);
+  paste(cells, result.cells, -first_col, -first_row);
+  result.nadir = {features.nadir.col - first_col, features.nadir.row - first_row};
+  return result;
 }
 
 }  // namespace
 
-FeatureMap in_cells_of(const MapView& map, const FeatureMap& features) {
-  require_usable(features);
+FeatureMap in_cells_of(const MapView& map, const FeatureMap& given) {
+  require_usable(given);
+  const FeatureMap features = cropped_to_observed(given);
   double cell_m = map.cell_m;
   while (2.0 * cell_m <= 1.01 * features.cell_m) cell_m *= 2.0;
   const double cells_across = features.cell_m * std::max(features.cells.cols(), features.cells.rows()) / cell_m;

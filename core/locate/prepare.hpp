@@ -6,7 +6,8 @@
 
 namespace roadfix {
 
-/// The feature map in cells of the map or of one of its overviews: the coarsest that still hold what it shows.
+/// What was observed of the feature map, in cells of the map or of one of its overviews: the coarsest that still hold
+/// what it shows.
 /// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 

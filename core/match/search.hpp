@@ -31,8 +31,12 @@ using GridReader = std::function<RoadGrid(const GridGeometry& geometry)>;
 
 inline constexpr double kMaxScaleRange = 0.3;
 
+/// Modes that are compared at full resolution, however few are asked for: what the figures of a search say of its best
+/// place was learned with so many.
+inline constexpr int kRankedModes = 8;
+
 struct SearchOptions {
-  int max_modes = 8;
+  int max_modes = kRankedModes;  ///< more of them follow those that are compared
   /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMaxScaleRange].
   double scale_range = 0.0;
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too

@@ -59,6 +59,14 @@ double side_seen_m(const FeatureMap& features) {
   return features.cell_m * std::sqrt(static_cast<double>(features.cells.observed_count()));
 }
 
+/// From the nadir, about which headings turn the footprint, to what lies farthest along its longer side; for a nadir
+/// within the footprint that of one in its middle.
+double radius_of(const FeatureMap& features, double side_m) {
+  const double off_m = features.cell_m * std::hypot(features.nadir.col - features.cells.cols() / 2.0,
+                                                    features.nadir.row - features.cells.rows() / 2.0);
+  return std::max(0.5 * side_m, off_m);
+}
+
 }  // namespace
 
 SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
@@ -67,7 +75,7 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
       side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())),
       seen_m_(side_seen_m(features)) {
   const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region);
-  const double radius_m = 0.5 * side_m_;
+  const double radius_m = radius_of(features, side_m_);
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
   const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);

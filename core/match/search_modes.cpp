@@ -88,6 +88,14 @@ std::vector<SearchMode> modes_of(const Level& finest, const std::vector<LatticeP
   return modes;
 }
 
+void append_new(const Level& finest, const std::vector<SearchMode>& more, std::vector<SearchMode>& modes) {
+  for (const SearchMode& mode : more) {
+    if (std::ranges::none_of(modes, [&](const SearchMode& known) { return on_one_peak(finest, mode, known); })) {
+      modes.push_back(mode);
+    }
+  }
+}
+
 /// The first of the modes that is around the region, and not the best one in it seen from across the border.
 std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegion& scanned,
                                       const std::vector<SearchMode>& modes, const SearchMode& best) {
@@ -129,9 +137,12 @@ void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOpt
   set_rivals(inside, around, tiny ? 2 * kSurvivors : kSurvivors, result.background);
   const double all = poses_of(scanned);
   result.background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;
-  const auto wanted = static_cast<std::size_t>(std::max(1, options.max_modes));
-  result.modes = modes_of(finest, inside, wanted, deadline, result);
+  result.modes = modes_of(finest, inside, kRankedModes, deadline, result);
   if (result.modes.empty()) return;
+  if (options.max_modes > kRankedModes) {
+    append_new(finest, modes_of(finest, inside, static_cast<std::size_t>(options.max_modes), deadline, result),
+               result.modes);
+  }
   SearchMode& best = result.modes.front();
   best.shared_road_m2 = shared_road_m2(finest, best);
   if (!options.surroundings) return;

@@ -26,7 +26,7 @@ struct Request {
   std::string body;                            ///< unpacked if it was sent with gzip
   std::string id;                              ///< of the client (X-Request-Id) or made up; echoed
   std::string client;                          ///< address of the peer
-  Clock::time_point received;                  ///< whole, the body included
+  Clock::time_point received;                  ///< its head; a body may take long to follow
   Clock::time_point deadline = Clock::time_point::max();
   /// Whether the client has hung up and waits for no answer. Any thread may ask while the request is answered.
   std::function<bool()> abandoned = [] { return false; };

@@ -92,6 +92,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
   Exchange& exchange = *t_exchange;
   exchange.request = translated(head, exchange, settings_.proxies);
   Request& request = exchange.request;
+  request.received = Clock::now();
   exchange.must_close =
       announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
                                   head.method != "POST" && head.method != "DELETE");
@@ -143,13 +144,13 @@ Response Server::Impl::answered(Exchange& exchange) {
   try {
     const Route& route = *exchange.match.route;
     Request& request = exchange.request;
-    request.received = Clock::now();
-    request.deadline = request.received + settings_.request_time;
+    const Clock::time_point whole = Clock::now();
+    request.deadline = whole + settings_.request_time;
     request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
     if (route.load == Load::kLight) return route.handler(request);
     const auto prepared = route.prepare ? route.prepare(request) : nullptr;
     const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
-    const Admission::Ticket ticket = admission_.enter(request.received + settings_.turn_time, given_up);
+    const Admission::Ticket ticket = admission_.enter(whole + settings_.turn_time, given_up);
     request.deadline = Clock::now() + settings_.request_time;
     return prepared ? prepared() : route.handler(request);
   } catch (const Interrupted&) {

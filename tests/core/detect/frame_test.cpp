@@ -114,6 +114,35 @@ TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
   EXPECT_EQ(testing::code_of([&] { gsd_at(2000.0); }), "frame-too-coarse");
 }
 
+TEST(GroundSeen, ReachesFiveHeightsFarWhereTheHorizonIsInTheFrame) {
+  const HalfMetreDetector detector;
+  cv::Mat pixels(kFrame, CV_8UC1);
+  cv::randu(pixels, 0, 255);
+  FrameCamera camera = level();
+  camera.pitch = Angle::degrees(60);
+  for (const double agl_m : {60.0, 120.0, 300.0}) {
+    camera.agl_m = agl_m;
+    const GroundView view = ground_seen({pixels, cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))}, camera, detector, 4e7);
+    EXPECT_NEAR(view.nadir_px.y * view.image.gsd_m, 5.0 * agl_m, 2.0);
+    EXPECT_LE(view.image.pixels.cols * view.image.gsd_m, 10.0 * agl_m + 2.0);
+  }
+}
+
+TEST(GroundSeen, HasNoPaintedBorderAndNoBlankGround) {
+  const HalfMetreDetector detector;
+  cv::Mat pixels(400, 400, CV_8UC3);
+  cv::theRNG().state = 3;
+  cv::randu(pixels, 20, 230);
+  pixels.colRange(0, 10).setTo(cv::Scalar::all(255));                 // 5 m at the left edge
+  pixels(cv::Rect(200, 200, 80, 80)).setTo(cv::Scalar(200, 90, 40));  // 40 m within
+  const GroundImage frame{pixels, cv::Mat(pixels.size(), CV_8UC1, cv::Scalar(255)), 0.5};
+  const GroundImage seen = ground_seen(frame, {}, detector, 1e7).image;
+  EXPECT_EQ(cv::countNonZero(seen.observed.colRange(0, 10)), 0);
+  EXPECT_EQ(cv::countNonZero(seen.observed(cv::Rect(200, 200, 80, 80))), 0);
+  EXPECT_GT(cv::countNonZero(seen.observed), 400 * 390 - 100 * 100);
+  EXPECT_EQ(cv::countNonZero(frame.observed), 400 * 400) << "the frame itself stays as it was";
+}
+
 TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
   const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
   for (const double pitch : {-90.0, -85.0, 90.0}) {

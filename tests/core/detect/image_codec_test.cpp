@@ -26,6 +26,11 @@ std::vector<std::uint8_t> encoded(const char* extension, const cv::Mat& image) {
   return bytes;
 }
 
+TEST(FeatureMapPng, HasNoMoreColumnsThanLibpngReads) {
+  EXPECT_NO_THROW(encode_feature_map(CellArray(1'000'000, 1, kNoRoad)));
+  EXPECT_EQ(testing::code_of([] { encode_feature_map(CellArray(1'000'001, 1, kNoRoad)); }), "too-many-cells");
+}
+
 TEST(FeatureMapCodec, EveryCellValueComesBack) {
   CellArray cells(16, 16);
   for (int i = 0; i < 256; ++i) cells.at(i % 16, i / 16) = static_cast<Cell>(i);

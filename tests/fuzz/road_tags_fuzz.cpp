@@ -1,4 +1,4 @@
-// Attributes of road features as they come from the files of strangers: hstore text, widths, tables of rules.
+// Attributes of road features as they come from the files of strangers: hstore and JSON text, widths, tables of rules.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  const auto tags = roadfix::parse_hstore(text);
+  const auto tags = roadfix::parse_tags(text);
   static const roadfix::RoadRules rules;
   const auto lookup = [&tags](std::string_view key) {
     const auto found = tags.find(key);

@@ -1,5 +1,8 @@
 #include "tiles/sources/osm_tags.hpp"
 
+#include <cpl_error.h>
+#include <cpl_json.h>
+
 #include <optional>
 #include <utility>
 
@@ -35,10 +38,21 @@ std::optional<std::string> quoted(std::string_view& rest) {
   return std::nullopt;
 }
 
+TagMap parse_json(std::string_view text) {
+  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  TagMap tags;
+  CPLJSONDocument document;
+  if (!document.LoadMemory(std::string(text))) return tags;
+  for (const CPLJSONObject& tag : document.GetRoot().GetChildren()) {
+    if (tag.GetType() != CPLJSONObject::Type::Null) tags.insert_or_assign(tag.GetName(), tag.ToString());
+  }
+  return tags;
+}
+
 }  // namespace
 
-std::map<std::string, std::string, std::less<>> parse_hstore(std::string_view text) {
-  std::map<std::string, std::string, std::less<>> tags;
+TagMap parse_hstore(std::string_view text) {
+  TagMap tags;
   do {
     std::optional<std::string> key = quoted(text);
     if (!key || !skip(text, "=>")) return tags;
@@ -48,6 +62,11 @@ std::map<std::string, std::string, std::less<>> parse_hstore(std::string_view te
     tags.insert_or_assign(std::move(*key), std::move(*value));
   } while (skip(text, ","));
   return tags;
+}
+
+TagMap parse_tags(std::string_view text) {
+  skip_spaces(text);
+  return text.starts_with('{') ? parse_json(text) : parse_hstore(text);
 }
 
 }  // namespace roadfix

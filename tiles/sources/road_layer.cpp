@@ -21,7 +21,10 @@ bool stands_for_nothing(const std::string& value) {
   return std::ranges::find(kWords, lower_case(value)) != kWords.end();
 }
 
-/// Attributes of one feature, those packed in hstore text included.
+/// Attributes in which programs pack those tags that have none of their own.
+constexpr std::array<std::string_view, 3> kPacked{"other_tags", "all_tags", "tags"};
+
+/// Attributes of one feature, the packed ones included.
 class FeatureTags {
  public:
   FeatureTags(const OGRFeature& feature, AttributePlaces& places) : feature_(feature), places_(places) {}
@@ -36,16 +39,25 @@ class FeatureTags {
   std::string as_it_stands(std::string_view key) {
     const int field = places_(key);
     if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) return feature_.GetFieldAsString(field);
-    const int packed = places_("other_tags");
-    if (packed < 0 || feature_.IsFieldSetAndNotNull(packed) == 0) return {};
-    if (!tags_) tags_ = parse_hstore(feature_.GetFieldAsString(packed));
-    const auto found = tags_->find(key);
-    return found != tags_->end() ? found->second : std::string();
+    if (!packed_) packed_ = packed();
+    const auto found = packed_->find(key);
+    return found != packed_->end() ? found->second : std::string();
+  }
+
+  TagMap packed() {
+    TagMap tags;
+    for (const std::string_view name : kPacked) {
+      const int field = places_(name);
+      if (field >= 0 && feature_.IsFieldSetAndNotNull(field) != 0) {
+        tags.merge(parse_tags(feature_.GetFieldAsString(field)));
+      }
+    }
+    return tags;
   }
 
   const OGRFeature& feature_;
   AttributePlaces& places_;
-  std::optional<std::map<std::string, std::string, std::less<>>> tags_;
+  std::optional<TagMap> packed_;
 };
 
 bool has_attribute(OGRLayer& layer, const std::string& name) {

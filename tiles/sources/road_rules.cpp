@@ -13,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "tiles/sources/overture_flags.hpp"
 
 namespace roadfix {
 namespace {
@@ -40,6 +41,9 @@ service           4       yes
 track             3       yes
 busway            6       yes
 bus_guideway      6       yes
+minor             6       yes   # of OpenMapTiles: unclassified, residential and the like
+street            6       yes   # of Mapbox: the same
+street_limited    6       yes
 raceway          10       yes
 escape            5       yes
 footway           2       no    # beside a road or under trees
@@ -64,6 +68,7 @@ constexpr std::array<std::string_view, 9> kInvisibleStates{
     "proposed", "planned", "construction", "abandoned", "razed", "disused", "demolished", "dismantled", "removed"};
 constexpr std::array<std::string_view, 6> kFootClasses{"footway",  "path",       "steps",
                                                        "corridor", "pedestrian", "elevator"};
+constexpr double kMostlyHidden = 0.5;
 constexpr double kDefaultWidthM = 6.0;
 constexpr double kLaneM = 3.25;
 constexpr double kShouldersM = 1.0;
@@ -100,6 +105,8 @@ bool yes(const std::string& value) {
 /// What nobody sees from above, or what does not exist.
 bool hidden(const TagLookup& tags, std::string_view road_class) {
   if (yes(tags("tunnel")) || yes(tags("covered")) || yes(tags("indoor"))) return true;
+  if (plain(tags("brunnel")) == "tunnel" || plain(tags("structure")) == "tunnel") return true;
+  if (hidden_share(tags("road_flags")) >= kMostlyHidden) return true;
   const std::string location = plain(tags("location"));
   if (location == "underground" || location == "indoor") return true;
   const std::string level = tags("level");

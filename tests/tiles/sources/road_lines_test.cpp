@@ -78,6 +78,20 @@ TEST_F(RoadLines, AnotherAttributeIsTakenForTheClassWhereItHoldsClassesAndSaidSo
   EXPECT_THAT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->summary().method, HasSubstr("classes in type"));
 }
 
+TEST_F(RoadLines, PackedTagsAreReadWhateverProgramPackedThem) {
+  for (const char* packed : {R"("other_tags":"\"tunnel\"=>\"no\",\"width\"=>\"7\"")",
+                             R"("other_tags":"{\"tunnel\":\"no\",\"width\":\"7\"}")", R"("tags":{"width":"7"})"}) {
+    const std::string path =
+        geojson({feature(fmt::format(R"("highway":"primary",{})", packed), at(-150, 40), at(150, 40)),
+                 feature(R"("highway":"primary","other_tags":"{\"tunnel\":\"yes\"}")", at(-150, 0), at(150, 0)),
+                 feature(R"("highway":"primary","other_tags":"{\"damaged")", at(-150, -40), at(150, -40))});
+    const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+    ASSERT_EQ(network.lines.size(), 2U) << packed;
+    EXPECT_EQ(network.lines.front().half_width_m, 3.5) << packed;
+    EXPECT_EQ(network.lines.back().half_width_m, 5.0) << packed;
+  }
+}
+
 TEST_F(RoadLines, ClassesInCapitalsAreClassesAndUnknownOnesAreNamedAsTheyStand) {
   const std::string path = geojson({feature(R"("ROADTYPE":"PRIMARY")", at(-150, 40), at(150, 40)),
                                     feature(R"("ROADTYPE":"Residential ")", at(-150, 0), at(150, 0)),

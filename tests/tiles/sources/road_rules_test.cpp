@@ -1,5 +1,6 @@
 #include "tiles/sources/road_rules.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <map>
@@ -50,6 +51,29 @@ TEST(RoadRules, LeaveOutWhatACameraAboveDoesNotSeeAsARoad) {
 TEST(RoadRules, KeepARoadThatIsOnlyNotATunnel) {
   EXPECT_THAT(width({{"highway", "residential"}, {"tunnel", "no"}}), Optional(6.0));
   EXPECT_THAT(width({{"highway", "pedestrian"}, {"level", "0"}}), Optional(6.0));
+}
+
+TEST(RoadRules, KnowTheTunnelsAndClassesOfVectorTilesAndOverture) {
+  for (const Tags& tags : {Tags{{"highway", "secondary"}, {"brunnel", "tunnel"}},
+                           {{"highway", "street"}, {"structure", "tunnel"}},
+                           {{"highway", "primary"}, {"road_flags", R"([{"values":["is_link","is_tunnel"]}])"}},
+                           {{"highway", "primary"}, {"road_flags", R"([{"values":["is_abandoned"],"between":null}])"}},
+                           {{"highway", "primary"}, {"road_flags", "(1:is_under_construction)"}}}) {
+    EXPECT_EQ(width(tags), std::nullopt) << tags.rbegin()->first << '=' << tags.rbegin()->second;
+  }
+  EXPECT_THAT(width({{"highway", "minor"}, {"brunnel", "bridge"}}), Optional(6.0));
+  EXPECT_THAT(width({{"highway", "street"}, {"structure", "none"}}), Optional(6.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"road_flags", R"([{"values":["is_bridge"]}])"}}), Optional(10.0));
+}
+
+TEST(RoadRules, HideASegmentOfOvertureOfWhichMostIsHidden) {
+  const auto flagged = [](const char* between) {
+    return Tags{{"highway", "primary"},
+                {"road_flags",
+                 fmt::format(R"([{{"values":["is_bridge"]}},{{"values":["is_tunnel"],"between":{}}}])", between)}};
+  };
+  EXPECT_THAT(width(flagged("[0.1,0.3]")), Optional(10.0));
+  EXPECT_EQ(width(flagged("[0.1,0.9]")), std::nullopt);
 }
 
 TEST(RoadRules, BelieveTheFeatureItselfFirst) {
@@ -123,6 +147,14 @@ TEST(Hstore, GivesKeysAndValuesWithEscapesUndone) {
   EXPECT_THAT(parse_hstore(R"("lanes"=>"2","name"=>"a \"quoted\" \\ one", "x" => "y")"),
               ElementsAre(Pair("lanes", "2"), Pair("name", "a \"quoted\" \\ one"), Pair("x", "y")));
   EXPECT_THAT(parse_hstore(R"("a"=>NULL,"b"=>"")"), ElementsAre(Pair("b", "")));
+}
+
+TEST(PackedTags, AreReadFromJsonToo) {
+  EXPECT_THAT(
+      parse_tags(R"( {"lanes":"2","width":7.5,"oneway":null,"name":"a \"quoted\" one","a/b":"c"})"),
+      ElementsAre(Pair("a/b", "c"), Pair("lanes", "2"), Pair("name", "a \"quoted\" one"), Pair("width", "7.5")));
+  EXPECT_THAT(parse_tags(R"("lanes"=>"2")"), ElementsAre(Pair("lanes", "2")));
+  EXPECT_THAT(parse_tags(R"({"lanes":"2","wid)"), IsEmpty());
 }
 
 TEST(Hstore, KeepsWhatStandsBeforeTheDamage) {

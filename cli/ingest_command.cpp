@@ -75,7 +75,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   }
   if (report.observed_cells == 0 && report.blocks_before == 0) {
     fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,
-               summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent or no numbers"
+               summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent, no numbers or in one colour"
                                           : "its --extent holds the centre of no cell");
   }
   if (report.blocks_before < report.blocks) note_twins(*writer, record.name, arguments.map);

@@ -258,7 +258,8 @@ TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {
       write_raster(folder / "empty.tif", RasterSpec{.nodata = 0.0}, [](int, int, int) { return 0; });
   const ChildResult result = ingest({image, "--as", "roads", "--map", map("a.gpkg")});
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, ::testing::HasSubstr("nothing of " + image + " was observed"));
+  EXPECT_THAT(result.err,
+              ::testing::AllOf(HasSubstr("nothing of " + image + " was observed"), HasSubstr("in one colour")));
 }
 
 TEST_F(IngestCommand, ACopyUnderAnotherNameIsNoticed) {

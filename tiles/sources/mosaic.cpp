@@ -72,6 +72,7 @@ struct Mosaic::Image {
   GridBox footprint;
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
+  double full_opacity = 1.0;
   Sampled sampled = {};
   ValueRange range = {};
   std::shared_ptr<const Collar> collar = nullptr;
@@ -103,7 +104,7 @@ void Mosaic::add_image(std::string path, std::vector<float>& values) {
   }
   const Georeference georeference(file, zone_);
   Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
-              rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt};
+              rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt, file.full_opacity()};
   extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
   channels_ = std::max(channels_, file.channels());
@@ -185,6 +186,7 @@ std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, double gsd_m) 
   if (overview >= 0 && !images_[image].collar) {
     file = std::make_unique<RasterFile>(images_[image].path, options_, overview);
   }
+  file->set_full_opacity(images_[image].full_opacity);
   return std::make_unique<Handle>(image, std::move(file), zone_);
 }
 

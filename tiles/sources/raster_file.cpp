@@ -42,8 +42,8 @@ std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
   return std::nullopt;
 }
 
-double full_opacity(GDALRasterBand& alpha) {
-  switch (alpha.GetRasterDataType()) {
+double largest_opacity(GDALDataType type) {
+  switch (type) {
     case GDT_Byte:
       return 255.0;
     case GDT_UInt16:
@@ -197,17 +197,38 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
   return pixels;
 }
 
-cv::Mat RasterFile::read_opacity(cv::Rect window) {
+cv::Mat RasterFile::read_alpha(cv::Rect window) {
   GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_)
                                          : dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
   const GdalMessages messages;
-  cv::Mat opacity(window.size(), CV_32FC1);
-  if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, opacity.data, window.width,
-                     window.height, GDT_Float32, 0, static_cast<GSpacing>(opacity.step), nullptr) != CE_None) {
+  cv::Mat alpha(window.size(), CV_32FC1);
+  if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, alpha.data, window.width, window.height,
+                     GDT_Float32, 0, static_cast<GSpacing>(alpha.step), nullptr) != CE_None) {
     fail(window, messages.text());
   }
-  return opacity / (alpha_band_ > 0 ? full_opacity(*mask) : 1.0);
+  return alpha;
 }
+
+double RasterFile::full_opacity() {
+  if (full_opacity_ == 0.0) full_opacity_ = alpha_band_ > 0 ? sample_full_opacity() : 1.0;
+  return full_opacity_;
+}
+
+double RasterFile::sample_full_opacity() {
+  constexpr double kByte = 255.0;
+  const GDALDataType type = dataset_->GetRasterBand(alpha_band_)->GetRasterDataType();
+  if (type == GDT_Byte) return kByte;
+  double largest = 0.0;
+  for (const cv::Rect& window : sample_windows()) {
+    double here = 0.0;
+    cv::minMaxLoc(read_alpha(window), nullptr, &here);
+    largest = std::max(largest, here);
+  }
+  if (largest > 0.0 && largest <= 1.0) return 1.0;
+  return largest > 0.0 && largest <= kByte ? kByte : largest_opacity(type);
+}
+
+cv::Mat RasterFile::read_opacity(cv::Rect window) { return read_alpha(window) / full_opacity(); }
 
 cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));

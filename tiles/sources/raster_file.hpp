@@ -63,6 +63,11 @@ class RasterFile {
 
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
   RasterPixels read(cv::Rect window, const ValueRange& range);
+  /// Value of the alpha band where all is opaque, 1 without. Of more than 8 bits by the largest value that is sampled:
+  /// programs widen pictures without their alpha.
+  double full_opacity();
+  /// Spares the samples where another handle of the file has taken them.
+  void set_full_opacity(double value) { full_opacity_ = value; }
   /// 0 to 1 by the alpha band or the mask, which the image must have; as CV_32F.
   cv::Mat read_opacity(cv::Rect window);
   /// Small windows spread evenly over the image, the same at every call.
@@ -73,6 +78,8 @@ class RasterFile {
  private:
   void find_bands();
   void find_reference(const RasterOptions& options);
+  cv::Mat read_alpha(cv::Rect window);
+  double sample_full_opacity();
   cv::Mat read_bands(cv::Rect window, int cv_depth, GDALDataType type);
   cv::Mat read_validity(cv::Rect window, const cv::Mat& values);
   [[noreturn]] void fail(cv::Rect window, const std::string& reason) const;
@@ -84,6 +91,7 @@ class RasterFile {
   std::vector<std::optional<double>> nodata_;         ///< of each of them
   std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
   int alpha_band_ = 0;                                ///< 0 without
+  double full_opacity_ = 0.0;                         ///< 0 = not known yet
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
 };
 

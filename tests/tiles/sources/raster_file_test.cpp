@@ -62,6 +62,22 @@ TEST_F(RasterFileTest, AlphaBelowHalfMeansThatNothingIsThere) {
   }
 }
 
+TEST_F(RasterFileTest, AlphaOfSixteenBitsIsAsOpaqueAsItsLargestValueSays) {
+  for (const GDALDataType type : {GDT_UInt16, GDT_Int16, GDT_Float32}) {
+    const RasterSpec spec{.bands = 2, .type = type, .meanings = {GCI_GrayIndex, GCI_AlphaBand}};
+    for (const double opaque : {1.0, 255.0, type == GDT_UInt16 ? 65535.0 : 32767.0}) {
+      const RasterPixels pixels =
+          read(spec, [=](int band, int col, int) { return band == 1 ? 77.0 : (col < 16 ? 0.0 : opaque); });
+      EXPECT_EQ(cv::countNonZero(pixels.valid), 48 * 64) << GDALGetDataTypeName(type) << ' ' << opaque;
+    }
+  }
+  const RasterSpec spec{.bands = 2, .type = GDT_UInt16, .meanings = {GCI_GrayIndex, GCI_AlphaBand}};
+  const RasterPixels graded = read(spec, [](int, int col, int) { return 1000.0 * col; });
+  EXPECT_EQ(cv::countNonZero(graded.valid), (63 - 32) * 64) << "half of 65535 lies at column 32.8";
+  const RasterPixels clear = read(spec, [](int band, int, int) { return band == 1 ? 77.0 : 0.0; });
+  EXPECT_EQ(cv::countNonZero(clear.valid), 0);
+}
+
 TEST_F(RasterFileTest, AMaskBandMeansThatNothingIsThere) {
   const RasterPixels pixels = read({.bands = 3}, band_number, [](int col, int) { return col >= 16; });
   EXPECT_EQ(cv::countNonZero(pixels.valid), 48 * 64);

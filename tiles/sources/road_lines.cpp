@@ -14,6 +14,7 @@
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
+#include "tiles/sources/stated_extent.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <numbers>
 #include <regex>
@@ -50,37 +49,6 @@ std::optional<OGREnvelope> stored_extent(OGRLayer& layer) {
   OGREnvelope box;
   if (layer.GetExtent(&box, FALSE) != OGRERR_NONE || box.MinX > box.MaxX) return std::nullopt;
   return box;
-}
-
-std::vector<GridPoint> ring_on_plane(const OGRLinearRing& ring, OGRCoordinateTransformation& to_plane,
-                                     const std::string& path) {
-  std::vector<GridPoint> result;
-  for (const OGRPoint& point : ring) {
-    double x = point.getX();
-    double y = point.getY();
-    if (to_plane.Transform(1, &x, &y) == FALSE || !std::isfinite(x) || !std::isfinite(y)) {
-      throw InvalidInput("extent-unreadable", fmt::format("{}: the polygon has no place in the zone of the map", path));
-    }
-    result.push_back({x, y});
-  }
-  return result;
-}
-
-void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const std::string& path,
-                  std::vector<PlanePolygon>& polygons) {
-  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-  if (type == wkbMultiPolygon || type == wkbGeometryCollection) {
-    for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_polygons(*part, to_plane, path, polygons);
-  }
-  if (type != wkbPolygon || geometry.IsEmpty() != FALSE) return;
-  const OGRPolygon& polygon = *geometry.toPolygon();
-  std::vector<GridPoint> outer = ring_on_plane(*polygon.getExteriorRing(), to_plane, path);
-  if (outer.size() < 3) return;
-  std::vector<std::vector<GridPoint>> holes;
-  for (int i = 0; i < polygon.getNumInteriorRings(); ++i) {
-    holes.push_back(ring_on_plane(*polygon.getInteriorRing(i), to_plane, path));
-  }
-  polygons.emplace_back(std::move(outer), std::move(holes));
 }
 
 }  // namespace
@@ -222,41 +190,6 @@ OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTr
   grow(1, grown.MinX, grown.MaxX);
   grow(2, grown.MinY, grown.MaxY);
   return grown;
-}
-
-std::optional<OGREnvelope> box_in_degrees(const std::string& extent) {
-  OGREnvelope box;
-  int used = 0;
-  if (std::sscanf(extent.c_str(), "%lf,%lf,%lf,%lf%n", &box.MinX, &box.MinY, &box.MaxX, &box.MaxY, &used) != 4 ||
-      static_cast<std::size_t>(used) != extent.size()) {
-    return std::nullopt;
-  }
-  constexpr double kTurn = 360.0;
-  if (box.MinX - box.MaxX > kTurn / 2.0) box.MaxX += kTurn;  // across the antimeridian
-  if (!(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
-    throw InvalidInput(
-        "extent-unreadable",
-        fmt::format("--extent {}: write west,south,east,north in degrees, west and south first", extent));
-  }
-  return box;
-}
-
-std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
-  const OGRSpatialReference plane = utm_reference(zone);
-  if (const std::optional<OGREnvelope> box = box_in_degrees(extent)) {
-    const TransformationPtr to_plane = transformation(wgs84_reference(), plane, "--extent");
-    return {box_on_plane(*box, *to_plane, "--extent")};
-  }
-  VectorFile file(extent, {});
-  std::vector<PlanePolygon> polygons;
-  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-    const TransformationPtr to_plane = transformation(file.crs_of(layer), plane, extent);
-    if (feature.GetGeometryRef() != nullptr) add_polygons(*feature.GetGeometryRef(), *to_plane, extent, polygons);
-  });
-  if (polygons.empty()) {
-    throw InvalidInput("extent-unreadable", fmt::format("{}: holds no polygon that could say what is covered", extent));
-  }
-  return polygons;
 }
 
 }  // namespace roadfix

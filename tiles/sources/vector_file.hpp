@@ -62,11 +62,4 @@ PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& t
 /// road may have no height. A box without a place in the zone stays as it is.
 OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane);
 
-/// "W,S,E,N" in degrees, nullopt for other texts; where it crosses the antimeridian E is above 180. Throws InvalidInput
-/// "extent-unreadable".
-std::optional<OGREnvelope> box_in_degrees(const std::string& extent);
-
-/// See VectorOptions::extent.
-std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone);
-
 }  // namespace roadfix

@@ -10,7 +10,7 @@
 
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/line_coverage.hpp"
-#include "tiles/sources/vector_file.hpp"
+#include "tiles/sources/stated_extent.hpp"
 
 namespace roadfix {
 namespace {

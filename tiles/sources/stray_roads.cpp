@@ -7,40 +7,17 @@
 #include <vector>
 
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/line_boxes.hpp"
 
 namespace roadfix {
 namespace {
 
+constexpr std::size_t kOutermost = 20;  // one of so many on each side is not of the middle
 constexpr double kMaxStray = 0.05;
 constexpr double kMinRatio = 4.0;
 constexpr double kWorthNotingM2 = 10e6;
 
 double area_m2(const GridBox& box) { return box.width_m() * box.height_m(); }
-
-GridBox box_of(const RoadNetwork& network, const RoadLine& line) {
-  const auto points = std::span(network.points).subspan(line.first_point, line.points);
-  GridBox box{points.front(), points.front()};
-  for (const GridPoint point : points) box = united(box, {point, point});
-  return box;
-}
-
-/// The middle nine tenths from west to east and from south to north: a twentieth of the boxes on a side moves none of
-/// its rims. At least 20 boxes.
-GridBox middle_of(std::span<const GridBox> boxes) {
-  const std::size_t beside = boxes.size() / 20;
-  std::vector<double> rims(boxes.size());
-  const auto rim = [&](const auto& of, std::size_t rank) {
-    std::ranges::transform(boxes, rims.begin(), of);
-    const auto at = rims.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::ranges::nth_element(rims, at);
-    return *at;
-  };
-  const std::size_t last = boxes.size() - 1 - beside;
-  return {{rim([](const GridBox& box) { return box.min.east_m; }, beside),
-           rim([](const GridBox& box) { return box.min.north_m; }, beside)},
-          {rim([](const GridBox& box) { return box.max.east_m; }, last),
-           rim([](const GridBox& box) { return box.max.north_m; }, last)}};
-}
 
 bool holds(const GridBox& box, const GridBox& part) { return box.contains(part.min) && box.contains(part.max); }
 
@@ -49,9 +26,9 @@ struct Core {
   std::int64_t boxes = 0;
 };
 
-/// What lies in the middle and around it, as far as the middle is wide.
+/// What lies in the middle nine tenths and around it, as far as they are wide.
 Core core_of(std::span<const GridBox> boxes) {
-  const GridBox middle = middle_of(boxes);
+  const GridBox middle = middle_of(boxes, kOutermost);
   const GridBox around = grown(middle, std::max(middle.width_m(), middle.height_m()));
   Core core{middle};
   for (const GridBox& box : boxes) {
@@ -89,10 +66,8 @@ std::string sides(const GridBox& box) {
 
 std::optional<std::string> note_on_stray_roads(const RoadNetwork& network, std::span<const RoadLine> lines,
                                                const GridBox& ground, UtmZone zone) {
-  constexpr std::size_t kFewest = 20;
-  if (lines.size() < kFewest) return std::nullopt;
-  std::vector<GridBox> boxes;
-  for (const RoadLine& line : lines) boxes.push_back(box_of(network, line));
+  if (lines.size() < kOutermost) return std::nullopt;
+  const std::vector<GridBox> boxes = boxes_of(network, lines);
   const Core core = core_of(boxes);
   const auto strays = static_cast<double>(std::ssize(boxes) - core.boxes);
   const double ground_m2 = area_m2(ground);

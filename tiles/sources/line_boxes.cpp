@@ -1,0 +1,40 @@
+#include "tiles/sources/line_boxes.hpp"
+
+#include <algorithm>
+
+namespace roadfix {
+namespace {
+
+GridBox box_of(const RoadNetwork& network, const RoadLine& line) {
+  const auto points = std::span(network.points).subspan(line.first_point, line.points);
+  GridBox box{points.front(), points.front()};
+  for (const GridPoint point : points) box = united(box, {point, point});
+  return box;
+}
+
+}  // namespace
+
+std::vector<GridBox> boxes_of(const RoadNetwork& network, std::span<const RoadLine> lines) {
+  std::vector<GridBox> boxes;
+  boxes.reserve(lines.size());
+  for (const RoadLine& line : lines) boxes.push_back(box_of(network, line));
+  return boxes;
+}
+
+GridBox middle_of(std::span<const GridBox> boxes, std::size_t one_in) {
+  const std::size_t beside = boxes.size() / one_in;
+  std::vector<double> rims(boxes.size());
+  const auto rim = [&](const auto& of, std::size_t rank) {
+    std::ranges::transform(boxes, rims.begin(), of);
+    const auto at = rims.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::ranges::nth_element(rims, at);
+    return *at;
+  };
+  const std::size_t last = boxes.size() - 1 - beside;
+  return {{rim([](const GridBox& box) { return box.min.east_m; }, beside),
+           rim([](const GridBox& box) { return box.min.north_m; }, beside)},
+          {rim([](const GridBox& box) { return box.max.east_m; }, last),
+           rim([](const GridBox& box) { return box.max.north_m; }, last)}};
+}
+
+}  // namespace roadfix

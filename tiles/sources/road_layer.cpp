@@ -135,23 +135,22 @@ std::string RoadLayer::class_of(const OGRFeature& feature) {
   return classified_ ? FeatureTags(feature, places_)(rules_.class_attribute()) : std::string();
 }
 
-void RoadLayer::see(const OGRGeometry& geometry) {
-  if (geometry.IsEmpty() != FALSE) return;
-  OGREnvelope own;
-  geometry.getEnvelope(&own);
-  seen_.Merge(own);
-}
-
 std::optional<OGREnvelope> RoadLayer::extent_seen() const {
   return seen_.IsInit() != 0 ? std::optional(seen_) : std::nullopt;
 }
 
-std::optional<double> RoadLayer::width_of(const OGRFeature& feature) {
+std::optional<double> RoadLayer::see(const OGRFeature& feature) {
   FeatureTags tags(feature, places_);
-  if (holds_a_line(*feature.GetGeometryRef())) {
+  const OGRGeometry& geometry = *feature.GetGeometryRef();
+  const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
+  if (holds_a_line(geometry)) {
     ++lines_;
-    const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
     if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
+  }
+  if (geometry.IsEmpty() == FALSE && (!classified_ || rules_.knows(road_class))) {
+    OGREnvelope own;
+    geometry.getEnvelope(&own);
+    seen_.Merge(own);
   }
   return rules_.width_of(std::ref(tags), classified_);
 }

@@ -44,16 +44,16 @@ class RoadLayer {
   /// "no attributes" or "the attributes a, b", for messages.
   std::string attributes() const;
 
-  /// Takes note of a feature of the layer, whether it is drawn or not.
-  void see(const OGRGeometry& geometry);
-  /// Around all geometries seen, in the layer's own coordinates; nullopt where all were empty.
+  /// Takes note of a feature, whose geometry must not be null: width in metres to draw it with, nullopt to leave it
+  /// out.
+  std::optional<double> see(const OGRFeature& feature);
+  /// Around all that tells where the roads were looked for, in the layer's own coordinates: where the layer has classes
+  /// the features of classes that the rules know, drawn or not, else all. nullopt where there was none.
   std::optional<OGREnvelope> extent_seen() const;
 
-  /// Width in metres to draw the feature with, nullopt to leave it out. Its geometry must not be null.
-  std::optional<double> width_of(const OGRFeature& feature);
   /// As it stands in the file; empty where the layer or the feature has none.
   std::string class_of(const OGRFeature& feature);
-  /// Lines that width_of() was asked about, and how many of them have a class that the rules do not know, by class.
+  /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
 

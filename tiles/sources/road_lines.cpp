@@ -65,9 +65,8 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     if (found == layers.end() || geometry == nullptr) return;
     ++parts.features;
     RoadLayer& layer = found->second;
-    layer.see(*geometry);
     RoadNetwork& network = parts.network_of(layer);
-    const std::optional<double> width = layer.width_of(feature);
+    const std::optional<double> width = layer.see(feature);
     if (!width ||
         !add_geometry(*geometry, layer.to_plane(), {*width, index_of(layer.class_of(feature), network)}, network)) {
       ++network.left_out;

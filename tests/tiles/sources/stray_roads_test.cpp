@@ -58,7 +58,8 @@ TEST_F(StrayRoads, MayLieTogetherAndOnAllSides) {
 
 TEST_F(StrayRoads, AreToldOfWhereTheyLeadToAZoneFarFromTheMany) {
   auto roads = town(10, 200);
-  roads.emplace_back(R"({"type":"Feature","geometry":{"type":"LineString","coordinates":[[0,0],[0.001,0.001]]}})");
+  roads.emplace_back(R"({"type":"Feature","properties":{"highway":"residential"},)"
+                     R"("geometry":{"type":"LineString","coordinates":[[0,0],[0.001,0.001]]}})");
   const UtmZone between = *UtmZone::from_epsg(32634);  // that of the middle of the box
   const RoadNetwork network = read_road_network({geojson(roads)}, {}, RoadRules(), between);
   EXPECT_THAT(network.notes, ElementsAre(HasSubstr("--extent 37.8")));

@@ -144,6 +144,19 @@ TEST_F(VectorRoads, EmptyLinesLieNowhereAndStretchNothing) {
   EXPECT_LT(open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->extent().width_m(), 120.0);
 }
 
+TEST_F(VectorRoads, CoverNoGroundOfWhatHasNoRoadClass) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50)),
+                                    feature(R"("highway":null,"power":"line")", at(-5000, 0), at(5000, 0)),
+                                    feature(R"("highway":"bus_stop")", at(0, 5000), at(0, 5001))});
+  const GridBox roads = open_road_vectors({path}, {}, RoadRules(), kZone, 2.0)->extent();
+  EXPECT_LT(roads.width_m(), 120.0);
+  EXPECT_LT(roads.height_m(), 120.0);
+  const std::string plain =
+      geojson({feature(R"("id":1)", at(-50, -50), at(50, 50)), feature(R"("id":2)", at(-5000, 0), at(5000, 0))});
+  EXPECT_GT(open_road_vectors({plain}, {}, RoadRules(), kZone, 2.0)->extent().width_m(), 9000.0)
+      << "without classes every line is a road";
+}
+
 TEST_F(VectorRoads, CoverTheGroundOfTheRoadsThatAreLeftInAFileNotOfThoseDeletedFromIt) {
   const std::string path = (folder / "roads.gpkg").string();
   require_gdal();

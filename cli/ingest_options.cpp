@@ -37,7 +37,7 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
       "Colour of the collar around the imagery: white, black or R,G,B; for one that does not fill a corner");
   command.add_option("--layer", a.vectors.layer, "Only this layer of vector files");
   command.add_option("--extent", a.vectors.extent,
-                     "Ground that road lines cover: W,S,E,N in degrees or a polygon file");
+                     "Ground that road lines cover: W,S,E,N in degrees, or a file with polygons (GeoJSON, .poly, ...)");
   command.add_option("--classes", a.classes, "Draw exactly these road classes, comma-separated");
   command.add_option("--rules", a.rules_file, "Table of road classes: lines 'class width_m yes|no'");
   command.add_option("--class-attribute", a.class_attribute,

@@ -9,6 +9,7 @@
 
 #include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/bare_rim.hpp"
 #include "tiles/sources/position_error.hpp"
 #include "tiles/sources/stray_roads.hpp"
 
@@ -71,8 +72,13 @@ void add_covered(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadPar
   if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
     network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
     parts.strays_noted = true;
-  } else {
-    require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path());
+    return;
+  }
+  require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path());
+  if (parts.bare_rim_noted) return;
+  if (const auto note = note_on_bare_rim(network, lines)) {
+    network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
+    parts.bare_rim_noted = true;
   }
 }
 

@@ -28,6 +28,7 @@ struct RoadParts {
   std::int64_t lines = 0;
   std::map<std::string, std::int64_t> unknown_classes;
   bool strays_noted = false;
+  bool bare_rim_noted = false;
   /// Layers of lines without classes by name: the first file that has them, and their attributes.
   std::map<std::string, std::pair<std::string, std::string>> plain_layers;
 
@@ -41,8 +42,8 @@ struct RoadParts {
 /// Takes down how well the place of the layer's roads is known.
 void add_datum_error(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts);
 
-/// Takes down the ground that the layer covers, with a note where a few roads stretch it. Throws InvalidInput
-/// ("crs-not-transformable", "roads-around-the-earth").
+/// Takes down the ground that the layer covers, with a note where a few roads stretch it or much of it is bare. Throws
+/// InvalidInput ("crs-not-transformable", "roads-around-the-earth").
 void add_covered(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts);
 
 }  // namespace roadfix

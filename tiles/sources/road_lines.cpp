@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
@@ -193,9 +194,9 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
 }
 
 LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options) {
-  if (const std::optional<OGREnvelope> box = box_in_degrees(options.extent)) {
-    return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
-  }
+  std::optional<OGREnvelope> box = box_in_degrees(options.extent);
+  if (is_poly_file(options.extent)) read_poly_file(options.extent)->getEnvelope(&box.emplace());
+  if (box) return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
   if (!options.extent.empty()) return centre_of_roads({options.extent}, {});
   bool any_layer = false;
   for (const std::string& path : paths) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
@@ -69,12 +70,16 @@ std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
     const TransformationPtr to_plane = transformation(wgs84_reference(), plane, "--extent");
     return {box_on_plane(*box, *to_plane, "--extent")};
   }
-  VectorFile file(extent, {});
   std::vector<PlanePolygon> polygons;
-  file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-    const TransformationPtr to_plane = transformation(file.crs_of(layer), plane, extent);
-    if (feature.GetGeometryRef() != nullptr) add_polygons(*feature.GetGeometryRef(), *to_plane, extent, polygons);
-  });
+  if (is_poly_file(extent)) {
+    add_polygons(*read_poly_file(extent), *transformation(wgs84_reference(), plane, extent), extent, polygons);
+  } else {
+    VectorFile file(extent, {});
+    file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
+      const TransformationPtr to_plane = transformation(file.crs_of(layer), plane, extent);
+      if (feature.GetGeometryRef() != nullptr) add_polygons(*feature.GetGeometryRef(), *to_plane, extent, polygons);
+    });
+  }
   if (polygons.empty()) {
     throw InvalidInput("extent-unreadable", fmt::format("{}: holds no polygon that could say what is covered", extent));
   }

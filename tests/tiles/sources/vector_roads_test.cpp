@@ -92,6 +92,33 @@ TEST_F(VectorRoads, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
   EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
 }
 
+TEST_F(VectorRoads, MayCoverThePolygonsOfAnOsmosisFilter) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
+  VectorOptions options;
+  options.extent = folder / "known.poly";
+  std::ofstream file(options.extent);
+  const auto square = [&](const char* name, GridPoint centre, double half_m) {
+    file << name << '\n';
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+      const LatLon corner = kZone.unproject({centre.east_m + x * half_m, centre.north_m + y * half_m});
+      file << fmt::format("   {:.9E}   {:.9E}\n", corner.lon_deg, corner.lat_deg);
+    }
+    file << "END\n";
+  };
+  file << "known\n";
+  square("1", at(-60, 0), 50);
+  square("!2", at(-60, 0), 20);
+  square("3", at(60, 0), 50);
+  file << "END\n";
+  file.close();
+  const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  EXPECT_NEAR(static_cast<double>(result.observed_count()), 2.0 * 50 * 50 - 20 * 20, 60.0);
+  EXPECT_TRUE(is_observed(result.at(50, 100)));
+  EXPECT_FALSE(is_observed(result.at(70, 100))) << "in the hole";
+  EXPECT_FALSE(is_observed(result.at(100, 100))) << "between the squares";
+  EXPECT_NEAR(kZone.project(centre_of_roads({path}, options)).east_m, kCentre.east_m, 1.0);
+}
+
 TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
   VectorOptions options;

@@ -42,7 +42,8 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--rules", a.rules_file, "Table of road classes: lines 'class width_m yes|no'");
   command.add_option("--class-attribute", a.class_attribute,
                      "Attribute with the road class; default: highway, fclass, type, class or road_class");
-  command.add_option("--width-attribute", a.width_attribute, "Attribute that holds the width in metres");
+  command.add_option("--width-attribute", a.width_attribute,
+                     "Attribute that holds the width in metres; NAME:ft if in feet");
   command.add_option("--width", a.width_m, "Width of all roads in metres")->check(CLI::Range(0.5, 100.0));
 }
 

@@ -152,7 +152,11 @@ std::optional<double> RoadLayer::see(const OGRFeature& feature) {
     geometry.getEnvelope(&own);
     seen_.Merge(own);
   }
-  return rules_.width_of(std::ref(tags), classified_);
+  const std::optional<double> width = rules_.width_of(std::ref(tags), classified_);
+  const std::optional<StatedWidth> stated = width ? rules_.stated_width(std::ref(tags)) : std::nullopt;
+  const int field = stated ? places_(stated->attribute) : -1;
+  if (field >= 0) stated_widths_[feature.GetFieldDefnRef(field)->GetNameRef()].push_back(stated->width_m);
+  return width;
 }
 
 }  // namespace roadfix

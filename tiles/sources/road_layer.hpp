@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/road_rules.hpp"
@@ -53,6 +54,8 @@ class RoadLayer {
 
   /// As it stands in the file; empty where the layer or the feature has none.
   std::string class_of(const OGRFeature& feature);
+  /// Widths in metres of the drawn features that state them, by the name of the attribute in the file.
+  const std::map<std::string, std::vector<double>>& stated_widths() const { return stated_widths_; }
   /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
@@ -64,6 +67,7 @@ class RoadLayer {
   RoadRules rules_;
   bool classified_ = false;
   OGREnvelope seen_;
+  std::map<std::string, std::vector<double>> stated_widths_;
   std::int64_t lines_ = 0;
   std::map<std::string, std::int64_t> unknown_classes_;
 };

@@ -33,6 +33,10 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
   if (layer.lines() == 0) return;
   parts.lines += layer.lines();
   for (const auto& [name, count] : layer.unknown_classes()) parts.unknown_classes[name] += count;
+  for (const auto& [name, widths] : layer.stated_widths()) {
+    std::vector<double>& of_all = parts.network_of(layer).stated_widths[name];
+    of_all.insert(of_all.end(), widths.begin(), widths.end());
+  }
   if (!layer.classified()) {
     parts.plain_layers.try_emplace(layer.name(), path, layer.attributes());
     return;
@@ -125,6 +129,19 @@ void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
       unknown, parts.lines, most_frequent(parts.unknown_classes)));
 }
 
+/// Roads three times as wide as they are make a map that fits nowhere.
+void note_widths(const RoadRules& rules, RoadNetwork& network) {
+  for (auto& [attribute, widths] : network.stated_widths) {
+    const auto middle = widths.begin() + std::ssize(widths) / 2;
+    std::ranges::nth_element(widths, middle);
+    const bool feet = rules.unit_of(attribute) == WidthUnit::kFoot;
+    network.notes.push_back(
+        fmt::format("widths of {} roads from the attribute '{}', plain numbers taken for {}: median {:.3g} m{}",
+                    widths.size(), attribute, feet ? "feet" : "metres", *middle,
+                    feet ? "" : fmt::format(". If they are feet, give --width-attribute {}:ft", attribute)));
+  }
+}
+
 std::string why_none_is_drawn(const RoadParts& parts, const RoadRules& rules) {
   if (parts.lines == 0) return "none of them is a line; points and areas are not drawn, centrelines are";
   if (!parts.unknown_classes.empty()) {
@@ -190,6 +207,7 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
                                    network.left_out, why_none_is_drawn(parts, rules)));
   }
   note_unknown_classes(parts, network);
+  note_widths(rules, network);
   return network;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct RoadNetwork {
   std::vector<RoadLine> lines;
   std::vector<std::string> classes;  ///< each once, as it stands in the file; empty of lines without
   std::vector<PlanePolygon> covered;
+  std::map<std::string, std::vector<double>> stated_widths;  ///< in metres, of the roads drawn so, by attribute
   std::int64_t left_out = 0;  ///< features that the rules leave out or that have no place in the zone
   std::string crs;
   double datum_sigma_m = 0.0;      ///< see datum_error(); of the layer whose place is the least certain

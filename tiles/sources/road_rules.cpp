@@ -69,6 +69,7 @@ constexpr std::array<std::string_view, 9> kInvisibleStates{
 constexpr std::array<std::string_view, 6> kFootClasses{"footway",  "path",       "steps",
                                                        "corridor", "pedestrian", "elevator"};
 constexpr double kMostlyHidden = 0.5;
+constexpr const char* kWidth = "width";
 constexpr double kDefaultWidthM = 6.0;
 constexpr double kLaneM = 3.25;
 constexpr double kShouldersM = 1.0;
@@ -167,19 +168,40 @@ std::optional<double> RoadRules::width_of(const TagLookup& tags, bool classified
   const RoadRule* rule = find(road_class);
   if (classified && (rule == nullptr || !rule->drawn)) return std::nullopt;
   if (hidden(tags, road_class)) return std::nullopt;
-  if (!width_attribute_.empty()) {
-    if (const auto width = parse_width_m(tags(width_attribute_))) return width;
-  }
+  if (const auto stated = stated_width(tags)) return stated->width_m;
   if (width_m_) return width_m_;
-  if (const auto width = parse_width_m(tags("width"))) return width;
   const double lanes = std::strtod(tags("lanes").c_str(), nullptr);
   if (lanes >= 1.0 && lanes <= kMaxLanes) return lanes * kLaneM + kShouldersM;
   return rule != nullptr ? rule->width_m : kDefaultWidthM;
 }
 
+std::optional<StatedWidth> RoadRules::stated_width(const TagLookup& tags) const {
+  if (!width_attribute_.empty()) {
+    if (const auto width = parse_width_m(tags(width_attribute_), width_unit_)) return {{width_attribute_, *width}};
+  }
+  if (width_m_) return std::nullopt;
+  const auto width = parse_width_m(tags(kWidth), unit_of(kWidth));
+  return width ? std::optional(StatedWidth{kWidth, *width}) : std::nullopt;
+}
+
+void RoadRules::set_width_attribute(std::string_view text) {
+  constexpr std::string_view kInFeet = ":ft";
+  constexpr std::string_view kInMetres = ":m";
+  width_unit_ = text.ends_with(kInFeet) ? WidthUnit::kFoot : WidthUnit::kMetre;
+  if (text.ends_with(kInFeet)) text.remove_suffix(kInFeet.size());
+  if (text.ends_with(kInMetres)) text.remove_suffix(kInMetres.size());
+  width_attribute_ = text;
+}
+
+WidthUnit RoadRules::unit_of(std::string_view width_attribute) const {
+  return lower_case(width_attribute) == lower_case(width_attribute_) ? width_unit_ : WidthUnit::kMetre;
+}
+
 std::string RoadRules::describe() const {
   std::string text = fmt::format("class={}", class_attribute_);
-  if (!width_attribute_.empty()) text += fmt::format(" width-attribute={}", width_attribute_);
+  if (!width_attribute_.empty()) {
+    text += fmt::format(" width-attribute={}{}", width_attribute_, width_unit_ == WidthUnit::kFoot ? ":ft" : "");
+  }
   if (width_m_) text += fmt::format(" width={}", *width_m_);
   for (const RoadRule& rule : rules_) {
     if (rule.drawn) text += fmt::format(" {}={}", rule.road_class, rule.width_m);
@@ -187,16 +209,17 @@ std::string RoadRules::describe() const {
   return text;
 }
 
-std::optional<double> parse_width_m(std::string_view text) {
+std::optional<double> parse_width_m(std::string_view text, WidthUnit unit) {
   constexpr double kFootM = 0.3048;
   constexpr double kInchM = kFootM / 12.0;
   constexpr std::array<std::string_view, 4> kFeet{"ft", "ft.", "feet", "foot"};
-  constexpr std::array<std::string_view, 6> kMetres{"", "m", "metres", "meters", "metre", "meter"};
+  constexpr std::array<std::string_view, 5> kMetres{"m", "metres", "meters", "metre", "meter"};
   const std::string plain_text = plain(text);
   std::string_view rest = plain_text;
   const std::optional<double> number = take_number(rest);
   if (!number) return std::nullopt;
   double width_m = *number;
+  if (rest.empty()) rest = unit == WidthUnit::kFoot ? kFeet.front() : kMetres.front();
   if (std::ranges::find(kFeet, rest) != kFeet.end()) {
     width_m *= kFootM;
   } else if (rest.starts_with('\'')) {  // 12' and 12'6"

@@ -28,8 +28,20 @@ struct RoadRule {
   bool drawn = true;
 };
 
+enum class WidthUnit { kMetre, kFoot };
+
+/// "7.5", "7,5 m", "24 ft", "24'", "24'6\"", in any case; `unit` is that of numbers alone. nullopt for anything else or
+/// a width outside 0.5..100 m.
+std::optional<double> parse_width_m(std::string_view text, WidthUnit unit = WidthUnit::kMetre);
+
 /// Value of a feature's attribute or tag; empty when it has none.
 using TagLookup = std::function<std::string(std::string_view key)>;
+
+/// The width that a feature itself states.
+struct StatedWidth {
+  std::string attribute;  ///< as it was asked for
+  double width_m = 0.0;
+};
 
 class RoadRules {
  public:
@@ -41,7 +53,8 @@ class RoadRules {
 
   /// Draws exactly these classes of the table, separated by commas. Throws InvalidInput "road-class-unknown".
   void select(std::string_view classes);
-  void set_width_attribute(std::string key) { width_attribute_ = std::move(key); }
+  /// "KEY", "KEY:m" or "KEY:ft": the unit of values that name none.
+  void set_width_attribute(std::string_view text);
   void set_class_attribute(std::string key) { class_attribute_ = std::move(key); }
   /// Width of features that no rule and no attribute gives one; where set by the user it overrides the table.
   void set_width_m(double width_m) { width_m_ = width_m; }
@@ -49,6 +62,10 @@ class RoadRules {
   /// Width to draw the feature with, nullopt to leave it out. `classified` says that the layer has a class attribute:
   /// then a feature without class is no road; otherwise every line is one.
   std::optional<double> width_of(const TagLookup& tags, bool classified) const;
+  /// nullopt where no attribute states a width, or the user's goes before it.
+  std::optional<StatedWidth> stated_width(const TagLookup& tags) const;
+  /// Of values of the attribute that name none.
+  WidthUnit unit_of(std::string_view width_attribute) const;
   const std::string& class_attribute() const { return class_attribute_; }
   /// Whether the table has a line for the class, drawn or not.
   bool knows(std::string_view road_class) const { return find(road_class) != nullptr; }
@@ -62,10 +79,8 @@ class RoadRules {
   std::vector<RoadRule> rules_;
   std::string class_attribute_ = "highway";
   std::string width_attribute_;
+  WidthUnit width_unit_ = WidthUnit::kMetre;
   std::optional<double> width_m_;
 };
-
-/// "7.5", "7,5 m", "24 ft", "24'", "24'6\"", in any case; nullopt for anything else or a width outside 0.5..100 m.
-std::optional<double> parse_width_m(std::string_view text);
 
 }  // namespace roadfix

@@ -92,6 +92,25 @@ TEST_F(RoadLines, PackedTagsAreReadWhateverProgramPackedThem) {
   }
 }
 
+TEST_F(RoadLines, WidthsFromAnAttributeAreSaidToBe) {
+  const std::string path = geojson({feature(R"("highway":"primary","WIDTH":20)", at(-150, 40), at(150, 40)),
+                                    feature(R"("highway":"primary","WIDTH":24)", at(-150, 0), at(150, 0)),
+                                    feature(R"("highway":"primary","WIDTH":60)", at(-150, 20), at(150, 20)),
+                                    feature(R"("highway":"primary","WIDTH":null)", at(-150, -20), at(150, -20)),
+                                    feature(R"("highway":"footway","WIDTH":2)", at(-150, -40), at(150, -40))});
+  EXPECT_THAT(read_road_network({path}, {}, RoadRules(), kZone).notes,
+              ElementsAre(AllOf(HasSubstr("widths of 3 roads from the attribute 'WIDTH'"), HasSubstr("median 24 m"),
+                                HasSubstr("--width-attribute WIDTH:ft"))));
+  RoadRules rules;
+  rules.set_width_attribute("width:ft");
+  const RoadNetwork network = read_road_network({path}, {}, rules, kZone);
+  EXPECT_NEAR(network.lines.front().half_width_m, 3.048, 1e-9);
+  EXPECT_THAT(network.notes, ElementsAre(HasSubstr("taken for feet: median 7.32 m")));
+  rules = RoadRules();
+  rules.set_width_m(6.0);
+  EXPECT_THAT(read_road_network({path}, {}, rules, kZone).notes, IsEmpty());
+}
+
 TEST_F(RoadLines, ClassesInCapitalsAreClassesAndUnknownOnesAreNamedAsTheyStand) {
   const std::string path = geojson({feature(R"("ROADTYPE":"PRIMARY")", at(-150, 40), at(150, 40)),
                                     feature(R"("ROADTYPE":"Residential ")", at(-150, 0), at(150, 0)),

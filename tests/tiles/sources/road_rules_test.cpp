@@ -91,6 +91,21 @@ TEST(RoadRules, TakeTheUsersAttributeAndWidthBeforeTheTable) {
   EXPECT_THAT(width({{"highway", "primary"}, {"carriageway", "8"}}, rules), Optional(8.0));
 }
 
+TEST(RoadRules, TakePlainNumbersOfTheUsersAttributeForFeetWhereTheUserSaysSo) {
+  RoadRules rules;
+  rules.set_width_attribute("WIDTH:ft");
+  const auto in_feet = [](double width_m) { return Optional(::testing::DoubleNear(width_m * 0.3048, 1e-9)); };
+  EXPECT_THAT(width({{"highway", "primary"}, {"WIDTH", "24"}}, rules), in_feet(24.0));
+  EXPECT_THAT(width({{"highway", "primary"}, {"WIDTH", "12'6\""}}, rules), in_feet(12.5));
+  EXPECT_THAT(width({{"highway", "primary"}, {"WIDTH", "7 m"}}, rules), Optional(7.0));
+  EXPECT_THAT(rules.describe(), ::testing::HasSubstr("width-attribute=WIDTH:ft"));
+  rules.set_width_attribute("width:ft");
+  EXPECT_THAT(width({{"highway", "primary"}, {"width", "1"}}, rules), Optional(10.0)) << "no road, nor one metre";
+  rules.set_width_attribute("width:carriageway:m");
+  EXPECT_THAT(width({{"highway", "primary"}, {"width:carriageway", "7"}}, rules), Optional(7.0));
+  EXPECT_EQ(rules.unit_of("width:carriageway"), WidthUnit::kMetre);
+}
+
 TEST(RoadRules, DrawEveryLineOfALayerWithoutClasses) {
   EXPECT_THAT(width({}, {}, false), Optional(6.0));
   EXPECT_EQ(width({{"tunnel", "yes"}}, {}, false), std::nullopt);

@@ -4,10 +4,15 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <mutex>
+#include <string_view>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix {
 namespace {
@@ -15,6 +20,28 @@ namespace {
 constexpr GIntBig kCacheBytes = GIntBig{384} << 20;
 
 thread_local GdalMessages* innermost = nullptr;
+
+/// The first bytes; fewer of a short file.
+std::string begin_of(const std::string& path) {
+  std::string bytes(4096, '\0');
+  VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
+  bytes.resize(file != nullptr ? VSIFReadL(bytes.data(), 1, bytes.size(), file) : 0);
+  if (file != nullptr) VSIFCloseL(file);
+  return bytes;
+}
+
+/// What to do with a file that no driver opens.
+std::string_view remedy(const std::string& path) {
+  constexpr std::array<std::string_view, 8> kPacked{".gz", ".bz2", ".xz", ".zst", ".7z", ".rar", ".tar", ".tgz"};
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
+  if (std::ranges::find(kPacked, ending) != kPacked.end()) return "it is packed: unpack it first";
+  const std::string begin = begin_of(path);
+  if (begin.starts_with('{') && begin.find("\"elements\"") != std::string::npos) {
+    return "it looks like JSON of Overpass: export it as GeoJSON, or with [out:xml] into a file whose name ends in "
+           ".osm";
+  }
+  return "gdalinfo or ogrinfo on it tells more";
+}
 
 }  // namespace
 
@@ -61,8 +88,8 @@ DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* con
   if (VSIStatL(path.c_str(), &stat) != 0) {
     throw NotFound("source-not-found", fmt::format("{}: no such file", path));
   }
-  throw InvalidInput("source-unreadable", fmt::format("{}: cannot be opened ({}); gdalinfo or ogrinfo on it tells more",
-                                                      path, messages.text()));
+  const std::string said = messages.text();
+  throw InvalidInput("source-unreadable", fmt::format("{}: cannot be opened ({}); {}", path, said, remedy(path)));
 }
 
 OGRSpatialReference utm_reference(UtmZone zone) {

@@ -64,6 +64,24 @@ bool has_attribute(OGRLayer& layer, const std::string& name) {
   return layer.GetLayerDefn()->GetFieldIndex(name.c_str()) >= 0;
 }
 
+/// Whether a feature of the layer has the tag among its packed ones.
+bool packs(OGRLayer& layer, const std::string& key) {
+  if (std::ranges::none_of(kPacked, [&](std::string_view name) { return has_attribute(layer, std::string(name)); })) {
+    return false;
+  }
+  AttributePlaces places(layer);
+  const GdalMessages messages;
+  bool found = false;
+  layer.ResetReading();
+  while (!found) {
+    const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
+    if (!feature) break;
+    found = !FeatureTags(*feature, places)(key).empty();
+  }
+  layer.ResetReading();
+  return found;
+}
+
 /// Whether at least half of the first values of the attribute are classes of the rules.
 bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
   constexpr int kSample = 200;
@@ -84,14 +102,16 @@ bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRule
   return values > 0 && 2 * known >= values;
 }
 
-/// The attribute that the user named or that of OpenStreetMap, else one that other road data keep the same classes in.
-std::string class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
+/// The attribute that the user named or that of OpenStreetMap, packed or not, else one that other road data keep the
+/// same classes in; nullopt where nothing tells roads apart.
+std::optional<std::string> class_attribute_of(OGRLayer& layer, const RoadRules& rules) {
   const std::string& wanted = rules.class_attribute();
-  if (has_attribute(layer, wanted) || wanted != RoadRules().class_attribute()) return wanted;
+  if (has_attribute(layer, wanted) || packs(layer, wanted)) return wanted;
+  if (wanted != RoadRules().class_attribute()) return std::nullopt;
   for (const char* usual : {"fclass", "type", "class", "road_class"}) {
     if (has_attribute(layer, usual) && holds_classes(layer, usual, rules)) return usual;
   }
-  return wanted;
+  return std::nullopt;
 }
 
 /// Whether a line is among the parts of the geometry, however deep they are nested. The dimension of a collection is
@@ -118,8 +138,9 @@ int AttributePlaces::operator()(std::string_view name) {
 
 RoadLayer::RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
     : layer_(&layer), to_plane_(std::move(to_plane)), places_(layer), rules_(rules) {
-  rules_.set_class_attribute(class_attribute_of(layer, rules));
-  classified_ = has_attribute(layer, rules_.class_attribute());
+  const std::optional<std::string> attribute = class_attribute_of(layer, rules);
+  if (attribute) rules_.set_class_attribute(*attribute);
+  classified_ = attribute.has_value();
 }
 
 std::string RoadLayer::attributes() const {

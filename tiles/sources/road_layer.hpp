@@ -39,7 +39,8 @@ class RoadLayer {
   std::string name() const { return layer_->GetName(); }
   OGRLayer& layer() const { return *layer_; }
   OGRCoordinateTransformation& to_plane() const { return *to_plane_; }
-  /// Whether its features have a class attribute. Without one nothing tells its roads from its rivers.
+  /// Whether its features have a class attribute, packed among other tags or not. Without one nothing tells its roads
+  /// from its rivers.
   bool classified() const { return classified_; }
   const std::string& class_attribute() const { return rules_.class_attribute(); }
   /// "no attributes" or "the attributes a, b", for messages.

@@ -98,6 +98,21 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
+/// Words of "['residential', 'unclassified']", as Python writes a list, and of "(2:residential,unclassified)", as OGR
+/// does; none of other texts.
+std::vector<std::string> words_of_list(std::string_view text) {
+  constexpr std::string_view kBetween = "[](),:'\" ";
+  std::vector<std::string> words;
+  if (!text.starts_with('[') && !text.starts_with('(')) return words;
+  while (true) {
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(kBetween)));
+    if (text.empty()) return words;
+    const std::size_t end = std::min(text.size(), text.find_first_of(kBetween));
+    words.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+}
+
 bool yes(const std::string& value) {
   const std::string word = plain(value);
   return !word.empty() && word != "no" && word != "n" && word != "0" && word != "false" && word != "f";
@@ -159,15 +174,21 @@ void RoadRules::select(std::string_view classes) {
 }
 
 const RoadRule* RoadRules::find(std::string_view road_class) const {
-  const auto rule = std::ranges::find(rules_, plain(road_class), &RoadRule::road_class);
-  return rule != rules_.end() ? &*rule : nullptr;
+  const std::string name = plain(road_class);
+  const auto rule = std::ranges::find(rules_, name, &RoadRule::road_class);
+  if (rule != rules_.end()) return &*rule;
+  for (const std::string& word : words_of_list(name)) {
+    const auto first = std::ranges::find(rules_, word, &RoadRule::road_class);
+    if (first != rules_.end()) return &*first;
+  }
+  return nullptr;
 }
 
 std::optional<double> RoadRules::width_of(const TagLookup& tags, bool classified) const {
   const std::string road_class = classified ? plain(tags(class_attribute_)) : std::string();
   const RoadRule* rule = find(road_class);
   if (classified && (rule == nullptr || !rule->drawn)) return std::nullopt;
-  if (hidden(tags, road_class)) return std::nullopt;
+  if (hidden(tags, rule != nullptr ? rule->road_class : road_class)) return std::nullopt;
   if (const auto stated = stated_width(tags)) return stated->width_m;
   if (width_m_) return width_m_;
   const double lanes = std::strtod(tags("lanes").c_str(), nullptr);

@@ -67,7 +67,7 @@ class RoadRules {
   /// Of values of the attribute that name none.
   WidthUnit unit_of(std::string_view width_attribute) const;
   const std::string& class_attribute() const { return class_attribute_; }
-  /// Whether the table has a line for the class, drawn or not.
+  /// Whether the table has a line for the class, drawn or not; of a list for one of its classes, the first counts.
   bool knows(std::string_view road_class) const { return find(road_class) != nullptr; }
   /// All of it in one line, for provenance and fingerprint.
   std::string describe() const;

@@ -111,6 +111,26 @@ TEST_F(RoadLines, WidthsFromAnAttributeAreSaidToBe) {
   EXPECT_THAT(read_road_network({path}, {}, rules, kZone).notes, IsEmpty());
 }
 
+TEST_F(RoadLines, ClassesAreFoundAmongPackedTags) {
+  const std::string path =
+      geojson({feature(R"("type":"way","tags":{"power":"line"})", at(-150, 60), at(150, 60)),
+               feature(R"("type":"way","tags":{"highway":"primary","lanes":"4"})", at(-150, 40), at(150, 40)),
+               feature(R"("type":"way","tags":{"highway":"footway"})", at(-150, -40), at(150, -40))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 1U);
+  EXPECT_EQ(network.lines.front().half_width_m, 7.0);
+  EXPECT_THAT(network.notes, IsEmpty());
+}
+
+TEST_F(RoadLines, ClassesInListsAreClasses) {
+  const std::string path = geojson({feature(R"("highway":["primary","secondary"])", at(-150, 40), at(150, 40)),
+                                    feature(R"("highway":["secondary"])", at(-150, 20), at(150, 20))});
+  const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 2U);
+  EXPECT_EQ(network.lines.front().half_width_m, 5.0);
+  EXPECT_THAT(network.notes, IsEmpty());
+}
+
 TEST_F(RoadLines, ClassesInCapitalsAreClassesAndUnknownOnesAreNamedAsTheyStand) {
   const std::string path = geojson({feature(R"("ROADTYPE":"PRIMARY")", at(-150, 40), at(150, 40)),
                                     feature(R"("ROADTYPE":"Residential ")", at(-150, 0), at(150, 0)),

@@ -136,6 +136,17 @@ TEST(RoadRules, TakeClassesWhateverTheirCaseAndOuterBlanks) {
   EXPECT_EQ(width({{"highway", "primary"}, {"abandoned", "Yes"}}), std::nullopt);
 }
 
+TEST(RoadRules, TakeTheFirstKnownClassOfAList) {
+  for (const char* list : {"['residential', 'primary']", "(2:residential,primary)", "[ \"odd\", \"Residential\" ]"}) {
+    EXPECT_THAT(width({{"highway", list}}), Optional(6.0)) << list;
+  }
+  EXPECT_EQ(width({{"highway", "['footway', 'residential']"}}), std::nullopt);
+  EXPECT_EQ(width({{"highway", "['pedestrian', 'service']"}, {"level", "-1"}}), std::nullopt);
+  for (const char* unknown : {"['odd']", "[", "[]", "(", "residential,primary"}) {
+    EXPECT_FALSE(RoadRules().knows(unknown)) << unknown;
+  }
+}
+
 TEST(RoadRules, AreReadFromATable) {
   const RoadRules rules = RoadRules::parse("# mine\nboulevard 20 yes  # wide\n\nalley 2 no\n");
   EXPECT_THAT(width({{"highway", "boulevard"}}, rules), Optional(20.0));

@@ -64,6 +64,18 @@ TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {
   EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
 }
 
+TEST_F(SourceFilesTest, FilesThatOnlyNeedAnotherFormatSayWhich) {
+  const auto advice = [&](const char* name, const char* text) {
+    std::ofstream(folder / name) << text;
+    return testing::message_of([&] { find_source((folder / name).string(), SourceMeaning::kAuto); });
+  };
+  EXPECT_THAT(advice("a.osm.gz", "\x1f\x8b"), ::testing::HasSubstr("unpack it first"));
+  EXPECT_THAT(advice("a.osm.BZ2", "BZh9"), ::testing::HasSubstr("unpack it first"));
+  EXPECT_THAT(advice("a.json", R"({"version":0.6,"generator":"Overpass API","elements":[]})"),
+              ::testing::HasSubstr("[out:xml]"));
+  EXPECT_THAT(advice("b.json", R"({"version":1})"), ::testing::HasSubstr("ogrinfo on it tells more"));
+}
+
 TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
   const std::string b = image("b.tif");
   const std::string a = image("a.tif");

@@ -57,7 +57,7 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
   command
       .add_option(
           "--registration-sigma", a.registration_sigma_m,
-          "Uncertainty of the position, 1 sigma in metres; default: 2 for imagery, 3 for rasters of roads, 4 for "
+          "Uncertainty of the position, 1 sigma in metres; default: 2.5 for imagery, 3 for rasters of roads, 4 for "
           "vectors, more with control points or RPC")
       ->check(positive());
 }

@@ -77,7 +77,7 @@ struct ConstantVelocityMotion {
   double seconds = 0.0;
   double velocity_walk = 1.0;      ///< m/s per square root of a second and axis
   double heading_walk_rad = 0.05;  ///< per square root of a second
-  BodyVelocity joins;              ///< the drift at first: what moved the particle beside it until now
+  BodyVelocity joins{};            ///< the drift at first: what moved the particle beside it until now
 
   void operator()(ParticleState& state, RandomStream& random) const;
 };

@@ -21,7 +21,8 @@
 namespace roadfix {
 namespace {
 
-constexpr double kImagerySigmaM = 2.0;
+// Where nothing else is known of imagery: 6 m with 95 %, as the orthophotos of the US (NAIP) were specified for long.
+constexpr double kImagerySigmaM = 2.5;
 constexpr double kRasterSigmaM = 3.0;
 
 /// Side of what is detected at a time, without the halo.

@@ -239,7 +239,7 @@ TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
 }
 
 TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
-  for (const std::uint64_t seed : {21, 22, 23, 24}) {
+  for (const std::uint64_t seed : {21U, 22U, 23U, 24U}) {
     const Tracker tracker(view_, settings());
     Flight flight(map_, start_, seed);
     state_ = {};
@@ -260,7 +260,7 @@ TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
 }
 
 TEST_F(Track, FollowsFramesWithoutOdometryAndKeepsNoWindOfThem) {
-  for (const std::uint64_t seed : {31, 32, 33}) {
+  for (const std::uint64_t seed : {31U, 32U, 33U}) {
     const Tracker tracker(view_, settings());
     Flight flight(map_, start_, seed);
     state_ = {};

@@ -203,7 +203,7 @@ TEST(Imagery, IsAsUncertainAsItsControlPointsContradictEachOther) {
     return open_imagery({path}, {}, kZone, 2.0, detector)->summary();
   };
   const SourceSummary exact = summary_of("exact.tif", placed_by_points(0.0));
-  EXPECT_EQ(exact.registration_sigma_m, 2.0);
+  EXPECT_EQ(exact.registration_sigma_m, 2.5);
   EXPECT_THAT(exact.notes, ::testing::IsEmpty());
   const SourceSummary off = summary_of("off.tif", placed_by_points(200.0));
   EXPECT_GT(off.registration_sigma_m, 30.0);

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/detect/painted_border.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -16,11 +17,7 @@ namespace {
 cv::Mat seen_inside_black_border(const cv::Mat& pixels, int darkest) {
   cv::Mat black;
   cv::inRange(pixels, cv::Scalar::all(0), cv::Scalar::all(darkest), black);
-  // A rim of black joins all black areas that touch the border into one, which is then filled away.
-  cv::Mat framed;
-  cv::copyMakeBorder(black, framed, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
-  cv::floodFill(framed, cv::Point(0, 0), cv::Scalar(128));
-  return framed(cv::Rect(1, 1, black.cols, black.rows)) != 128;
+  return joined_to_rim(black) == 0;
 }
 
 /// How often each value of the seen pixels occurs, all channels together.

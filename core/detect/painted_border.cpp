@@ -7,19 +7,23 @@ namespace roadfix {
 namespace {
 
 /// 255 where pixels of that colour, or pixels that were not seen, lead to the rim.
-cv::Mat joined_to_rim(const GroundImage& image, const cv::Scalar& colour) {
+cv::Mat border_of(const GroundImage& image, const cv::Scalar& colour) {
   cv::Mat like;
   cv::inRange(image.pixels, colour - cv::Scalar::all(kBorderTolerance), colour + cv::Scalar::all(kBorderTolerance),
               like);
-  like |= image.observed == 0;
-  // A rim around the picture joins all areas that touch its own into one.
-  cv::copyMakeBorder(like, like, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
-  constexpr std::uint8_t kReached = 128;
-  cv::floodFill(like, cv::Point(0, 0), cv::Scalar(kReached));
-  return like(cv::Rect(1, 1, image.pixels.cols, image.pixels.rows)) == kReached;
+  return joined_to_rim(like | (image.observed == 0));
 }
 
 }  // namespace
+
+cv::Mat joined_to_rim(const cv::Mat& marked) {
+  // A rim around it joins all areas that touch its own into one.
+  cv::Mat framed;
+  cv::copyMakeBorder(marked, framed, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
+  constexpr std::uint8_t kReached = 128;
+  cv::floodFill(framed, cv::Point(0, 0), cv::Scalar(kReached));
+  return framed(cv::Rect(1, 1, marked.cols, marked.rows)) == kReached;
+}
 
 std::optional<cv::Scalar> painted_colour(const cv::Mat& corner) {
   constexpr double kPure = 3.0;
@@ -43,7 +47,7 @@ void exclude_painted_border(GroundImage& image) {
       const cv::Rect corner(x, y, kCornerPx, kCornerPx);
       if (cv::countNonZero(observed(corner)) < corner.area()) continue;
       if (const auto colour = painted_colour(image.pixels(corner))) {
-        observed &= ~joined_to_rim({image.pixels, observed, image.gsd_m}, *colour);
+        observed &= ~border_of({image.pixels, observed, image.gsd_m}, *colour);
       }
     }
   }

@@ -18,6 +18,9 @@ inline constexpr int kBorderTolerance = 8;
 /// change of them; nullopt where ground is seen, which is never that even. CV_8UC1 or CV_8UC3.
 std::optional<cv::Scalar> painted_colour(const cv::Mat& corner);
 
+/// Of the areas that are 255 in `marked` (CV_8UC1) those that touch its rim, as 255; 0 elsewhere.
+cv::Mat joined_to_rim(const cv::Mat& marked);
+
 /// Marks as not observed what is connected to the picture's rim in the colour of a painted corner.
 void exclude_painted_border(GroundImage& image);
 

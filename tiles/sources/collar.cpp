@@ -14,7 +14,6 @@ namespace roadfix {
 namespace {
 
 constexpr int kMaxSamples = 1024;
-constexpr std::uint8_t kReached = 128;
 
 cv::Mat like(const cv::Mat& values, Rgb colour) {
   cv::Mat result;
@@ -26,22 +25,6 @@ cv::Mat like(const cv::Mat& values, Rgb colour) {
     cv::inRange(values, bgr - cv::Scalar::all(kBorderTolerance), bgr + cv::Scalar::all(kBorderTolerance), result);
   }
   return result;
-}
-
-/// Leaves 255 where a path of 255 leads to the border, 0 elsewhere.
-cv::Mat connected_to_border(cv::Mat candidates) {
-  const auto fill = [&candidates](int col, int row) {
-    if (candidates.at<std::uint8_t>(row, col) == 255) cv::floodFill(candidates, {col, row}, cv::Scalar(kReached));
-  };
-  for (int col = 0; col < candidates.cols; ++col) {
-    fill(col, 0);
-    fill(col, candidates.rows - 1);
-  }
-  for (int row = 0; row < candidates.rows; ++row) {
-    fill(0, row);
-    fill(candidates.cols - 1, row);
-  }
-  return candidates == kReached;
 }
 
 }  // namespace
@@ -59,7 +42,7 @@ Collar::Collar(RasterFile& file, Rgb colour, const ValueRange& range) : image_(f
     }
   }
   // The rim of the collar falls between samples.
-  cv::dilate(connected_to_border(candidates), connected_, cv::Mat());
+  cv::dilate(joined_to_rim(candidates), connected_, cv::Mat());
 }
 
 void Collar::clear(cv::Rect window, RasterPixels& pixels) const {

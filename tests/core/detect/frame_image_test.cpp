@@ -5,17 +5,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
+#include "tests/support/noise.hpp"
 
 namespace roadfix {
 namespace {
 
-/// Noise, of which no corner is of one colour.
-cv::Mat noise(cv::Size size, int type) {
-  cv::Mat frame(size, type);
-  cv::theRNG().state = 5;
-  cv::randu(frame, 20, 230);
-  return frame;
-}
+using testing::noise;
 
 TEST(FrameImage, BlackThatReachesTheRimWasNotSeenAndBlackInsideWas) {
   cv::Mat frame = noise({60, 40}, CV_8UC3);

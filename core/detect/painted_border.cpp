@@ -6,11 +6,10 @@
 namespace roadfix {
 namespace {
 
-/// 255 where pixels of that colour, or pixels that were not seen, lead to the rim.
-cv::Mat border_of(const GroundImage& image, const cv::Scalar& colour) {
+/// 255 where pixels of that level in each channel, or pixels that were not seen, lead to the rim.
+cv::Mat border_of(const GroundImage& image, std::uint8_t level) {
   cv::Mat like;
-  cv::inRange(image.pixels, colour - cv::Scalar::all(kBorderTolerance), colour + cv::Scalar::all(kBorderTolerance),
-              like);
+  cv::inRange(image.pixels, cv::Scalar::all(level - kBorderTolerance), cv::Scalar::all(level + kBorderTolerance), like);
   return joined_to_rim(like | (image.observed == 0));
 }
 
@@ -25,17 +24,14 @@ cv::Mat joined_to_rim(const cv::Mat& marked) {
   return framed(cv::Rect(1, 1, marked.cols, marked.rows)) == kReached;
 }
 
-std::optional<cv::Scalar> painted_colour(const cv::Mat& corner) {
-  constexpr double kPure = 3.0;
+std::optional<std::uint8_t> painted_level(const cv::Mat& corner) {
+  constexpr double kPure = 3.0;  // within what codecs change
   double low = 0.0;
   double high = 0.0;
   cv::minMaxIdx(corner.reshape(1), &low, &high);
-  if (high <= kPure) return cv::Scalar::all(0);
-  if (low >= 255.0 - kPure) return cv::Scalar::all(255);
-  const cv::Scalar colour = cv::mean(corner);
-  cv::Mat same;
-  cv::inRange(corner, colour, colour, same);
-  return cv::countNonZero(same) == same.size().area() ? std::optional(colour) : std::nullopt;
+  if (high <= kPure) return std::uint8_t{0};
+  if (low >= 255.0 - kPure) return std::uint8_t{255};
+  return std::nullopt;
 }
 
 void exclude_painted_border(GroundImage& image) {
@@ -46,8 +42,8 @@ void exclude_painted_border(GroundImage& image) {
     for (const int y : {0, size.height - kCornerPx}) {
       const cv::Rect corner(x, y, kCornerPx, kCornerPx);
       if (cv::countNonZero(observed(corner)) < corner.area()) continue;
-      if (const auto colour = painted_colour(image.pixels(corner))) {
-        observed &= ~border_of({image.pixels, observed, image.gsd_m}, *colour);
+      if (const auto level = painted_level(image.pixels(corner))) {
+        observed &= ~border_of({image.pixels, observed, image.gsd_m}, *level);
       }
     }
   }

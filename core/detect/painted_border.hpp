@@ -1,7 +1,8 @@
-// Borders that were painted around what a picture shows, and are marked by nothing: the wedges beside a turned or
-// reprojected picture, the collar of an orthophoto, a letter box.
+// Black or white borders that were painted around what a picture shows, and are marked by nothing: the wedges beside a
+// turned or reprojected picture, the collar of an orthophoto, a letter box.
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -14,9 +15,9 @@ inline constexpr int kCornerPx = 8;
 /// Lossy codecs blur a border by so many levels where it meets the ground.
 inline constexpr int kBorderTolerance = 8;
 
-/// The one colour (0..255, as in `corner`) that all pixels of a corner have, pure black or white within what codecs
-/// change of them; nullopt where ground is seen, which is never that even. CV_8UC1 or CV_8UC3.
-std::optional<cv::Scalar> painted_colour(const cv::Mat& corner);
+/// 0 or 255 where all pixels of a corner (CV_8UC1 or CV_8UC3) are pure black or white; nullopt elsewhere. A corner in
+/// any other colour may be ground, of which a lossy codec left one level.
+std::optional<std::uint8_t> painted_level(const cv::Mat& corner);
 
 /// Of the areas that are 255 in `marked` (CV_8UC1) those that touch its rim, as 255; 0 elsewhere.
 cv::Mat joined_to_rim(const cv::Mat& marked);

@@ -64,12 +64,7 @@ std::optional<Rgb> find_collar(RasterFile& file, const ValueRange& range) {
     for (const int y : {0, size.height - kCornerPx}) {
       const RasterPixels corner = file.read({x, y, kCornerPx, kCornerPx}, range);
       if (cv::countNonZero(corner.valid) < corner.valid.size().area()) continue;
-      const auto colour = painted_colour(corner.values);
-      if (!colour) continue;
-      const auto level = [&](int channel) {
-        return cv::saturate_cast<std::uint8_t>((*colour)[corner.values.channels() == 1 ? 0 : channel]);
-      };
-      return Rgb{level(2), level(1), level(0)};
+      if (const auto level = painted_level(corner.values)) return Rgb{*level, *level, *level};
     }
   }
   return std::nullopt;

@@ -12,9 +12,9 @@ namespace {
 
 using testing::noise;
 
-TEST(PaintedBorder, WasNotSeenWhateverItsColourAndWidth) {
+TEST(PaintedBorder, WasNotSeenBlackOrWhiteAndHoweverThin) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
-    for (const double colour : {0.0, 255.0, 114.0}) {
+    for (const double colour : {0.0, 255.0}) {
       cv::Mat frame = noise({120, 90}, type);
       const std::vector<cv::Point> wedge{{0, 0}, {119, 0}, {0, 30}};
       cv::fillConvexPoly(frame, wedge, cv::Scalar::all(colour));
@@ -33,6 +33,14 @@ TEST(PaintedBorder, IsNoDarkOrBrightGroundInACorner) {
   cv::randu(frame(cv::Rect(0, 0, 60, 40)), 6, 12);
   cv::randu(frame(cv::Rect(60, 50, 60, 40)), 230, 250);
   GroundImage image{frame, cv::Mat(frame.size(), CV_8UC1, cv::Scalar(255)), 0.5};
+  exclude_painted_border(image);
+  EXPECT_EQ(cv::countNonZero(image.observed), 120 * 90);
+}
+
+TEST(PaintedBorder, IsNoEvenGroundInACorner) {
+  cv::Mat frame = noise({120, 90}, CV_8UC3);
+  frame(cv::Rect(0, 0, 16, 16)).setTo(cv::Scalar(70, 75, 72));  // asphalt, as a lossy codec leaves it
+  GroundImage image{frame, cv::Mat(frame.size(), CV_8UC1, cv::Scalar(255)), 0.1};
   exclude_painted_border(image);
   EXPECT_EQ(cv::countNonZero(image.observed), 120 * 90);
 }

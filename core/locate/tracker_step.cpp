@@ -255,8 +255,8 @@ void Tracker::Step::fill_estimate() {
 
 bool Tracker::Step::has_converged(const Cluster& best) const {
   return best.weight >= settings_.converged_weight && best.sigma_m() <= settings_.converged_sigma_m &&
-         state_.claim.is_supported() && is_borne_out() && filter_.doubt() <= kMaxDoubt &&
-         since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
+         estimate_.measurement != Measurement::kRejected && state_.claim.is_supported() && is_borne_out() &&
+         filter_.doubt() <= kMaxDoubt && since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
 }
 
 /// Equation (7) is no ratio to chance, and bears out what it does not reject.

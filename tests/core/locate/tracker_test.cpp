@@ -278,6 +278,17 @@ TEST_F(Track, FollowsFramesWithoutOdometryAndKeepsNoWindOfThem) {
   }
 }
 
+TEST_F(Track, ClaimsNoPlaceAtAStepWhoseFrameSpeaksAgainstIt) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 21);
+  ASSERT_TRUE(fly(tracker, flight, 8).converged);
+  const GridPose here = flight.pose();
+  flight.jump_to({{here.position.east_m - 400.0, here.position.north_m + 300.0}, here.heading});
+  const TrackEstimate elsewhere = advance(tracker, flight.step());
+  EXPECT_EQ(elsewhere.measurement, Measurement::kRejected);
+  EXPECT_FALSE(elsewhere.converged);
+}
+
 TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 6);

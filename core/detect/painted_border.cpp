@@ -34,17 +34,22 @@ std::optional<std::uint8_t> painted_level(const cv::Mat& corner) {
   return std::nullopt;
 }
 
+std::vector<cv::Rect> corner_squares(cv::Size picture) {
+  constexpr int kSidePx = 8;
+  std::vector<cv::Rect> corners;
+  if (picture.width < 2 * kSidePx || picture.height < 2 * kSidePx) return corners;
+  for (const int x : {0, picture.width - kSidePx}) {
+    for (const int y : {0, picture.height - kSidePx}) corners.emplace_back(x, y, kSidePx, kSidePx);
+  }
+  return corners;
+}
+
 void exclude_painted_border(GroundImage& image) {
-  const cv::Size size = image.pixels.size();
-  if (size.width < 2 * kCornerPx || size.height < 2 * kCornerPx) return;
   cv::Mat observed = image.observed.clone();
-  for (const int x : {0, size.width - kCornerPx}) {
-    for (const int y : {0, size.height - kCornerPx}) {
-      const cv::Rect corner(x, y, kCornerPx, kCornerPx);
-      if (cv::countNonZero(observed(corner)) < corner.area()) continue;
-      if (const auto level = painted_level(image.pixels(corner))) {
-        observed &= ~border_of({image.pixels, observed, image.gsd_m}, *level);
-      }
+  for (const cv::Rect& corner : corner_squares(image.pixels.size())) {
+    if (cv::countNonZero(observed(corner)) < corner.area()) continue;
+    if (const auto level = painted_level(image.pixels(corner))) {
+      observed &= ~border_of({image.pixels, observed, image.gsd_m}, *level);
     }
   }
   image.observed = observed;

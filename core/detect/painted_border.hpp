@@ -5,15 +5,17 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/detect/road_detector.hpp"
 
 namespace roadfix {
 
-/// Side of the squares in a picture's corners that tell its border's colour.
-inline constexpr int kCornerPx = 8;
 /// Lossy codecs blur a border by so many levels where it meets the ground.
 inline constexpr int kBorderTolerance = 8;
+
+/// The squares in a picture's corners that tell its border's colour; none in a picture that they would fill.
+std::vector<cv::Rect> corner_squares(cv::Size picture);
 
 /// 0 or 255 where all pixels of a corner (CV_8UC1 or CV_8UC3) are pure black or white; nullopt elsewhere. A corner in
 /// any other colour may be ground, of which a lossy codec left one level.

@@ -58,14 +58,10 @@ void Collar::clear(cv::Rect window, RasterPixels& pixels) const {
 }
 
 std::optional<Rgb> find_collar(RasterFile& file, const ValueRange& range) {
-  const cv::Size size = file.size();
-  if (size.width < 2 * kCornerPx || size.height < 2 * kCornerPx) return std::nullopt;
-  for (const int x : {0, size.width - kCornerPx}) {
-    for (const int y : {0, size.height - kCornerPx}) {
-      const RasterPixels corner = file.read({x, y, kCornerPx, kCornerPx}, range);
-      if (cv::countNonZero(corner.valid) < corner.valid.size().area()) continue;
-      if (const auto level = painted_level(corner.values)) return Rgb{*level, *level, *level};
-    }
+  for (const cv::Rect& corner : corner_squares(file.size())) {
+    const RasterPixels pixels = file.read(corner, range);
+    if (cv::countNonZero(pixels.valid) < corner.area()) continue;
+    if (const auto level = painted_level(pixels.values)) return Rgb{*level, *level, *level};
   }
   return std::nullopt;
 }

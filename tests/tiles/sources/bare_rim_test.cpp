@@ -18,9 +18,6 @@ using testing::kZone;
 
 class BareRim : public testing::RoadFeatures {
  protected:
-  static std::string road(double east, double north) {
-    return feature(R"("highway":"residential")", at(east, north), at(east + 100, north + 100));
-  }
   /// Roads every 500 m of a square of 16 km, where the country is.
   static std::vector<std::string> extract(const std::function<bool(double east, double north)>& country) {
     std::vector<std::string> roads;
@@ -30,9 +27,6 @@ class BareRim : public testing::RoadFeatures {
       }
     }
     return roads;
-  }
-  std::vector<std::string> notes(const std::vector<std::string>& roads, const std::string& extent = "") {
-    return read_road_network({geojson(roads)}, {.crs = "", .layer = "", .extent = extent}, RoadRules(), kZone).notes;
   }
 };
 

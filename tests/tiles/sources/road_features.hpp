@@ -10,6 +10,7 @@
 
 #include "core/geodesy/utm.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/sources/road_lines.hpp"
 
 namespace roadfix::testing {
 
@@ -37,6 +38,14 @@ inline std::string extent_around_centre(double half_m) {
 
 class RoadFeatures : public ::testing::Test {
  protected:
+  /// A street of 141 m to the north-east, from there.
+  static std::string road(double east, double north) {
+    return feature(R"("highway":"residential")", at(east, north), at(east + 100, north + 100));
+  }
+  /// What reading the roads has to say of them.
+  std::vector<std::string> notes(const std::vector<std::string>& roads, const std::string& extent = "") {
+    return read_road_network({geojson(roads)}, {.crs = "", .layer = "", .extent = extent}, RoadRules(), kZone).notes;
+  }
   /// `members` of the collection stand before its features, each with its comma.
   std::string geojson(const std::vector<std::string>& features, const std::string& members = "") {
     std::ofstream file(folder / "roads.geojson");

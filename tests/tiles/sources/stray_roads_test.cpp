@@ -16,9 +16,6 @@ using testing::kZone;
 
 class StrayRoads : public testing::RoadFeatures {
  protected:
-  static std::string road(double east, double north) {
-    return feature(R"("highway":"residential")", at(east, north), at(east + 100, north + 100));
-  }
   /// `side` x `side` roads, one every `apart_m`, north-east of the centre.
   static std::vector<std::string> town(int side, double apart_m) {
     std::vector<std::string> roads;
@@ -26,9 +23,6 @@ class StrayRoads : public testing::RoadFeatures {
       for (int col = 0; col < side; ++col) roads.push_back(road(col * apart_m, row * apart_m));
     }
     return roads;
-  }
-  std::vector<std::string> notes(const std::vector<std::string>& roads, const std::string& extent = "") {
-    return read_road_network({geojson(roads)}, {.crs = "", .layer = "", .extent = extent}, RoadRules(), kZone).notes;
   }
 };
 

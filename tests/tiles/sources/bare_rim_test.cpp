@@ -14,7 +14,6 @@ using ::testing::ElementsAre;
 using testing::feature;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::kZone;
 
 class BareRim : public testing::RoadFeatures {
  protected:

@@ -9,7 +9,6 @@ namespace {
 
 using testing::at;
 using ::testing::ElementsAre;
-using testing::feature;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kZone;

@@ -175,8 +175,13 @@ std::optional<double> RoadLayer::see(const OGRFeature& feature) {
   }
   const std::optional<double> width = rules_.width_of(std::ref(tags), classified_);
   const std::optional<StatedWidth> stated = width ? rules_.stated_width(std::ref(tags)) : std::nullopt;
-  const int field = stated ? places_(stated->attribute) : -1;
-  if (field >= 0) stated_widths_[feature.GetFieldDefnRef(field)->GetNameRef()].push_back(stated->width_m);
+  if (!stated) return width;
+  const int field = places_(stated->attribute);
+  if (field >= 0) {
+    stated_widths_[feature.GetFieldDefnRef(field)->GetNameRef()].push_back(stated->width_m);
+  } else if (rules_.is_width_attribute(stated->attribute)) {
+    stated_widths_[stated->attribute].push_back(stated->width_m);
+  }
   return width;
 }
 

@@ -55,7 +55,8 @@ class RoadLayer {
 
   /// As it stands in the file; empty where the layer or the feature has none.
   std::string class_of(const OGRFeature& feature);
-  /// Widths in metres of the drawn features that state them, by the name of the attribute in the file.
+  /// Widths in metres of the drawn features that state them in an attribute of the layer or in the one that the user
+  /// named, by the attribute's name in the file.
   const std::map<std::string, std::vector<double>>& stated_widths() const { return stated_widths_; }
   /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }

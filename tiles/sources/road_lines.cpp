@@ -131,6 +131,13 @@ void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
 
 /// Roads three times as wide as they are make a map that fits nowhere.
 void note_widths(const RoadRules& rules, RoadNetwork& network) {
+  const auto is_asked = [&](const auto& stated) { return rules.is_width_attribute(stated.first); };
+  if (!rules.width_attribute().empty() && std::ranges::none_of(network.stated_widths, is_asked)) {
+    network.notes.push_back(
+        fmt::format("no road states a width in the attribute '{}', which --width-attribute names: widths come from "
+                    "elsewhere. It is read where it says 7.5, '7.5 m' or '24 ft', from 0.5 to 100 m",
+                    rules.width_attribute()));
+  }
   for (auto& [attribute, widths] : network.stated_widths) {
     const auto middle = widths.begin() + std::ssize(widths) / 2;
     std::ranges::nth_element(widths, middle);

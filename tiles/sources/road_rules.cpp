@@ -214,8 +214,12 @@ void RoadRules::set_width_attribute(std::string_view text) {
   width_attribute_ = text;
 }
 
+bool RoadRules::is_width_attribute(std::string_view attribute) const {
+  return lower_case(attribute) == lower_case(width_attribute_);
+}
+
 WidthUnit RoadRules::unit_of(std::string_view width_attribute) const {
-  return lower_case(width_attribute) == lower_case(width_attribute_) ? width_unit_ : WidthUnit::kMetre;
+  return is_width_attribute(width_attribute) ? width_unit_ : WidthUnit::kMetre;
 }
 
 std::string RoadRules::describe() const {

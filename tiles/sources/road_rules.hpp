@@ -67,6 +67,9 @@ class RoadRules {
   /// Of values of the attribute that name none.
   WidthUnit unit_of(std::string_view width_attribute) const;
   const std::string& class_attribute() const { return class_attribute_; }
+  /// Without its unit; empty where the user named none.
+  const std::string& width_attribute() const { return width_attribute_; }
+  bool is_width_attribute(std::string_view attribute) const;
   /// Whether the table has a line for the class, drawn or not; of a list for one of its classes, the first counts.
   bool knows(std::string_view road_class) const { return find(road_class) != nullptr; }
   /// All of it in one line, for provenance and fingerprint.

@@ -109,6 +109,13 @@ TEST_F(RoadLines, WidthsFromAnAttributeAreSaidToBe) {
   rules = RoadRules();
   rules.set_width_m(6.0);
   EXPECT_THAT(read_road_network({path}, {}, rules, kZone).notes, IsEmpty());
+  rules.set_width_attribute("breite");
+  EXPECT_THAT(read_road_network({path}, {}, rules, kZone).notes,
+              ElementsAre(HasSubstr("no road states a width in the attribute 'breite'")));
+  const std::string packed =
+      geojson({feature(R"("highway":"primary","tags":{"breite":"7"})", at(-150, 40), at(150, 40))});
+  EXPECT_THAT(read_road_network({packed}, {}, rules, kZone).notes,
+              ElementsAre(HasSubstr("widths of 1 roads from the attribute 'breite'")));
 }
 
 TEST_F(RoadLines, ClassesAreFoundAmongPackedTags) {

@@ -31,9 +31,11 @@ const char* to_string(Measurement measurement) {
     case Measurement::kRejected:
       return "rejected";
     case Measurement::kUseless:
+      return "useless";
+    case Measurement::kRepeated:
       break;
   }
-  return "useless";
+  return "repeated";
 }
 
 Wind Wind::of(std::optional<double> sigma_m_s, std::optional<double> walk) {

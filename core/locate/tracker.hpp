@@ -17,6 +17,7 @@
 #include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
 #include "core/locate/fix.hpp"
+#include "core/locate/last_view.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/measurement_model.hpp"
 #include "core/locate/recent_frames.hpp"
@@ -114,6 +115,7 @@ struct TrackerState {
   RecentFrames recent;
   std::optional<std::int64_t> looked_time_us;  ///< time of the last search around the claimed place
   bool drifts = false;  ///< such a search found the vehicle beside it: a wind is learned though none was told
+  LastView last_view;
   std::optional<BodyVelocity> velocity;  ///< that the last odometry told
   bool coasts = false;  ///< the last step told no motion: the drift of the particles is all of their velocity
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
@@ -130,8 +132,8 @@ struct TrackCluster {
   double scale_sigma = 0.0;  ///< 1 sigma
 };
 
-/// What became of a step's feature map.
-enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless };
+/// What became of a step's feature map; kRepeated = nothing, since the camera or its link has stopped (LastView).
+enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless, kRepeated };
 /// "none", "skipped" ...: the word for it in answers and files.
 const char* to_string(Measurement measurement);
 

@@ -56,12 +56,15 @@ StepResult Tracker::Step::run() {
   }
   if (state_.started) {
     estimate_.missed_steps = input_.sequence - state_.sequence - 1;
+    state_.last_view.move(input_.odometry);
     move();
   } else {
     filter_.start_uniformly(tracker_.start_);
     state_.started = true;
   }
-  if (features_) {
+  if (features_ && state_.last_view.sees_again(*input_.features)) {
+    estimate_.measurement = Measurement::kRepeated;
+  } else if (features_) {
     measure();
     if (may_search()) state_.recent.keep(*features_);
   }

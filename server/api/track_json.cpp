@@ -34,6 +34,15 @@ std::optional<BodyVelocity> velocity_of(const json& velocity) {
   return BodyVelocity{velocity.at(0), velocity.at(1)};
 }
 
+json json_of(const LastView& view) {
+  return {{"digest", view.digest}, {"moved_m", view.moved_m}, {"turned_rad", view.turned_rad}};
+}
+
+LastView view_of(const json& view) {
+  if (view.is_null()) return {};
+  return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad")};
+}
+
 /// Throws where it is no whole number; get() would take any, and one beyond the range for anything.
 std::int64_t whole(const json& number) { return number.get_ref<const json::number_integer_t&>(); }
 
@@ -117,6 +126,7 @@ json counters_json(const TrackerState& state) {
           {"looked_time_us", json_of(state.looked_time_us)},
           {"drifts", state.drifts},
           {"velocity", json_of(state.velocity)},
+          {"last_view", json_of(state.last_view)},
           {"coasts", state.coasts},
           {"nadir_sigma_m", state.nadir_sigma_m}};
 }
@@ -135,11 +145,12 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.claim.supported = whole(counters.at("supported"));
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
-    // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity.
+    // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity and no view.
     state.looked_time_us = time_of(counters.value("looked_time_us", json()));
     state.drifts = counters.value("drifts", false);
     state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
     state.velocity = velocity_of(counters.value("velocity", json()));
+    state.last_view = view_of(counters.value("last_view", json()));
     state.coasts = counters.value("coasts", false);
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +

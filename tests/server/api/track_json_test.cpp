@@ -26,6 +26,7 @@ TrackerState flown() {
   state.nadir_sigma_m = 5.25;
   state.velocity = BodyVelocity{14.5, -0.25};
   state.coasts = true;
+  state.last_view = {0xfedcba9876543210U, 12.5, 0.25};
   return state;
 }
 
@@ -42,13 +43,14 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   nlohmann::json before = counters_json(flown());
   before.erase("looked_time_us");
   before.erase("drifts");
-  for (const char* name : {"nadir_sigma_m", "velocity", "coasts"}) before.erase(name);
+  for (const char* name : {"nadir_sigma_m", "velocity", "coasts", "last_view"}) before.erase(name);
   const TrackerState state = state_of(before, {});
   EXPECT_FALSE(state.looked_time_us);
   EXPECT_FALSE(state.drifts);
   EXPECT_EQ(state.nadir_sigma_m, 0.0);
   EXPECT_FALSE(state.velocity);
   EXPECT_FALSE(state.coasts);
+  EXPECT_TRUE(state.last_view == LastView());
   EXPECT_EQ(state.sequence, 41);
 }
 
@@ -59,7 +61,8 @@ TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
     damaged.erase(name);
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
   }
-  for (const std::string name : {"searched", "accepted_time_us", "looked_time_us", "drifts", "velocity", "coasts"}) {
+  for (const std::string name :
+       {"searched", "accepted_time_us", "looked_time_us", "drifts", "velocity", "coasts", "last_view"}) {
     nlohmann::json damaged = good;
     damaged[name] = "soon";
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;

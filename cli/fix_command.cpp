@@ -147,7 +147,8 @@ void add_fix_command(CLI::App& app) {
       ->add_option(
           "--nadir-sigma", o->nadir_sigma_m,
           "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
-          "the error of roll and pitch (default with --agl: 1 degree, 5 without --roll and --pitch; otherwise 0)")
+          "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
+          "otherwise 0)")
       ->check(not_negative(1000.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")

@@ -55,8 +55,12 @@ FrameCamera camera_in(const std::string& path, const FrameOptions& options) {
 }  // namespace
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
-  auto* gsd = command.add_option("--gsd", o.gsd_m, "The input is a frame seen straight from above: metres per pixel")
-                  ->check(positive());
+  auto* gsd =
+      command
+          .add_option("--gsd", o.gsd_m,
+                      "The input is a rectified frame, as if seen straight from above: metres per pixel. For a camera "
+                      "that may lean give its lens and --agl")
+          ->check(positive());
   auto* fov = command.add_option("--fov", o.fov_deg, "The input is a camera frame: field of view across, degrees")
                   ->check(positive());
   auto* focal = command

@@ -32,7 +32,8 @@ double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2);
 void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg) {
   camera.roll = Angle::degrees(roll_deg.value_or(0.0));
   camera.pitch = Angle::degrees(pitch_deg.value_or(0.0));
-  camera.attitude_sigma = roll_deg || pitch_deg ? kToldAttitudeSigma : kUntoldAttitudeSigma;
+  camera.roll_sigma = roll_deg ? kToldAttitudeSigma : kUntoldAttitudeSigma;
+  camera.pitch_sigma = pitch_deg ? kToldAttitudeSigma : kUntoldAttitudeSigma;
 }
 
 void validate(const FrameCamera& camera, cv::Size frame) {
@@ -99,7 +100,7 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
 double nadir_sigma_m(const FrameCamera& camera) {
   // The ground on the optical axis is agl tan(angle) from the nadir.
   const double steepness = std::max(down(camera), cos(kFlattestView));
-  return camera.agl_m * camera.attitude_sigma.radians() / (steepness * steepness);
+  return camera.agl_m * std::max(camera.roll_sigma, camera.pitch_sigma).radians() / (steepness * steepness);
 }
 
 }  // namespace roadfix

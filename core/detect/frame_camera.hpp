@@ -33,11 +33,11 @@ struct FrameCamera {
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
   Angle roll;
   Angle pitch;
-  Angle attitude_sigma = kUntoldAttitudeSigma;  ///< how well both are known, 1 sigma each
+  Angle roll_sigma = kUntoldAttitudeSigma;  ///< how well it is known, 1 sigma
+  Angle pitch_sigma = kUntoldAttitudeSigma;
 };
 
-/// What was told of roll and pitch, and with it how well both are known: what is not told is zero, and where neither is
-/// told the camera is only taken to look straight down.
+/// What was told of roll and pitch, and with it how well each is known: one that is not told is only taken to be zero.
 void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg);
 
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
@@ -59,8 +59,8 @@ void require_looking_down(const FrameCamera& camera);
 /// Ground sample distance straight below the UAV with the camera level.
 double nominal_gsd_m(const FrameCamera& camera, cv::Size frame);
 
-/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres: attitude_sigma
-/// times the height, more in oblique views.
+/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres: the larger sigma
+/// of roll and pitch times the height, more in oblique views.
 double nadir_sigma_m(const FrameCamera& camera);
 
 }  // namespace roadfix

@@ -49,7 +49,7 @@ def parse_arguments(arguments):
     parser = argparse.ArgumentParser(
         prog="ground_station", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="example: python3 scripts/ground_station --map city --track lat=37.76 lon=38.27 radius_m=2000 "
-               "--frame fov_deg=78 pitch_deg=0 --live --format gps_input --send 127.0.0.1:14550 < steps")
+               "--frame fov_deg=78 roll_deg=0 pitch_deg=0 --live --format gps_input --send 127.0.0.1:14550 < steps")
     parser.add_argument("steps", nargs="?", help="file of steps (default: standard input)")
     parser.add_argument("--server", default="http://127.0.0.1:8080",
                         help="address of the service, with user:password@ for a proxy that asks (default: %(default)s)")

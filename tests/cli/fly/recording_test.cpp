@@ -125,8 +125,8 @@ TEST_F(Recordings, KeepTheirPicturesForADetectorElsewhere) {
 }
 
 TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
-  std::ofstream(folder / "camera.csv") << "file,lat,lon,heading_deg,agl_m,focal_px,pitch_deg\n"
-                                          "10.png,57.5,21,0,100,50,30\n";
+  std::ofstream(folder / "camera.csv") << "file,lat,lon,heading_deg,agl_m,focal_px,roll_deg,pitch_deg\n"
+                                          "10.png,57.5,21,0,100,50,0,30\n";
   const auto read = [&] {
     return read_recordings(folder / "camera.csv", zone, options, [](std::int64_t, std::int64_t) {}).at(0).frames.at(0);
   };

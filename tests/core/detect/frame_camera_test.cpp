@@ -54,9 +54,9 @@ TEST(NadirSigma, IsWhatASmallErrorOfPitchOrRollMovesTheGroundInViewBy) {
     FrameCamera turned = camera;
     turned.pitch += little;
     const double moved_m = std::abs(ground_at(turned, middle)->y - ground_at(camera, middle)->y);
-    camera.attitude_sigma = kToldAttitudeSigma;
+    camera.roll_sigma = camera.pitch_sigma = kToldAttitudeSigma;
     EXPECT_NEAR(nadir_sigma_m(camera), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
-    camera.attitude_sigma = kUntoldAttitudeSigma;
+    camera.roll_sigma = kUntoldAttitudeSigma;
     EXPECT_NEAR(nadir_sigma_m(camera), 500.0 * moved_m, 0.002 * 500.0 * moved_m) << pitch_deg;
   }
   FrameCamera rolled = level();

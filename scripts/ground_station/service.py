@@ -7,7 +7,7 @@ import urllib.parse
 
 ANSWER_TIME_S = 90.0  # a search may wait its turn for 30 s and take as long
 SHORTEST_S = 0.2      # an attempt
-BUSY = (429, 502, 503, 504)
+BUSY = (408, 429, 502, 503, 504)
 
 
 class Silent(Exception):

@@ -94,7 +94,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
                   http::Admission& turns) {
   const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
   return kept_or_drawn(service.pictures, key, [&] {
-    const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
+    const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
     return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
                                    [&](GridPoint place) { return fix_probability(service, request, layer, place); });
   });

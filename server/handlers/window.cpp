@@ -31,7 +31,7 @@ http::Response get_window(const Service& service, const http::Request& request, 
   const api::WindowRequest asked = api::parse_window(fields);
   const std::string_view format = api::media_asked_for(request, fields, kFormats).name;
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const http::Admission::Ticket turn = turns.enter(request.deadline, request.abandoned);
+  const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
   const api::Window window = api::cut_window(map->view, asked, service.limits);
   http::Response response = rendered(window, format);
   // What a picture cannot say about itself, so that it can be posted back: its pose and cell size.

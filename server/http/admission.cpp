@@ -14,37 +14,55 @@ constexpr std::chrono::milliseconds kLookPause{100};
 
 }  // namespace
 
-Admission::Ticket Admission::enter(std::chrono::steady_clock::time_point deadline,
+Admission::Ticket Admission::enter(const std::string& client, std::chrono::steady_clock::time_point deadline,
                                    const std::function<bool()>& abandoned) {
   using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
-  if (running_ < max_running_ && queue_.empty()) {
-    ++running_;
-    return Ticket(*this);
-  }
-  if (static_cast<int>(queue_.size()) >= max_waiting_) {
-    throw Busy(fmt::format("{} requests run and {} wait already; try again", running_, queue_.size()), kRetryAfter);
-  }
-  const auto place = queue_.insert(queue_.end(), 0);
-  const auto is_mine = [&] { return place == queue_.begin() && running_ < max_running_; };
-  bool mine = false;
+  const auto others = of_client_.find(client);
+  const Waiting mine{others == of_client_.end() ? 0 : others->second};
+  const bool at_once = running_ < max_running_ && queue_.empty();
+  if (!at_once && std::ssize(queue_) >= max_waiting_) make_room_for(mine);
+  ++of_client_[client];
+  queue_.insert(std::ranges::upper_bound(queue_, mine.rank, {}, [](const Waiting* other) { return other->rank; }),
+                &mine);
+  const auto is_over = [&] { return !waits(mine) || (running_ < max_running_ && queue_.front() == &mine); };
+  bool over = at_once;
   bool gone = false;
-  do {
-    mine = turn_.wait_until(lock, std::min(deadline, Clock::now() + kLookPause), is_mine);
+  while (!over && !gone && Clock::now() < deadline) {
+    over = turn_.wait_until(lock, std::min(deadline, Clock::now() + kLookPause), is_over);
     gone = abandoned && abandoned();
-  } while (!mine && !gone && Clock::now() < deadline);
-  queue_.erase(place);
+  }
+  const bool sent_away = std::erase(queue_, &mine) == 0;
   turn_.notify_all();
+  if (over && !sent_away && !gone) {
+    ++running_;
+    return {*this, client};
+  }
+  forget(client);
   if (gone) throw ClientGone();
-  if (!mine) throw Busy("its turn did not come in the time that a request may wait; try again", kRetryAfter);
-  ++running_;
-  return Ticket(*this);
+  if (sent_away) throw Busy("others wait, with fewer requests than this client; try again", kRetryAfter);
+  throw Busy("its turn did not come in the time that a request may wait; try again", kRetryAfter);
 }
 
-void Admission::leave() {
+void Admission::make_room_for(const Waiting& newcomer) {
+  if (queue_.empty() || queue_.back()->rank <= newcomer.rank) {
+    throw Busy(fmt::format("{} requests run and {} wait already; try again", running_, queue_.size()), kRetryAfter);
+  }
+  queue_.pop_back();
+  turn_.notify_all();
+}
+
+bool Admission::waits(const Waiting& request) const { return std::ranges::find(queue_, &request) != queue_.end(); }
+
+void Admission::leave(const std::string& client) {
   const std::lock_guard lock(mutex_);
   --running_;
+  forget(client);
   turn_.notify_all();
+}
+
+void Admission::forget(const std::string& client) {
+  if (--of_client_[client] == 0) of_client_.erase(client);
 }
 
 int Admission::running() const {

@@ -27,7 +27,7 @@ bool Server::Impl::process_and_close_socket(socket_t socket) {
   const Counted open(metrics_.connections);
   ConnectionLimits limits{settings_.head_time, settings_.body_time, settings_.write_time, settings_.head_bytes};
   limits.grace = settings_.crowded_time;
-  limits.others_wait = [this] { return pool_->waiting() > 0; };
+  limits.others_wait = [this] { return threads_are_wanted(); };
   Connection connection(socket, limits);
   try {
     serve_connection(connection);
@@ -60,6 +60,9 @@ bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
   }
   return connection.wait(0ms);
 }
+
+/// By others that wait, or by the end of the service: who sends slowly is waited for no longer.
+bool Server::Impl::threads_are_wanted() const { return stopping_ || pool_->waiting() > 0; }
 
 void Server::Impl::refuse_connection(Connection& connection) const {
   Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});

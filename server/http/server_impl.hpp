@@ -36,6 +36,7 @@ class Server::Impl : public httplib::Server {
   bool process_and_close_socket(socket_t socket) override;
   void serve_connection(Connection& connection);
   bool wait_for_request(Connection& connection, bool first) const;
+  bool threads_are_wanted() const;
   void refuse_connection(Connection& connection) const;
   void write_directly(Connection& connection, const Response& response) const;
 

@@ -62,7 +62,7 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
     end_request(exchange, std::current_exception());
   }
   const bool unread = exchange.must_close || !exchange.head_read;
-  if (unread) connection.linger([this] { return stopping_ || pool_->waiting() > 0; });
+  if (unread) connection.linger([this] { return threads_are_wanted(); });
   return written && !last && !closed_by_client && !exchange.asked_to_close && !unread;
 }
 
@@ -150,7 +150,7 @@ Response Server::Impl::answered(Exchange& exchange) {
     if (route.load == Load::kLight) return route.handler(request);
     const auto prepared = route.prepare ? route.prepare(request) : nullptr;
     const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
-    const Admission::Ticket ticket = admission_.enter(whole + settings_.turn_time, given_up);
+    const Admission::Ticket ticket = admission_.enter(request.client, whole + settings_.turn_time, given_up);
     request.deadline = Clock::now() + settings_.request_time;
     return prepared ? prepared() : route.handler(request);
   } catch (const Interrupted&) {

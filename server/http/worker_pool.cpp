@@ -1,5 +1,6 @@
 #include "server/http/worker_pool.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace roadfix::http {
@@ -45,7 +46,7 @@ void WorkerPool::shutdown() {
 
 std::size_t WorkerPool::waiting() const {
   const std::lock_guard lock(mutex_);
-  return jobs_.size();
+  return jobs_.size() - std::min(jobs_.size(), idle_);
 }
 
 bool WorkerPool::overflow() { return t_overflow; }
@@ -55,7 +56,9 @@ void WorkerPool::work() {
     std::function<void()> job;
     {
       std::unique_lock lock(mutex_);
+      ++idle_;
       wake_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });
+      --idle_;
       if (jobs_.empty()) return;
       job = std::move(jobs_.front());
       jobs_.pop_front();

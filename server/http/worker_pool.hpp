@@ -24,6 +24,7 @@ class WorkerPool {
   /// Runs what waits, then joins.
   void shutdown();
 
+  /// Jobs for which there is no idle thread.
   std::size_t waiting() const;
   /// The job that runs in this thread got no thread of its own and must end at once.
   static bool overflow();
@@ -34,6 +35,7 @@ class WorkerPool {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::function<void()>> jobs_;
+  std::size_t idle_ = 0;  ///< threads
   const std::size_t max_waiting_;
   bool stopping_ = false;
   std::vector<std::jthread> threads_;

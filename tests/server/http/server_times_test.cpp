@@ -57,6 +57,19 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
 }
 
+TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhenItIsStopped) {
+  settings_.body_time = 10min;
+  settings_.crowded_time = 10ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
+  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  const auto start = std::chrono::steady_clock::now();
+  server->stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 60s);
+  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+}
+
 TEST_F(HttpServerTimes, SendsABodyAwayForWhichOthersLeaveNoMemoryAndTakesItLater) {
   settings_.body_bytes = 50'000;
   settings_.all_bodies_bytes = 60'000;

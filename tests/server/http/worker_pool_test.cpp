@@ -4,8 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <latch>
 #include <system_error>
+#include <thread>
 
 namespace roadfix::http {
 namespace {
@@ -27,6 +30,36 @@ class LittleRoom {
  private:
   rlimit before_{};
 };
+
+TEST(WorkerPool, CountsNoJobAsWaitingThatAnIdleThreadIsAboutToTake) {
+  using namespace std::chrono_literals;
+  WorkerPool pool(2, 8);
+  std::size_t waiting = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::latch ran(1);
+    pool.enqueue([&] { ran.count_down(); });
+    waiting += pool.waiting();
+    ran.wait();
+    std::this_thread::sleep_for(1ms);  // until it is idle again, on most machines
+  }
+  EXPECT_LT(waiting, 50U);
+}
+
+TEST(WorkerPool, CountsJobsBeyondItsThreadsAsWaiting) {
+  std::latch end(1);
+  std::latch busy(2);
+  WorkerPool pool(2, 8);
+  for (int i = 0; i < 2; ++i) {
+    pool.enqueue([&] {
+      busy.count_down();
+      end.wait();
+    });
+  }
+  busy.wait();
+  for (int i = 0; i < 3; ++i) pool.enqueue([] {});
+  EXPECT_EQ(pool.waiting(), 3U);
+  end.count_down();
+}
 
 TEST(WorkerPool, SaysWhereAThreadCannotBeStarted) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

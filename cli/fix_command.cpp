@@ -139,8 +139,10 @@ void add_fix_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command
-      ->add_option("--scale-range", o->fix.scale_range,
-                   "The ground may be smaller or larger by this share (roughly known altitude)")
+      ->add_option(
+          "--scale-range", o->fix.scale_range,
+          "The ground may be smaller or larger by this share: roughly known altitude, or a lens that --exif knows "
+          "from FocalLengthIn35mmFilm alone (0.1)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, kMaxScaleRange));
   command

@@ -71,13 +71,14 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
   auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov, --focal-px or --exif")
                   ->check(positive())
                   ->excludes(gsd);
-  auto* exif = command
-                   .add_flag("--exif", o.camera_in_file,
-                             "The input is a frame as a drone stored it: its EXIF and XMP tell lens, height above the "
-                             "take-off, roll and pitch; --agl, --roll and --pitch say otherwise")
-                   ->excludes(gsd)
-                   ->excludes(fov)
-                   ->excludes(focal);
+  auto* exif =
+      command
+          .add_flag("--exif", o.camera_in_file,
+                    "The input is a frame as a drone stored it: its EXIF and XMP tell lens, height above the "
+                    "take-off, roll and pitch; --agl, --roll and --pitch say otherwise. Digital zoom is refused")
+          ->excludes(gsd)
+          ->excludes(fov)
+          ->excludes(focal);
   fov->needs(agl);
   focal->needs(agl);
   command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down, 0 = straight down")

@@ -35,7 +35,7 @@ struct FrameOptions {
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
 
 /// The ground that the frame in a file shows, in pixels that the detector makes use of. Throws what decode_image,
-/// frame_image and rectify throw, and InvalidInput "camera-not-in-file", "not-a-file" and NotFound "file-not-found";
+/// frame_image, rectify and camera_of(DronePicture) throw, InvalidInput "not-a-file" and NotFound "file-not-found";
 /// all about the file name it. options.given() must hold.
 GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 

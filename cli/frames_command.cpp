@@ -74,10 +74,11 @@ std::string lacks(const DronePicture& picture, const std::optional<double>& agl_
   if (!picture.heading)
     missing.emplace_back("where its upper edge points (GimbalYawDegree and GimbalPitchDegree, or Yaw)");
   if (!agl_m) missing.emplace_back("its height (RelativeAltitude or AboveGroundAltitude)");
-  if (!picture.focal_px) {
+  if (!picture.focal_px && !picture.doubt) {
     missing.emplace_back(
         "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a picture that was not cut)");
   }
+  if (missing.empty() && picture.doubt) return "its file " + picture.doubt->what;
   if (missing.empty() && *agl_m <= 0.0) return fmt::format("it was taken {:.1f} m above ground", *agl_m);
   return missing.empty() ? "" : fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
 }

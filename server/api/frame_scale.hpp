@@ -22,7 +22,7 @@ struct FrameScale {
   bool in_file = false;               ///< the camera was read from the picture's file
 };
 
-/// `picture` are the bytes of the frame's file. Throws InvalidField, and InvalidInput "camera-not-in-file".
+/// `picture` are the bytes of the frame's file. Throws InvalidField, and what camera_of(DronePicture) throws.
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);
 
 /// A camera that was read from a file, by the names of the fields that would tell it.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -28,11 +29,12 @@ class FramesCommand : public ::testing::Test {
  protected:
   FramesCommand() { std::filesystem::create_directory(folder / "flight 1"); }
 
-  void picture(const std::string& name, const std::string& tags) const {
+  void picture(const std::string& name, const std::string& tags, std::uint8_t film_mm = 0) const {
     cv::Mat ground(90, 120, CV_8UC1);
     cv::theRNG().state = 1;
     cv::randu(ground, 0, 256);
-    const auto jpeg = testing::drone_jpeg(ground, tags);
+    auto jpeg = testing::drone_jpeg(ground, tags);
+    if (film_mm > 0) testing::add_film_focal_length(jpeg, film_mm);
     std::ofstream file(folder / "flight 1" / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   }
@@ -78,6 +80,19 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
                                 HasSubstr("a,b.jpg is left out: no CSV can hold the comma"),
                                 HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
+}
+
+TEST_F(FramesCommand, LeavesOutWhatWasMadeSmallerByAProgramThatDidNotSaySo) {
+  picture("whole.jpg", tags(120.0), 29);    // 100 pixels
+  picture("smaller.jpg", tags(120.0), 14);  // 100 pixels of the camera's 240 x 180, of which 120 x 90 are left
+  const std::string place = "'" + (folder / "flight 1").string() + "'";
+  const ProgramResult result = frames(place);
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("whole.jpg,"), Not(HasSubstr("smaller"))));
+  EXPECT_THAT(result.err, HasSubstr("smaller.jpg is left out: its file tells two focal lengths: 100 pixels"));
+  const std::string smaller = "'" + (folder / "flight 1" / "smaller.jpg").string() + "'";
+  EXPECT_THAT(run_program(folder.path(), "detect --exif " + smaller + " roads.png").err,
+              AllOf(HasSubstr("[camera-contradictory]"), HasSubstr("--focal-px and --agl")));
 }
 
 /// What detect says of a frame, but for its time and what angles lose by being turned to and fro.

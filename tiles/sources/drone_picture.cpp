@@ -122,16 +122,56 @@ std::optional<double> scale_of(const PictureTags& tags) {
   return std::abs(scale * *rows - tags.size.height) <= 2.0 ? std::optional(scale) : std::nullopt;
 }
 
-void set_lens(DronePicture& picture, const PictureTags& tags) {
-  const auto known = scale_of(tags);
-  if (!known) return;
-  const double scale = *known;
+/// By the diagonal, as CIPA defines equivalents of 35 mm film.
+std::optional<double> film_focal_px(const PictureTags& tags) {
+  constexpr double kFilmDiagonalMm = 43.2666;  // of 36 x 24 mm
+  const auto on_film = number(tags.exif, "EXIF_FocalLengthIn35mmFilm");
+  if (!on_film || *on_film <= 0.0) return std::nullopt;
+  return *on_film / kFilmDiagonalMm * std::hypot(tags.size.width, tags.size.height);
+}
+
+void set_calibrated_lens(DronePicture& picture, const PictureTags& tags, double scale) {
   if (set_dewarp_data(picture, tags, scale)) return;
-  if (const auto focal = number(tags.xmp, "CalibratedFocalLength"); focal && *focal > 0.0) {
-    picture.focal_px = scale * *focal;
-  } else if (const auto on_film = number(tags.exif, "EXIF_FocalLengthIn35mmFilm"); on_film && *on_film > 0.0) {
-    constexpr double kFilmDiagonalMm = 43.2666;  // of 36 x 24 mm
-    picture.focal_px = *on_film / kFilmDiagonalMm * std::hypot(tags.size.width, tags.size.height);
+  const auto focal = number(tags.xmp, "CalibratedFocalLength");
+  if (focal && *focal > 0.0) picture.focal_px = scale * *focal;
+}
+
+/// Two focal lengths of one lens agree within this factor: film's is rounded to whole millimetres (2 % of 24 mm), some
+/// makers take the width for the diagonal (4 %), and 16:9 cut out of 4:3 has a shorter diagonal (9 %), 16 % together.
+/// A picture that was made smaller or cut by a program that rewrote or dropped its size is mostly off by more; which of
+/// the two it was, and so which focal length is still right, no tag says.
+constexpr double kSameLens = 1.2;
+
+std::optional<LensDoubt> doubt_of(const PictureTags& tags, std::optional<double> calibrated_px,
+                                  std::optional<double> film_px) {
+  const double zoom = number(tags.exif, "EXIF_DigitalZoomRatio").value_or(0.0);
+  if (zoom > 1.0) {
+    // Some cameras enlarge the part to the full size and others do not, and EXIF does not tell which focal length
+    // counts it already.
+    return LensDoubt{"camera-zoomed", fmt::format("tells a digital zoom of {:g} (DigitalZoomRatio), and not which "
+                                                  "focal length its pixels have with it",
+                                                  zoom)};
+  }
+  if (calibrated_px && film_px && std::abs(std::log(*calibrated_px / *film_px)) > std::log(kSameLens)) {
+    return LensDoubt{"camera-contradictory",
+                     fmt::format("tells two focal lengths: {:.0f} pixels by its calibration (DewarpData or "
+                                 "CalibratedFocalLength) and {:.0f} by FocalLengthIn35mmFilm, for {} x {} pixels; a "
+                                 "program that made it smaller or cut it leaves such a file",
+                                 *calibrated_px, *film_px, tags.size.width, tags.size.height)};
+  }
+  return std::nullopt;
+}
+
+void set_lens(DronePicture& picture, const PictureTags& tags) {
+  const auto scale = scale_of(tags);
+  if (!scale) return;
+  set_calibrated_lens(picture, tags, *scale);
+  const auto film_px = film_focal_px(tags);
+  picture.doubt = doubt_of(tags, picture.focal_px, film_px);
+  if (picture.doubt) {
+    picture.focal_px.reset();
+  } else if (!picture.focal_px) {
+    picture.focal_px = film_px;
   }
 }
 
@@ -153,6 +193,13 @@ DronePicture drone_picture(const PictureTags& tags) {
 }
 
 FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
+  if (picture.doubt) {
+    throw InvalidInput(picture.doubt->code,
+                       fmt::format("the picture's file {}: give its focal length in pixels and the height instead "
+                                   "(--focal-px and --agl, or focal_px and agl_m), or use a picture as the drone "
+                                   "stored it, without zoom",
+                                   picture.doubt->what));
+  }
   if (!picture.focal_px) {
     refuse(
         "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a JPEG that was not cut): "

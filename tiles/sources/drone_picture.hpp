@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/detect/frame_camera.hpp"
@@ -11,6 +12,12 @@
 #include "tiles/sources/picture_tags.hpp"
 
 namespace roadfix {
+
+/// Why the focal length that a file tells cannot be used.
+struct LensDoubt {
+  const char* code;
+  std::string what;  ///< after "the picture's file"
+};
 
 /// What the tags say; nothing where they do not.
 struct DronePicture {
@@ -21,9 +28,10 @@ struct DronePicture {
   std::optional<Angle> heading;     ///< of the frame's upper edge
   std::optional<double> roll_deg;   ///< with `heading`, as FrameCamera has them: 0 = straight down
   std::optional<double> pitch_deg;  ///< likewise
-  std::optional<double> focal_px;   ///< of the picture as it is, also where it was made smaller
+  std::optional<double> focal_px;   ///< of the picture as it is, also where it was made smaller; none with a doubt
   std::optional<cv::Point2d> principal_px;
   std::vector<double> distortion;  ///< by OpenCV's model; empty where the picture has none any more, or none is told
+  std::optional<LensDoubt> doubt;
 };
 
 DronePicture drone_picture(const PictureTags& tags);
@@ -36,7 +44,8 @@ struct KnownView {
 };
 
 /// The camera that took it. Where only the height above the take-off is told, the ground below is taken to be as high
-/// as that place. Throws InvalidInput "camera-not-in-file" that says what is missing.
+/// as that place. Throws InvalidInput "camera-not-in-file" that says what is missing, "camera-contradictory" where the
+/// file tells two focal lengths that differ, and "camera-zoomed" where the camera enlarged what it saw.
 FrameCamera camera_of(const DronePicture& picture, const KnownView& known);
 
 }  // namespace roadfix

@@ -7,14 +7,17 @@
 #include <fstream>
 #include <random>
 
+#include "tests/support/code_of.hpp"
 #include "tests/support/drone_jpeg.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Optional;
 
@@ -121,6 +124,45 @@ TEST(DronePicture, HasTheFocalLengthOfItsFieldOfViewInThePixelsThatItHas) {
   EXPECT_FALSE(of_exif(exif, {1000, 1000}).focal_px) << "cut";
   const Tags xmp{{"CalibratedFocalLength", "3666"}};
   EXPECT_THAT(drone_picture({exif, xmp, {1368, 912}}).focal_px, near_to(916.5));
+}
+
+/// Its code, or "no error".
+std::string refusal(const Tags& exif, const Tags& xmp, cv::Size size = kSize) {
+  return testing::code_of([&] { camera_of(drone_picture({exif, xmp, size}), {100.0, {}, {}}); });
+}
+
+TEST(DronePicture, TellsNoCameraWhereItsCalibrationIsForMorePixelsThanItHas) {
+  const Tags exif{{"EXIF_FocalLengthIn35mmFilm", "24"}};
+  const Tags dewarped{{"DewarpFlag", "0"}, {"DewarpData", "2021-05-11;3713,3712,7,-8,-0.1,0,0,0,0"}};
+  for (const Tags& xmp : {Tags{{"CalibratedFocalLength", "3666"}}, dewarped}) {
+    EXPECT_EQ(refusal(exif, xmp), "no error");
+    EXPECT_EQ(refusal(exif, xmp, {2736, 1824}), "camera-contradictory") << "its size was dropped";
+    EXPECT_FALSE(drone_picture({exif, xmp, {2736, 1824}}).focal_px);
+    EXPECT_EQ(refusal({}, xmp, {2736, 1824}), "no error") << "nothing contradicts";
+  }
+  EXPECT_THAT(drone_picture({exif, {{"CalibratedFocalLength", "3666"}}, {2736, 1824}}).doubt.value().what,
+              AllOf(HasSubstr("3666 pixels by its calibration"), HasSubstr("1824 by FocalLengthIn35mmFilm")));
+}
+
+TEST(DronePicture, BelievesItsCalibrationWhereTheCutAndTheConventionsOfFilmDiffer) {
+  const double focal_px = 3000.0;  // on 4000 x 3000 pixels, the sensor's
+  for (const double film_mm : {43.2666 / 5000.0 * focal_px, 36.0 / 4000.0 * focal_px}) {
+    const Tags exif{{"EXIF_FocalLengthIn35mmFilm", fmt::format("{:.0f}", film_mm)}};
+    for (const cv::Size size : {cv::Size(4000, 3000), cv::Size(4000, 2666), cv::Size(4000, 2250)}) {
+      EXPECT_THAT(drone_picture({exif, {{"CalibratedFocalLength", "3000"}}, size}).focal_px, near_to(3000.0)) << size;
+    }
+  }
+}
+
+TEST(DronePicture, TellsNoCameraWhereTheCameraEnlargedWhatItSaw) {
+  for (const char* focal : {"CalibratedFocalLength", "EXIF_FocalLengthIn35mmFilm"}) {
+    Tags tags{{focal, "3666"}, {"EXIF_DigitalZoomRatio", "(2)"}};
+    EXPECT_EQ(refusal(tags, tags), "camera-zoomed");
+    for (const char* none : {"(1)", "(0)", "(nan)"}) {
+      tags["EXIF_DigitalZoomRatio"] = none;
+      EXPECT_EQ(refusal(tags, tags), "no error") << none;
+    }
+  }
 }
 
 TEST(XmpTags, AreAttributesAndElementsWithoutTheirPrefixes) {

@@ -18,6 +18,7 @@
 #include "cli/output_file.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
@@ -32,6 +33,16 @@ struct DetectOptions {
   std::uint64_t seed = 1;
   bool json = false;
 };
+
+/// Devices have names without an ending, and take a PNG too.
+void require_png_name(const std::string& target) {
+  const std::string ending = lower_case(std::filesystem::path(target).extension().string());
+  if (ending.empty() || ending == ".png") return;
+  throw InvalidInput("feature-map-not-png",
+                     fmt::format("{}: a feature map is a PNG, whose alpha says what was observed: let its name end in "
+                                 ".png; gdal_translate makes other formats of it",
+                                 target));
+}
 
 /// Where the first cell of a georeferenced picture lies.
 struct Place {
@@ -72,6 +83,7 @@ double mean_probability(const CellArray& cells) {
 
 void run_detect(const DetectOptions& options) {
   require_apart({options.target}, {options.image});
+  require_png_name(options.target);
   const auto detector = make_detector(options.detector);
   const Picture picture = read_picture(options, *detector);
   const auto start = std::chrono::steady_clock::now();

@@ -49,6 +49,19 @@ TEST_F(DetectCommand, SaysWhyItCannotWrite) {
               HasSubstr("(No such file or directory): check"));
 }
 
+TEST_F(DetectCommand, WritesNoPngUnderTheNameOfAnotherFormat) {
+  const std::string frame = "detect --detector tree " + (folder / "frame.png").string() + " --gsd 1 ";
+  for (const char* name : {"roads.jpg", "roads.TIF", "roads.png.bak"}) {
+    const ProgramResult result = run_program(folder.path(), frame + (folder / name).string());
+    EXPECT_EQ(result.code, 1) << name;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("[feature-map-not-png]"), HasSubstr("end in .png")));
+    EXPECT_FALSE(std::filesystem::exists(folder / name));
+  }
+  for (const char* name : {"roads.PNG", "roads"}) {
+    EXPECT_EQ(run_program(folder.path(), frame + (folder / name).string()).code, 0) << name;
+  }
+}
+
 TEST_F(DetectCommand, TurnsAFrameOfKnownScaleIntoCells) {
   const ProgramResult result = detect("--gsd 0.5 --json");
   ASSERT_EQ(result.code, 0) << result.err;

@@ -121,7 +121,7 @@ void add_fix_command(CLI::App& app) {
   radius->check(positive())->needs(lat)->needs(lon);
   lat->needs(lon)->needs(radius);
   lon->needs(lat);
-  add_bbox_option(*command, "Prior", o->bbox);
+  add_bbox_option(*command, "Prior (together with --radius: what lies in both)", o->bbox);
   auto* heading = command->add_option("--heading", o->heading_deg, "Prior: true heading in degrees");
   command
       ->add_option("--heading-range", o->heading_range_deg,

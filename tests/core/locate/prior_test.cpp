@@ -33,6 +33,22 @@ TEST(RegionOf, TakesABoxThatReachesFarBeyondTheZone) {
   }
 }
 
+TEST(RegionOf, IsWhatCircleAndBoxHaveInCommon) {
+  const MapView map = map_of(32637, {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}});
+  const LatLon middle = map.zone.unproject({435'000.0, 4'175'000.0});
+  Prior prior;
+  prior.circle = GeoCircle{middle, 1000.0};
+  prior.box = GeoBox{middle, {42.0, 45.0}};
+  const PoseRegion region = region_of(map, prior);
+  EXPECT_NEAR(region.box.min.east_m, 435'000.0, 100.0);  // true north is half a degree off the grid's
+  EXPECT_NEAR(region.box.min.north_m, 4'175'000.0, 100.0);
+  EXPECT_DOUBLE_EQ(region.box.max.east_m, 436'000.0);
+  EXPECT_TRUE(region.circle);
+  prior.circle->radius_m = 100.0;
+  prior.box = GeoBox{map.zone.unproject({436'000.0, 4'176'000.0}), {42.0, 45.0}};
+  EXPECT_EQ(testing::code_of([&] { region_of(map, prior); }), "prior-outside-map");
+}
+
 TEST(RegionOf, TakesBoxesOnEitherSideOfTheAntimeridian) {
   const MapView map = map_of(32701, {{150'000.0, 8'000'000.0}, {250'000.0, 8'010'000.0}});  // Fiji, 179.7 E to 179.4 W
   const double antimeridian_m = map.zone.project({-18.0, 180.0}).east_m;

@@ -58,7 +58,8 @@ def main():
     for mean, share, count in rows:
         print(f"| {mean:.2f} | {share:.2f} | {count} |")
     share, count = recall(predict, held_out, gsd_m)
-    print(f"\nLocalization of augmented 200 m windows in their own held-out picture, heading known: {share:.2f} of {count} within 10 m")
+    print(f"\nLocalization of augmented 200 m windows by the labelled roads of their held-out picture, heading known: "
+          f"{share:.2f} of {count} within 10 m")
 
 
 if __name__ == "__main__":

@@ -49,6 +49,13 @@ def at_scale(pair, gsd_m):
     return image, truth, seen
 
 
+def labelled_at_scale(pair, gsd_m):
+    """bool, as `at_scale`: where the label says road or no road, outside the band where it is unsure."""
+    base = pair.levels[0]
+    size = tuple(int(round(side * base.gsd_m / gsd_m)) for side in base.weight.shape[::-1])
+    return cv2.resize(base.weight, size, interpolation=cv2.INTER_AREA) > 191
+
+
 def relaxed_counts(predicted, truth, seen, tolerance_m, gsd_m):
     """Predicted road counts as right within the tolerance of labelled road, and the other way round."""
     def near(mask):
@@ -76,8 +83,7 @@ def logits_and_labels(predict, pairs, gsd_m, each=20000, seed=1):
     logits, labels = [], []
     for pair in pairs:
         image, truth, seen = at_scale(pair, gsd_m)
-        size = image.shape[1::-1]
-        sure = cv2.resize(pair.levels[0].weight, size, interpolation=cv2.INTER_AREA) > 191
+        sure = labelled_at_scale(pair, gsd_m)
         cells = predict(image, seen)
         whole = cv2.resize(cells, (cells.shape[1] * 2, cells.shape[0] * 2), interpolation=cv2.INTER_LINEAR)
         rows, cols = np.nonzero(seen & sure)

@@ -16,7 +16,8 @@ constexpr double kBeyondChanceDeviations = 12.0;
 // Chance would give a hundredth of a place that fits as well.
 constexpr double kBeyondChance = 4.6;
 
-// Where the best place in the region would be likely, a better one outside of it is worth a word.
+// Where the best place in the region would be likely, a better one outside of it is worth a word, and nobody is told
+// that it fits by chance.
 constexpr double kLikely = 0.5;
 
 /// Shares of the posterior of the modes, all places of the region considered.
@@ -154,6 +155,8 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
     explain(decision, kBetterOutsideReason, fits_outside(found));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, posterior, calibration, confidence);
+  } else if (decision.probability > kLikely) {
+    explain(decision, "below-confidence", below_confidence(decision.probability, calibration, confidence));
   } else {
     explain(decision, kNotAboveChanceReason,
             "the best place fits no better than chance allows among so many places: use a larger footprint or a "

@@ -47,6 +47,17 @@ TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
   EXPECT_LT(decision.probability, 0.5);
 }
 
+TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
+  bool likely = false;
+  for (double score = 0.38; score < 0.6; score += 0.01) {
+    const Decision decision = decide(found(score, 0.35, 0.2), default_calibration(), 0.99);
+    if (decision.status != FixStatus::kNoFix) continue;
+    EXPECT_EQ(decision.reason, decision.probability > 0.5 ? "below-confidence" : "not-above-chance") << score;
+    likely = likely || decision.probability > 0.5;
+  }
+  EXPECT_TRUE(likely);
+}
+
 TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
   const Decision decision = decide(found(0.85, 0.84, 0.7), default_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);

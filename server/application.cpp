@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <limits>
 #include <utility>
 
 #include "server/api/problem.hpp"
@@ -42,6 +43,12 @@ struct Application::Parts {
                   });
     metrics.gauge("roadfix_tracks_available", "1 where the store of the tracks is open and took the last step, else 0.",
                   [this] { return tracks.problem() ? 0.0 : 1.0; });
+    metrics.gauge("roadfix_tracks", "Tracks that fly, NaN where their store cannot say.", [this] {
+      const auto flying = tracks.flying();
+      return flying ? static_cast<double>(*flying) : std::numeric_limits<double>::quiet_NaN();
+    });
+    metrics.gauge("roadfix_track_streams", "Streams of track events that are open.",
+                  [this] { return static_cast<double>(tracks.streams()); });
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",
                   [this] { return static_cast<double>(maps.unreadable().size()); });

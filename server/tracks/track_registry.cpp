@@ -115,6 +115,19 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   return track;
 }
 
+std::optional<std::size_t> TrackRegistry::flying() const {
+  try {
+    return store().flying().size();
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+int TrackRegistry::streams() const {
+  const std::lock_guard lock(mutex_);
+  return streams_;
+}
+
 std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) const {
   std::vector<StoredTrack> tracks = store().flying();
   std::erase_if(tracks, [&](const StoredTrack& track) { return track.client != client || !ended(track).empty(); });

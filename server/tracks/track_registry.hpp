@@ -43,6 +43,9 @@ class TrackRegistry {
   const TrackLimits& limits() const { return limits_; }
   /// Why tracks cannot be kept now, as far as the last step told.
   std::optional<std::string> problem() const;
+  /// Tracks that fly, of all clients; nullopt where the store cannot say.
+  std::optional<std::size_t> flying() const;
+  int streams() const;
   /// Ends the streams of events.
   void stop();
 

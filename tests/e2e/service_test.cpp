@@ -134,6 +134,8 @@ TEST_F(Service, CountsWhatItDoes) {
   EXPECT_THAT(text, HasSubstr("roadfix_requests_total{method=\"GET\",route=\"/v1/maps/{map}\",status=\"200\"}"));
   EXPECT_THAT(text, HasSubstr("roadfix_maps 1\n"));
   EXPECT_THAT(text, HasSubstr("roadfix_tracks_available 1\n"));
+  EXPECT_THAT(text, HasSubstr("roadfix_tracks 0\n"));
+  EXPECT_THAT(text, HasSubstr("roadfix_track_streams 0\n"));
   const std::string nothing = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
   EXPECT_EQ(testing::json_of(client_.Post("/v1/maps/town/fix?cell_m=2", nothing, "image/png"))["status"], "no_fix");
   EXPECT_THAT(client_.Get("/metrics")->body, HasSubstr("roadfix_answers_total{kind=\"fix\",status=\"no_fix\"}"));

@@ -18,13 +18,13 @@ Admission::Ticket Admission::enter(const std::string& client, std::chrono::stead
                                    const std::function<bool()>& abandoned) {
   using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
-  const auto others = of_client_.find(client);
-  const Waiting mine{others == of_client_.end() ? 0 : others->second};
   const bool at_once = running_ < max_running_ && queue_.empty();
+  const auto known = of_client_.find(client);
+  const Waiting mine{known == of_client_.end() ? 0 : known->second};
   if (!at_once && std::ssize(queue_) >= max_waiting_) make_room_for(mine);
-  ++of_client_[client];
-  queue_.insert(std::ranges::upper_bound(queue_, mine.rank, {}, [](const Waiting* other) { return other->rank; }),
-                &mine);
+  int& own = of_client_[client];
+  queue_.insert(std::ranges::upper_bound(queue_, mine.rank, {}, &Waiting::rank), &mine);
+  ++own;
   const auto is_over = [&] { return !waits(mine) || (running_ < max_running_ && queue_.front() == &mine); };
   bool over = at_once;
   bool gone = false;

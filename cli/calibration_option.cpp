@@ -16,11 +16,7 @@ void add_calibration_option(CLI::App& command, std::string& file) {
 std::shared_ptr<const Calibration> read_calibration(const std::string& file) {
   const auto text = read_file(file);
   if (!text) throw NotFound("calibration-missing", fmt::format("calibration file {} cannot be opened", file));
-  try {
-    return std::make_shared<const Calibration>(parse_calibration(*text));
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(error.code(), fmt::format("{}: {}", file, error.what()));
-  }
+  return said_of(file, [&] { return std::make_shared<const Calibration>(parse_calibration(*text)); });
 }
 
 }  // namespace roadfix::cli

@@ -25,12 +25,14 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
 
 auto decoded(const std::string& path, const auto& decode) {
   const std::vector<std::uint8_t> bytes = bytes_of(path);
-  try {
-    return decode(bytes);
-  } catch (const InvalidInput& error) {
-    const char* advice = error.code() == "image-format" ? "; gdal_translate -of PNG makes one" : "";
-    throw InvalidInput(error.code(), fmt::format("{}: {}{}", path, error.what(), advice));
-  }
+  return said_of(path, [&] {
+    try {
+      return decode(bytes);
+    } catch (const InvalidInput& error) {
+      if (error.code() != "image-format") throw;
+      throw InvalidInput(error.code(), fmt::format("{}; gdal_translate -of PNG makes one", error.what()));
+    }
+  });
 }
 
 FrameCamera camera_of(const FrameOptions& options) {
@@ -108,7 +110,9 @@ GroundView ground_seen(const FrameOptions& options, const std::string& path, con
   std::optional<FrameCamera> camera;
   if (options.camera()) camera = options.camera_in_file ? camera_in(path, options) : camera_of(options);
   const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
-  return ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
+  return said_of(path, [&] {
+    return ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
+  });
 }
 
 CellArray feature_map_in(const std::string& path) {

@@ -14,20 +14,6 @@ namespace {
 
 constexpr std::int64_t kMaxPixels = 400'000'000;
 
-[[noreturn]] void refuse(const FrameTruth& frame, const std::string& code, const std::string& why) {
-  throw InvalidInput(code, fmt::format("{}: {}", frame.file.string(), why));
-}
-
-auto naming(const FrameTruth& frame, const auto& compute) {
-  try {
-    return compute();
-  } catch (const InvalidInput& error) {
-    refuse(frame, error.code(), error.what());
-  } catch (const LimitExceeded& error) {
-    refuse(frame, error.code(), error.what());
-  }
-}
-
 }  // namespace
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
@@ -38,24 +24,21 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
   const auto file = read_file(folder / frame.file);
-  if (!file) refuse(frame, "image-unreadable", "cannot be opened");
+  if (!file) throw InvalidInput("image-unreadable", fmt::format("{}: cannot be opened", frame.file.string()));
   const std::vector<std::uint8_t> bytes(file->begin(), file->end());
-  cv::Mat decoded;
-  try {
-    decoded = decode_image(bytes, kMaxPixels);
-  } catch (const InvalidInput& error) {
-    refuse(frame, "image-unreadable", error.what());
-  }
-  return frame_image(decoded, frame.gsd_m, border);
+  return said_of(frame.file.string(),
+                 [&] { return frame_image(decode_image(bytes, kMaxPixels), frame.gsd_m, border); });
 }
 
 GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector) {
-  return naming(frame, [&] { return ground_seen(picture, frame.camera, detector, static_cast<double>(kMaxPixels)); });
+  return said_of(frame.file.string(),
+                 [&] { return ground_seen(picture, frame.camera, detector, static_cast<double>(kMaxPixels)); });
 }
 
 Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame) {
   const cv::Size size = picture.pixels.size();
-  const double gsd_m = frame.camera ? naming(frame, [&] { return nominal_gsd_m(*frame.camera, size); }) : frame.gsd_m;
+  const double gsd_m =
+      frame.camera ? said_of(frame.file.string(), [&] { return nominal_gsd_m(*frame.camera, size); }) : frame.gsd_m;
   return {size.width * gsd_m, size.height * gsd_m};
 }
 

@@ -49,4 +49,16 @@ class Interrupted : public Error {
   using Error::Error;
 };
 
+/// What `work` returns; what is wrong with its input is said of `where` ("frame.png: ...").
+template <typename Work>
+auto said_of(const std::string& where, const Work& work) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.code(), where + ": " + error.what());
+  } catch (const LimitExceeded& error) {
+    throw LimitExceeded(error.code(), where + ": " + error.what());
+  }
+}
+
 }  // namespace roadfix

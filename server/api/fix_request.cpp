@@ -35,8 +35,9 @@ GeoPose parse_pose(const json& pose, std::size_t index) {
           Angle::degrees(number_within(pose, "heading_deg", place, kDegrees))};
 }
 
+/// Rounded up, since 0 means no limit, or no proof.
 std::chrono::milliseconds milliseconds_of(double seconds) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+  return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * seconds)));
 }
 
 }  // namespace
@@ -83,8 +84,7 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
   options.proof_time = milliseconds_of(proof_s);
   if (const auto limit_s = fields.optional_number("time_limit_s", {0.0, 3600.0, true})) {
-    // Never 0, which would be no limit.
-    options.time_limit = std::max(std::chrono::milliseconds(1), milliseconds_of(*limit_s));
+    options.time_limit = milliseconds_of(*limit_s);
   }
   return options;
 }

@@ -33,15 +33,12 @@ BodyOffset offset_of(const json& frame, const std::string& place) {
 /// Complaints that the picture of an earlier frame causes say which one it is.
 template <typename Read>
 Features named(const std::string& place, Read read) {
-  const auto text = [&](const Error& error) { return fmt::format("{}.image: {}", place, error.what()); };
   try {
     return read();
   } catch (const InvalidField&) {
     throw;  // of a field that all frames share
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(error.code(), text(error));
-  } catch (const LimitExceeded& error) {
-    throw LimitExceeded(error.code(), text(error));
+  } catch (const Error&) {
+    return said_of(place + ".image", []() -> Features { throw; });
   }
 }
 

@@ -49,6 +49,13 @@ TEST_F(DetectCommand, SaysWhyItCannotWrite) {
               HasSubstr("(No such file or directory): check"));
 }
 
+TEST_F(DetectCommand, NamesThePictureWhateverIsWrongWithIt) {
+  const std::string frame = (folder / "frame.png").string();
+  EXPECT_THAT(detect("--gsd 9").err, AllOf(HasSubstr(frame + ": "), HasSubstr("[frame-too-coarse]")));
+  std::fstream(frame, std::ios::in | std::ios::out | std::ios::binary).seekp(16).put(0x7f);  // 2 billion columns
+  EXPECT_THAT(detect("--gsd 1").err, AllOf(HasSubstr(frame + ": "), HasSubstr("[image-too-large]")));
+}
+
 TEST_F(DetectCommand, WritesNoPngUnderTheNameOfAnotherFormat) {
   const std::string frame = "detect --detector tree " + (folder / "frame.png").string() + " --gsd 1 ";
   for (const char* name : {"roads.jpg", "roads.TIF", "roads.png.bak"}) {

@@ -31,6 +31,15 @@ bool eventually(const auto& condition) {
   return false;
 }
 
+bool refuses_connections(int port) {
+  try {
+    const testing::RawConnection connection(port);
+    return false;
+  } catch (const std::system_error&) {
+    return true;
+  }
+}
+
 TEST(ServiceLife, NoticesMapsThatAppearChangeBreakAndLeave) {
   const testing::TemporaryFolder folder;
   const testing::ServiceProcess service(folder.path());
@@ -112,10 +121,13 @@ TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {
   testing::RawConnection connection(service.port());
   connection.send("POST /v1/maps/town/fix?cell_m=2 HTTP/1.1\r\nHost: x\r\nContent-Type: image/png\r\nContent-Length: " +
                   std::to_string(body.size()) + "\r\n\r\n" + body.substr(0, 100));
-  std::this_thread::sleep_for(100ms);
+  httplib::Client client = testing::client_of(service);
+  const auto has_a_thread = [&] {
+    return client.Get("/metrics")->body.find("roadfix_connections 2\n") != std::string::npos;
+  };
+  ASSERT_TRUE(eventually(has_a_thread)) << "the request, and who asks for the metrics";
   service.send_signal(SIGTERM);
-  std::this_thread::sleep_for(200ms);
-  EXPECT_THROW(testing::RawConnection(service.port()), std::system_error) << "no new connections";
+  EXPECT_TRUE(eventually([&] { return refuses_connections(service.port()); }));
   connection.send(body.substr(100));
   const std::string answer = connection.read_all(30s);
   EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 200"));

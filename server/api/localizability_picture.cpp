@@ -20,39 +20,38 @@ double tile_m(const MapView& map, int zoom) {
   return kTilePixels * metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
 }
 
-/// The probabilities of the squares, each asked for once.
+/// The answers of the squares, each asked for once.
 class Squares {
  public:
-  Squares(const MapView& map, double side_m, const ProbabilityAt& probability_at)
-      : map_(map), side_m_(side_m), probability_at_(probability_at) {}
+  Squares(const MapView& map, double side_m, const AnswerAt& answer_at)
+      : map_(map), side_m_(side_m), answer_at_(answer_at) {}
 
-  std::optional<double> at(GridPoint point) {
+  std::optional<PlaceAnswer> at(GridPoint point) {
     if (!map_.extent.contains(point)) return std::nullopt;
     const Index index{std::lround(point.east_m / side_m_), std::lround(point.north_m / side_m_)};
     const auto known = known_.find(index);
     if (known != known_.end()) return known->second;
     // The middle of a square that the border of the map cuts may lie outside.
     const GridPoint middle{side_m_ * static_cast<double>(index.first), side_m_ * static_cast<double>(index.second)};
-    return known_[index] = map_.extent.contains(middle) ? probability_at_(middle) : std::nullopt;
+    return known_[index] = map_.extent.contains(middle) ? answer_at_(middle) : std::nullopt;
   }
 
  private:
   using Index = std::pair<long, long>;
   const MapView& map_;
   double side_m_;
-  const ProbabilityAt& probability_at_;
-  std::map<Index, std::optional<double>> known_;
+  const AnswerAt& answer_at_;
+  std::map<Index, std::optional<PlaceAnswer>> known_;
 };
 
-Pixel localizability_pixel(double probability, TileStyle style) {
-  if (style == TileStyle::kGrey) return grey_pixel(probability);
+Pixel localizability_pixel(const PlaceAnswer& answer, TileStyle style) {
+  if (style == TileStyle::kGrey) return grey_pixel(answer.probability);
   // Blue, green, red of no fix, ambiguous, fix on the operator's page.
-  constexpr std::array<std::array<double, 3>, 3> kColours{{{130, 139, 242}, {93, 201, 244}, {161, 224, 126}}};
-  const std::size_t below = probability < 0.5 ? 0 : 1;
-  const double share = 2.0 * probability - static_cast<double>(below);
+  constexpr std::array<double, 3> kNoFix{130, 139, 242};
+  constexpr std::array<double, 3> kAmbiguous{93, 201, 244};
+  if (answer.fix) return {161, 224, 126, 128};
   const auto blend = [&](std::size_t channel) {
-    return static_cast<unsigned char>(
-        std::lround((1.0 - share) * kColours[below][channel] + share * kColours[below + 1][channel]));
+    return static_cast<unsigned char>(std::lround(std::lerp(kNoFix[channel], kAmbiguous[channel], answer.probability)));
   };
   return {blend(0), blend(1), blend(2), 128};
 }
@@ -75,16 +74,16 @@ ZoomRange localizability_zooms(const MapView& map, double footprint_m) {
 }
 
 std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const ProbabilityAt& probability_at) {
+                                                            TileStyle style, const AnswerAt& answer_at) {
   if (map.extent.empty()) return std::nullopt;
   const std::optional<double> side_m = square_m(map, tile.z, footprint_m);
   const PixelBox box = touched_pixels(map, tile);
   if (!side_m || box.empty()) return std::nullopt;
   const PixelToGrid ground(map.zone, tile, box);
-  Squares squares(map, *side_m, probability_at);
+  Squares squares(map, *side_m, answer_at);
   return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
-    const auto probability = squares.at(point);
-    return probability ? std::optional(localizability_pixel(*probability, style)) : std::nullopt;
+    const auto answer = squares.at(point);
+    return answer ? std::optional(localizability_pixel(*answer, style)) : std::nullopt;
   });
 }
 

@@ -13,8 +13,13 @@
 
 namespace roadfix::api {
 
-/// Probability that a frame of the place gets its place right; nullopt where the map shows too little to say.
-using ProbabilityAt = std::function<std::optional<double>(GridPoint place)>;
+/// What a frame of a place would give.
+struct PlaceAnswer {
+  bool fix = false;          ///< whether it would be a fix
+  double probability = 0.0;  ///< that it would be placed rightly
+};
+/// nullopt where the map shows too little to say.
+using AnswerAt = std::function<std::optional<PlaceAnswer>(GridPoint place)>;
 
 /// At most so many squares side by side in a tile, beside those that its borders cut.
 inline constexpr int kSquaresAcross = 4;
@@ -30,9 +35,10 @@ struct ZoomRange {
 };
 ZoomRange localizability_zooms(const MapView& map, double footprint_m);
 
-/// PNG of 256 x 256 pixels: from red (0) over yellow to green (1), half transparent, or grey = probability; nullopt
-/// where there is nothing to show. Asks for each square at most once, and only within the map's extent.
+/// PNG of 256 x 256 pixels: green where it would be a fix, else from red (probability 0) to yellow (1), half
+/// transparent, or grey = probability; nullopt where there is nothing to show. Asks for each square at most once, and
+/// only within the map's extent.
 std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const ProbabilityAt& probability_at);
+                                                            TileStyle style, const AnswerAt& answer_at);
 
 }  // namespace roadfix::api

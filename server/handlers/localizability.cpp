@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string_view>
 
 #include "core/locate/decision.hpp"
 #include "core/units/error.hpp"
@@ -68,10 +69,24 @@ Layer layer_of(const Service& service, const http::Request& request) {
           fields.word("style", kTileStyles)};
 }
 
+/// Before the probability of a place that is kept.
+constexpr std::string_view kFixMark = "fix ";
+
+std::string kept_text(const Localizability& found) {
+  if (found.observed_share < kMinObservedShare) return {};
+  return fmt::format("{}{:.4f}", found.status == FixStatus::kFix ? kFixMark : "", found.probability);
+}
+
+std::optional<api::PlaceAnswer> kept_answer(std::string_view text) {
+  const bool fix = text.starts_with(kFixMark);
+  const auto probability = api::parse_number(text.substr(fix ? kFixMark.size() : 0));
+  return probability ? std::optional(api::PlaceAnswer{fix, *probability}) : std::nullopt;
+}
+
 /// Of a place, searched for once and kept beside the tiles that show it: a tile that runs out of time goes on where it
 /// was when it is asked for again.
-std::optional<double> fix_probability(const Service& service, const http::Request& request, const Layer& layer,
-                                      GridPoint place) {
+std::optional<api::PlaceAnswer> place_answer(const Service& service, const http::Request& request, const Layer& layer,
+                                             GridPoint place) {
   const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
   std::optional<std::string> kept = service.pictures.find(key);
   if (!kept) {
@@ -84,10 +99,10 @@ std::optional<double> fix_probability(const Service& service, const http::Reques
     if (found.reason == kTimeLimitReason) {
       throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
     }
-    kept = found.observed_share < kMinObservedShare ? "" : fmt::format("{:.4f}", found.probability);
+    kept = kept_text(found);
     service.pictures.insert(key, *kept);
   }
-  return api::parse_number(*kept);
+  return kept_answer(*kept);
 }
 
 std::string drawn(const Service& service, const http::Request& request, const Layer& layer, api::TileAddress tile,
@@ -96,7 +111,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
   return kept_or_drawn(service.pictures, key, [&] {
     const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
     return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
-                                   [&](GridPoint place) { return fix_probability(service, request, layer, place); });
+                                   [&](GridPoint place) { return place_answer(service, request, layer, place); });
   });
 }
 

@@ -89,6 +89,17 @@ TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
   const cv::Mat picture = cv::imdecode(png, cv::IMREAD_UNCHANGED);
   EXPECT_EQ(picture.size(), cv::Size(256, 256));
   EXPECT_EQ(cv::mean(picture)[3], 255.0) << "all of it is on the map";
+  const auto coloured = client_.Get(path(19, "?footprint_m=500"));
+  const std::vector<std::uint8_t> coloured_png(coloured->body.begin(), coloured->body.end());
+  const cv::Mat colours = cv::imdecode(coloured_png, cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(colours.size(), picture.size());
+  for (int i = 0; i < 256; ++i) {
+    const bool is_green = colours.at<cv::Vec4b>(i, i) == cv::Vec4b(161, 224, 126, 128);
+    const int grey = picture.at<cv::Vec4b>(i, i)[0];
+    if (grey != 252) {
+      EXPECT_EQ(is_green, grey > 252) << "the confidence is 0.99, and 252 is on both sides of it";
+    }
+  }
   const httplib::Headers known{{"If-None-Match", tile->get_header_value("ETag")}};
   EXPECT_EQ(client_.Get(path(19, "?footprint_m=500&style=grey"), known)->status, 304);
   EXPECT_EQ(client_.Get(path(10, "?footprint_m=500"))->status, 204) << "one place does not speak for a province";

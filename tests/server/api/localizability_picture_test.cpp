@@ -23,24 +23,27 @@ TileAddress tile_of(const MapView& map, GridPoint at, int zoom) {
   return {zoom, static_cast<int>(p.x / kTilePixels), static_cast<int>(p.y / kTilePixels)};
 }
 
+constexpr PlaceAnswer kFix{true, 1.0};
+
 using Places = std::set<std::pair<double, double>>;
 
 Places places_of(const MapView& map, TileAddress tile) {
   Places places;
   localizability_png(map, tile, kFootprintM, TileStyle::kColour, [&](GridPoint place) {
     EXPECT_TRUE(places.emplace(place.east_m, place.north_m).second) << "asked for twice";
-    return std::optional(1.0);
+    return std::optional(kFix);
   });
   return places;
 }
 
 TEST(LocalizabilityPicture, AsksForAFewPlacesOfATileWhateverTheZoom) {
+  constexpr std::size_t kMostAcross = kSquaresAcross + 2;
   const MapView map = wide_map();
   const ZoomRange zooms = localizability_zooms(map, kFootprintM);
   for (int zoom = zooms.first; zoom <= zooms.last + 3; ++zoom) {
     const Places places = places_of(map, tile_of(map, {500'100, 104'100}, zoom));
     EXPECT_GE(places.size(), 1U) << zoom;
-    EXPECT_LE(places.size(), std::size_t{(kSquaresAcross + 2) * (kSquaresAcross + 2)}) << zoom;
+    EXPECT_LE(places.size(), kMostAcross * kMostAcross) << zoom;
   }
 }
 
@@ -67,7 +70,7 @@ TEST(LocalizabilityPicture, FindsThePlacesOfACoarseZoomAmongThoseOfAFineOne) {
 
 TEST(LocalizabilityPicture, LeavesOutWhatIsOffTheMapAndWhatCannotBeSaid) {
   const MapView map = wide_map();
-  const auto east_only = [](GridPoint place) { return place.east_m > 496'500 ? std::optional(1.0) : std::nullopt; };
+  const auto east_only = [](GridPoint place) { return place.east_m > 496'500 ? std::optional(kFix) : std::nullopt; };
   const TileAddress corner = tile_of(map, {497'000, 100'200}, 15);
   const auto png = localizability_png(map, corner, kFootprintM, TileStyle::kGrey, east_only);
   ASSERT_TRUE(png);
@@ -84,20 +87,25 @@ TEST(LocalizabilityPicture, LeavesOutWhatIsOffTheMapAndWhatCannotBeSaid) {
     }
   }
   EXPECT_FALSE(localizability_png(map, corner, kFootprintM, TileStyle::kGrey,
-                                  [](GridPoint) { return std::optional<double>(); }));
+                                  [](GridPoint) { return std::optional<PlaceAnswer>(); }));
   EXPECT_FALSE(localizability_png(map, {15, 0, 0}, kFootprintM, TileStyle::kGrey, east_only));
 }
 
-TEST(LocalizabilityPicture, GoesFromRedOverYellowToGreen) {
+TEST(LocalizabilityPicture, IsGreenForAFixAloneAndAtMostYellowBelow) {
   const MapView map = wide_map();
-  const auto colour_of = [&](double probability) {
+  const auto colour_of = [&](PlaceAnswer answer) {
     const auto png = localizability_png(map, tile_of(map, {500'100, 104'100}, 17), kFootprintM, TileStyle::kColour,
-                                        [&](GridPoint) { return std::optional(probability); });
+                                        [&](GridPoint) { return std::optional(answer); });
     return cv::imdecode(*png, cv::IMREAD_UNCHANGED).at<cv::Vec4b>(100, 100);
   };
-  EXPECT_EQ(colour_of(0.0), cv::Vec4b(130, 139, 242, 128));
-  EXPECT_EQ(colour_of(0.5), cv::Vec4b(93, 201, 244, 128));
-  EXPECT_EQ(colour_of(1.0), cv::Vec4b(161, 224, 126, 128));
+  const cv::Vec4b red(130, 139, 242, 128);
+  const cv::Vec4b yellow(93, 201, 244, 128);
+  const cv::Vec4b green(161, 224, 126, 128);
+  EXPECT_EQ(colour_of({false, 0.0}), red);
+  EXPECT_EQ(colour_of({false, 0.5}), cv::Vec4b(112, 170, 243, 128)) << "in between";
+  EXPECT_EQ(colour_of({false, 1.0}), yellow) << "sure, and yet no fix";
+  EXPECT_EQ(colour_of({true, 0.991}), green);
+  EXPECT_EQ(colour_of({true, 1.0}), green);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "server/http/connection.hpp"
 
 #include <netdb.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -29,7 +30,22 @@ bool poll_for(int socket, short events, milliseconds time) {
   return ready > 0;
 }
 
-void numeric_address(const sockaddr_storage& address, socklen_t size, std::string& ip, int& port) {
+/// IPv4 peers of a socket for both kinds have addresses within IPv6 (::ffff:a.b.c.d): to everyone else they are IPv4.
+void unmap(sockaddr_storage& address, socklen_t& size) {
+  if (address.ss_family != AF_INET6) return;
+  sockaddr_in6 mapped{};
+  std::memcpy(&mapped, &address, sizeof mapped);
+  if (!IN6_IS_ADDR_V4MAPPED(&mapped.sin6_addr)) return;
+  sockaddr_in plain{};
+  plain.sin_family = AF_INET;
+  plain.sin_port = mapped.sin6_port;
+  std::memcpy(&plain.sin_addr, mapped.sin6_addr.s6_addr + 12, sizeof plain.sin_addr);
+  std::memcpy(&address, &plain, sizeof plain);
+  size = sizeof plain;
+}
+
+void numeric_address(sockaddr_storage address, socklen_t size, std::string& ip, int& port) {
+  unmap(address, size);
   std::array<char, NI_MAXHOST> host{};
   std::array<char, NI_MAXSERV> service{};
   if (getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(), service.data(),

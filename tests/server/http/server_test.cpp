@@ -69,6 +69,25 @@ TEST_F(HttpServer, KnowsClientsBehindAProxyByTheirOwnAddress) {
   EXPECT_EQ(client().Get("/me", forwarded)->body, "203.0.113.9");
 }
 
+TEST_F(HttpServer, KnowsClientsOfIpv4AsSuchAlsoOnASocketForBothKinds) {
+  router_.add({"GET", "/me", {}, Load::kLight, [](const Request& request) {
+                 return Response{200, "text/plain", request.client};
+               }});
+  settings_.host = "::";
+  std::unique_ptr<Server> server;
+  try {
+    server = started();
+  } catch (const IoFailure&) {
+    GTEST_SKIP() << "this machine has no IPv6";
+  }
+  EXPECT_EQ(client().Get("/me")->body, "127.0.0.1");
+  httplib::Client other("::1", port_);
+  const auto answer = other.Get("/me");
+  if (answer) {
+    EXPECT_EQ(answer->body, "::1");
+  }
+}
+
 TEST_F(HttpServer, StreamsPiecesAndCutsOffAStreamThatFails) {
   const auto server = started();
   EXPECT_EQ(client().Get("/stream")->body, "piece piece piece ");

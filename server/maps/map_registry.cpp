@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/view/map_file_view.hpp"
 
 namespace roadfix::server {
@@ -19,12 +20,24 @@ constexpr const char* kExtension = ".gpkg";
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
 
+/// By its name. Those that begin with a dot are hidden: copies under way, and what a Mac keeps beside a file
+/// (._city.gpkg).
+bool is_called_a_map(const fs::path& path) {
+  return lower_case(path.extension().native()) == kExtension && !path.native().starts_with('.');
+}
+
+/// A link that leads nowhere is one too: whoever made it waits for a map.
+bool is_file(const fs::directory_entry& entry) {
+  std::error_code gone;
+  return entry.is_regular_file(gone) || (entry.is_symlink(gone) && !fs::exists(entry.status(gone)));
+}
+
 std::map<std::string, fs::path> map_files(const fs::path& folder) {
   std::map<std::string, fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    std::error_code gone;
-    if (entry.path().extension() == kExtension && entry.is_regular_file(gone))
-      files[entry.path().stem()] = entry.path();
+    if (!is_called_a_map(entry.path().filename()) || !is_file(entry)) continue;
+    fs::path& path = files[entry.path().stem()];
+    path = std::max(path, entry.path());  // of city.GPKG and city.gpkg the latter, as small letters come last
   }
   return files;
 }

@@ -1,4 +1,5 @@
-// The maps being served: every *.gpkg of a folder. Files that appear, change or leave are noticed without a restart.
+// The maps being served: every *.gpkg of a folder, in any case, that is not hidden (.city.gpkg). Files that appear,
+// change or leave are noticed without a restart.
 #pragma once
 
 #include <chrono>

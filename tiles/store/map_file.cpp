@@ -73,8 +73,11 @@ void require_ours(Connection& map) {
 }
 
 void require_content(const fs::path& path) {
-  if (!is_there(path)) throw NotFound("map-not-found", fmt::format("{}: no such file", path.string()));
   std::error_code error;
+  if (!is_there(path)) {
+    const char* what = fs::is_symlink(path, error) ? "a link to a file that is not there" : "no such file";
+    throw NotFound("map-not-found", fmt::format("{}: {}", path.string(), what));
+  }
   if (!fs::is_regular_file(path, error)) {
     throw InvalidInput("map-not-ours", fmt::format("{}: not a file. Name a map made by roadfix", path.string()));
   }

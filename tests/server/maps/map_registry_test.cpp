@@ -97,6 +97,44 @@ TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   EXPECT_EQ(registry.find("broken")->name, "broken") << "a repaired map is served";
 }
 
+TEST(MapRegistry, TakesNoHiddenFileForAMap) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  fs::copy(folder / "city.gpkg", folder / ".copied.gpkg");
+  std::ofstream(folder / "._city.gpkg") << "what a Mac keeps beside a file";
+  const MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(registry.maps().size(), 1U);
+  EXPECT_TRUE(registry.unreadable().empty());
+}
+
+TEST(MapRegistry, TakesTheExtensionInAnyCaseAndTheUsualOneOfTwo) {
+  const TemporaryFolder folder;
+  make_map(folder / "CITY.GPKG", 1);
+  make_map(folder / "town.Gpkg", 2);
+  MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(registry.find("CITY")->path, folder / "CITY.GPKG");
+  EXPECT_EQ(registry.maps().size(), 2U);
+  make_map(folder / "town.gpkg", 3);
+  registry.refresh();
+  EXPECT_EQ(registry.find("town")->path, folder / "town.gpkg");
+  EXPECT_EQ(registry.maps().size(), 2U);
+}
+
+TEST(MapRegistry, SaysThatALinkLeadsNowhere) {
+  const TemporaryFolder folder;
+  const TemporaryFolder disk;
+  fs::create_symlink(disk / "city.gpkg", folder / "city.gpkg");
+  fs::create_directory(folder / "folder.gpkg");
+  fs::create_symlink(folder / "folder.gpkg", folder / "link.gpkg");
+  MapRegistry registry(folder.path(), kCache);
+  ASSERT_EQ(registry.unreadable().size(), 1U);
+  EXPECT_EQ(registry.unreadable()[0].name, "city");
+  EXPECT_NE(registry.unreadable()[0].reason.find("a link to a file that is not there"), std::string::npos);
+  make_map(disk / "city.gpkg", 1);
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->name, "city") << "its disk is there by now";
+}
+
 TEST(MapRegistry, ServesAMapOnceItMayReadIt) {
   const TemporaryFolder folder;
   make_map(folder / "city.gpkg", 1);

@@ -4,6 +4,7 @@ import { Answer } from './answer.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
 import { Places } from './places.js';
 import { attempt, element, LastQuestion, request } from './show.js';
+import { askAgain } from './tiles.js';
 import { Tracks } from './tracks.js';
 
 const by = (id) => document.getElementById(id);
@@ -32,7 +33,7 @@ async function drawMap() {
   if (tiles) tiles.remove();
   tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
-  }).addTo(view);
+  }).on('tileerror', askAgain).addTo(view);
   shown = { name: info.name, version: info.version, bbox: info.bbox };
   by('about').replaceChildren(
     element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),

@@ -1,18 +1,7 @@
 // Whether a frame of a place would give a fix: of the place that is clicked, and of all places of the view as a layer.
 import { square } from './geometry.js';
 import { attempt, COLOURS, drawModes, LastQuestion, request, showStatus } from './show.js';
-
-const AGAIN_MS = 3000;
-const MAX_TRIES = 20;
-
-/// Tiles that are not ready in time are asked for again: the service goes on where it was.
-function askAgain({ tile }) {
-  const tries = Number(tile.dataset.tries ?? 0);
-  if (tries >= MAX_TRIES) return;
-  tile.dataset.tries = tries + 1;
-  const url = tile.src;
-  setTimeout(() => { if (tile.isConnected) tile.src = url; }, AGAIN_MS);
-}
+import { askAgain } from './tiles.js';
 
 export class Places {
   #questions = new LastQuestion();

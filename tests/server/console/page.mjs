@@ -85,7 +85,8 @@ globalThis.fetch = async (url, options) => {
   const body = await (typeof answer === 'function' ? answer(url, options) : answer);
   options?.signal?.throwIfAborted();
   if (!body) throw new TypeError('fetch failed');
-  return { ok: !body.status || typeof body.status === 'string', json: async () => structuredClone(body) };
+  const status = typeof body.status === 'number' ? body.status : 200;
+  return { status, ok: status < 300, json: async () => structuredClone(body) };
 };
 
 export async function run(cases) {

@@ -14,10 +14,12 @@ view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leafle
 const answer = new Answer(view, by('answer'));
 const places = new Places(view, by('place'), by('footprint'), by('layer'));
 const MAPS_REFRESH_MS = 10_000;
+const PATIENCE_MS = 5000;
 const mapQuestions = new LastQuestion();
 let shown = null;  // the map on the page, see maps.js
 let lines = '';    // of the list of maps, as JSON
 let tiles = null;
+let listsAsked = 0;
 
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 
@@ -75,6 +77,7 @@ async function showMaps({ maps }) {
     by('maps').value = chosen;
   }
   if (chosen === null) by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
+  by('ask').querySelector('button').disabled = chosen === null;
   answer.mapsChanged(maps);
   const step = stepTo(maps, chosen, shown);
   if (step === 'open') await openMap();
@@ -85,10 +88,14 @@ async function showMaps({ maps }) {
   }
 }
 
-/// A service that does not answer now is asked again.
+/// A service that does not answer now is said to be so, and asked again.
 async function refreshMaps() {
   if (document.hidden) return;
-  const list = await request('/v1/maps').catch(() => null);
+  listsAsked += 1;
+  const asked = listsAsked;
+  const list = await request('/v1/maps', { signal: AbortSignal.timeout(PATIENCE_MS) }).catch(() => null);
+  if (asked !== listsAsked) return;
+  by('trouble').textContent = list ? '' : 'The service gives no answer. This page shows what it said before.';
   if (list) await attempt(by('about'), () => showMaps(list));
 }
 
@@ -148,7 +155,7 @@ view.on('keypress', ({ originalEvent }) => {
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', drawLayer);
 by('footprint').addEventListener('input', () => places.forget());
 acceptDrops(by('drop'), by('ask').elements.picture);
-attempt(by('about'), async () => showMaps(await request('/v1/maps')));
+refreshMaps();
 setInterval(refreshMaps, MAPS_REFRESH_MS);
 document.addEventListener('visibilitychange', refreshMaps);
 window.addEventListener('focus', refreshMaps);

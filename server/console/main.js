@@ -20,6 +20,7 @@ let shown = null;  // the map on the page, see maps.js
 let lines = '';    // of the list of maps, as JSON
 let tiles = null;
 let listsAsked = 0;
+let wished = null;  // the map that the next list is to show, if it is served
 
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 
@@ -65,7 +66,8 @@ async function openMap() {
 
 /// Keeps the list as the service has it and the choice as the operator left it.
 async function showMaps({ maps }) {
-  const chosen = choiceOf(maps, by('maps').value);
+  const chosen = choiceOf(maps, by('maps').value, wished);
+  wished = null;
   const wanted = linesOf(maps, chosen);
   if (lines !== JSON.stringify(wanted)) {
     lines = JSON.stringify(wanted);
@@ -74,8 +76,8 @@ async function showMaps({ maps }) {
       option.disabled = disabled;
       return option;
     }));
-    by('maps').value = chosen;
   }
+  by('maps').value = chosen;
   if (chosen === null) by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
   by('ask').querySelector('button').disabled = chosen === null;
   answer.mapsChanged(maps);
@@ -97,6 +99,12 @@ async function refreshMaps() {
   if (asked !== listsAsked) return;
   by('trouble').textContent = list ? '' : 'The service gives no answer. This page shows what it said before.';
   if (list) await attempt(by('about'), () => showMaps(list));
+}
+
+function wishMap(name) {
+  if (name === by('maps').value) return;
+  wished = name;
+  refreshMaps();
 }
 
 /// Only numbers of the chosen kind of picture and place count: a mistake in one that is not shown must not hold up others.
@@ -137,7 +145,10 @@ function acceptDrops(zone, input) {
   }
 }
 
-by('maps').addEventListener('change', () => attempt(by('about'), openMap));
+by('maps').addEventListener('change', () => {
+  wished = null;
+  attempt(by('about'), openMap);
+});
 by('ask').addEventListener('submit', (event) => {
   event.preventDefault();
   const form = new FormData(event.target);
@@ -159,4 +170,4 @@ refreshMaps();
 setInterval(refreshMaps, MAPS_REFRESH_MS);
 document.addEventListener('visibilitychange', refreshMaps);
 window.addEventListener('focus', refreshMaps);
-new Tracks(view, by('tracks'), by('track'), by('details'));
+new Tracks(view, by('tracks'), by('track'), by('details'), { shown: () => shown, wish: wishMap });

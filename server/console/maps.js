@@ -10,8 +10,10 @@ function textOf(map) {
   return state ? `${map.name}: ${state}` : map.name;
 }
 
-/// The map to show: the chosen one as long as it is served, or was; else the first with ground; null for none.
-export function choiceOf(maps, chosen) {
+/// The map to show: a wished one if it can be shown, else the chosen one as long as it is served, or was, else the
+/// first with ground; null for none.
+export function choiceOf(maps, chosen, wished = null) {
+  if (maps.some((map) => map.name === wished && usable(map))) return wished;
   return chosen || (maps.find(usable)?.name ?? null);
 }
 

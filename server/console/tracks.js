@@ -20,8 +20,17 @@ function textOf({ id, map, created_us, stale }) {
   return `${map.name}, ${id.slice(0, 8)}, since ${since}${stale ? ', silent' : ''}`;
 }
 
+/// What is wrong with the map on the page (see maps.js) as the ground of a track; empty if nothing is.
+function whyElsewhere({ map }, shown) {
+  if (!shown?.version) return '';
+  if (shown.name !== map.name) return `drawn on another map: it flies over ${map.name}`;
+  return shown.version === map.version ? '' : 'its map was replaced since it began';
+}
+
 export class Tracks {
-  constructor(view, list, output, details) {
+  /// `maps`: shown() is the map on the page, wish() asks for another one.
+  constructor(view, list, output, details, maps) {
+    this.maps = maps;
     this.view = view;
     this.list = list;
     this.output = output;
@@ -72,6 +81,7 @@ export class Tracks {
     const asked = Date.now();
     try {
       const track = await get(urlOf(chosen.id));
+      if (!chosen.track && chosen === this.chosen) this.maps.wish(track.map.name);
       Object.assign(chosen, { track, heard: asked - 1000 * track.silent_s, trouble: null });
     } catch (error) {
       chosen.ended = error.status === 404 || error.status === 410;
@@ -94,21 +104,23 @@ export class Tracks {
     const step = chosen.track?.last;
     if (!step) {
       if (chosen.trouble) showProblem(this.output, chosen.trouble);
-      else if (chosen.track) showStatus(this.output, 'waiting', ['no step has come yet']);
+      else if (chosen.track) showStatus(this.output, 'waiting', ['no step has come yet', whyElsewhere(chosen.track, this.maps.shown())]);
       return;
     }
     const old = this.whyOld(chosen);
-    const drawn = JSON.stringify([step.sequence, old]);
-    if (chosen.drawn !== drawn) this.draw(chosen, step, old);
+    const elsewhere = whyElsewhere(chosen.track, this.maps.shown());
+    const drawn = JSON.stringify([step.sequence, old, elsewhere]);
+    if (chosen.drawn !== drawn) this.draw(chosen, step, old, elsewhere);
     chosen.drawn = drawn;
     chosen.age.textContent = `${Math.max(0, (Date.now() - chosen.heard) / 1000).toFixed(0)} s ago`;
   }
 
-  draw(chosen, step, old) {
+  draw(chosen, step, old, elsewhere) {
     const look = STATUS[step.status] ?? 'no_fix';
-    const state = JSON.stringify([step.status, old]);  // said aloud, so only when it changes
+    const state = JSON.stringify([step.status, old, elsewhere]);  // said aloud, so only when it changes
     if (chosen.state !== state) {
       showStatus(this.output, look, [], step.status);
+      if (elsewhere) this.output.append(element('div', elsewhere, 'elsewhere'));
       showOld(this.output, old);
     }
     chosen.state = state;

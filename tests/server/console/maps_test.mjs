@@ -16,6 +16,13 @@ const cases = {
     assert.equal(choiceOf([ready('a'), ready('b'), ready('c')], 'b'), 'b');
     assert.equal(choiceOf([ready('a')], 'b'), 'b');
   },
+  'a map that is wished for is chosen if it can be shown'() {
+    assert.equal(choiceOf([ready('a'), ready('b')], 'a', 'b'), 'b');
+    assert.equal(choiceOf([ready('a'), ready('b')], '', 'b'), 'b');
+    assert.equal(choiceOf([ready('a'), { name: 'b', status: 'empty' }], 'a', 'b'), 'a');
+    assert.equal(choiceOf([ready('a')], '', 'b'), 'a');
+    assert.equal(choiceOf([], '', 'b'), null);
+  },
   'maps that cannot be shown say why and cannot be chosen'() {
     const maps = [{ name: 'a', status: 'empty' }, { name: 'b', status: 'unreadable', reason: 'cut off' }, { name: 'c', status: 'incomplete' }];
     assert.deepEqual(texts(maps, 'c'), ['a: nothing is ingested yet', 'b: cut off', 'c: still being ingested']);

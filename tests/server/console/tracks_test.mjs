@@ -11,7 +11,7 @@ const converged = {
   sequence: 1, status: 'converged', pose: { lat: 37, lon: 38, heading_deg: 0 }, heading_sigma_deg: 1, radius95_m: 6,
   clusters: [cluster(37, 0.9), cluster(37.1, 0.1)], cluster_count: 2, measurement: 'accepted', since_accepted_s: 0, resets: 0, drifts: false,
 };
-const track = (id, last, silent_s = 0.1) => ({ id, map: { name: 'city' }, created_us: 0, silent_s, stale: silent_s >= 60, last });
+const track = (id, last, silent_s = 0.1) => ({ id, map: { name: 'city', version: '1' }, created_us: 0, silent_s, stale: silent_s >= 60, last });
 const ended = { status: 410, title: 'Gone', code: 'track-ended' };
 const place = (sequence, lat) => ({ geometry: lat && { type: 'Point', coordinates: [38, lat] }, properties: { sequence } });
 const answer = (one, history = []) => { service.answers = { '/v1/tracks/one': one, '/v1/tracks/one/history': { features: history } }; };
@@ -19,7 +19,8 @@ const answer = (one, history = []) => { service.answers = { '/v1/tracks/one': on
 const list = node();
 const output = node();
 const details = node();
-const tracks = new Tracks(view, list, output, details);
+const maps = { on: { name: 'city', version: '1' }, wishes: [], shown: () => maps.on, wish: (name) => maps.wishes.push(name) };
+const tracks = new Tracks(view, list, output, details, maps);
 const isOld = () => {
   assert.equal(output.classList.contains('old'), details.classList.contains('old'));
   return output.classList.contains('old');
@@ -113,6 +114,33 @@ await run({
     answer(track('one', { ...converged, sequence: 5, clusters: [cluster(51, 1)] }));
     await tracks.look();
     assert.equal(view.moved, null);
+  },
+  async 'the map of a track is wished for once, as it is chosen'() {
+    answer(track('one', converged));
+    maps.wishes = [];
+    await tracks.follow('one');
+    await tracks.look();
+    assert.deepEqual(maps.wishes, ['city']);
+  },
+  async 'a track on another map than its own, or on what has taken its place, is said to be so'() {
+    answer(track('one', converged));
+    await tracks.follow('one');
+    assert.doesNotMatch(output.textContent, /map/);
+    maps.on = { name: 'town', version: '1' };
+    await tracks.look();
+    assert.match(output.textContent, /drawn on another map: it flies over city/);
+    maps.on = { name: 'city', version: '2' };
+    await tracks.look();
+    assert.match(output.textContent, /its map was replaced/);
+    maps.on = { name: 'city', version: '1' };
+    await tracks.look();
+    assert.doesNotMatch(output.textContent, /map/);
+    answer(track('two'));
+    service.answers['/v1/tracks/two'] = track('two');
+    maps.on = { name: 'town', version: '1' };
+    await tracks.follow('two');
+    assert.match(output.textContent, /no step has come yet\ndrawn on another map/);
+    maps.on = { name: 'city', version: '1' };
   },
   async 'a place beyond the 180th meridian is drawn on the side that is shown'() {
     view.middle = 180.01;

@@ -91,7 +91,8 @@ def fly(lines, options):
     """Whether all steps were taken."""
     sender = Sender(options.format, options.send, options.max_age) if options.send else None
     service = Service(options.server, options.patience)
-    track = Track(service, {"map": options.map, **dict(options.track)}, options.state)
+    track = Track(service, {"map": options.map, **dict(options.track)}, options.state,
+                  lambda track_id: print(f"a track begins: {service.page_of(track_id)}", file=sys.stderr, flush=True))
     folder = pathlib.Path(options.steps or ".").parent
     all_taken = True
     for line in NewestLine(lines) if options.live else all_lines(lines):

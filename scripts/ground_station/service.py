@@ -34,6 +34,11 @@ class Service:
         self._patience_s = patience_s
         self._connection = None
 
+    def page_of(self, track_id):
+        """The operator's page that follows a track. Without the password: links are passed on."""
+        host = self._url.netloc.rpartition("@")[2]
+        return f"{self._url.scheme}://{host}{self._url.path.rstrip('/')}/#track={track_id}"
+
     def close(self):
         if self._connection is not None:
             self._connection.close()

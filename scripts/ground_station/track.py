@@ -43,10 +43,12 @@ def as_query(fields):
 
 class Track:
     """A flight that the service follows. `request`: the members of POST /v1/tracks. With `state_file` a client that
-    was restarted goes on with the track that it had, unless that was long ago."""
+    was restarted goes on with the track that it had, unless that was long ago. `begun` is called with the id of each
+    track that begins."""
 
-    def __init__(self, service, request, state_file=None):
+    def __init__(self, service, request, state_file=None, begun=lambda track_id: None):
         self._service = service
+        self._begun = begun
         self._request = dict(request)
         self._file = StateFile(state_file, request["map"])
         self._state = self._file.read()
@@ -105,6 +107,7 @@ class Track:
         former = [*self._state.get("former", []), self.id] if self.id else []
         self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin, "known": known,
                     "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
+        self._begun(track["id"])
         for track_id in former[:-KEPT_TRACKS]:
             self._end(track_id)
 

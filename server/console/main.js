@@ -21,6 +21,7 @@ let lines = '';    // of the list of maps, as JSON
 let tiles = null;
 let listsAsked = 0;
 let wished = null;  // the map that the next list is to show, if it is served
+const tracks = new Tracks(view, by('tracks'), by('track'), by('details'), { shown: () => shown, wish: wishMap });
 
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
 
@@ -128,6 +129,13 @@ function questionOf(form) {
   return query;
 }
 
+/// Of what the address names: /#map=NAME or /#track=ID.
+function openAddress() {
+  const named = new URLSearchParams(location.hash.slice(1));
+  if (named.get('map')) wishMap(named.get('map'));
+  if (named.get('track')) tracks.follow(named.get('track'));
+}
+
 function askPlace(latlng) {
   if (tiles) places.ask(mapUrl(), latlng);
 }
@@ -166,8 +174,13 @@ view.on('keypress', ({ originalEvent }) => {
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', drawLayer);
 by('footprint').addEventListener('input', () => places.forget());
 acceptDrops(by('drop'), by('ask').elements.picture);
+by('follow').addEventListener('submit', (event) => {
+  event.preventDefault();
+  tracks.follow(event.target.elements.track.value.trim());
+});
+openAddress();
 refreshMaps();
 setInterval(refreshMaps, MAPS_REFRESH_MS);
 document.addEventListener('visibilitychange', refreshMaps);
 window.addEventListener('focus', refreshMaps);
-new Tracks(view, by('tracks'), by('track'), by('details'), { shown: () => shown, wish: wishMap });
+window.addEventListener('hashchange', openAddress);

@@ -49,18 +49,25 @@ export class Tracks {
   async refresh() {
     const answer = await get('/v1/tracks').catch(() => null);
     if (!answer) return;
-    const gone = new Map([...this.list.options].map((option) => [option.value, option]));
-    gone.delete('');
-    for (const track of answer.tracks) {
-      const option = gone.get(track.id);
-      if (!option) this.list.add(new Option(textOf(track), track.id));
-      else if (option.text !== textOf(track)) option.text = textOf(track);
-      gone.delete(track.id);
-    }
-    for (const option of gone.values()) if (!option.selected) option.remove();
+    for (const track of answer.tracks) this.keepLine(track.id, textOf(track));
+    const listed = new Set(['', ...answer.tracks.map(({ id }) => id)]);
+    for (const option of [...this.list.options]) if (!option.selected && !listed.has(option.value)) option.remove();
   }
 
+  lineOf(id) {
+    return [...this.list.options].find(({ value }) => value === id);
+  }
+
+  keepLine(id, text) {
+    const option = this.lineOf(id);
+    if (!option) this.list.add(new Option(text, id));
+    else if (option.text !== text) option.text = text;
+  }
+
+  /// Also one that is not in the list, as it was begun from another address.
   follow(id) {
+    if (id && !this.lineOf(id)) this.keepLine(id, id.slice(0, 8));
+    this.list.value = id;
     this.path.setLatLngs([]);
     this.estimate.clearLayers();
     for (const part of [this.output, this.details]) {
@@ -81,7 +88,10 @@ export class Tracks {
     const asked = Date.now();
     try {
       const track = await get(urlOf(chosen.id));
-      if (!chosen.track && chosen === this.chosen) this.maps.wish(track.map.name);
+      if (chosen === this.chosen) {
+        this.keepLine(chosen.id, textOf(track));
+        if (!chosen.track) this.maps.wish(track.map.name);
+      }
       Object.assign(chosen, { track, heard: asked - 1000 * track.silent_s, trouble: null });
     } catch (error) {
       chosen.ended = error.status === 404 || error.status === 410;

@@ -172,7 +172,15 @@ class Program(unittest.TestCase):
             program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
                                      input=lines, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
             os.close(writer)
-        self.assertEqual((program.returncode, program.stderr), (1, ""))
+        self.assertEqual((program.returncode, program.stderr), (1, f"a track begins: {fake.url}/#track=T\n"))
+
+    def test_says_once_where_its_track_is_to_be_seen_and_keeps_the_password(self):
+        lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
+        with FakeService() as fake:
+            server = fake.url.replace("//", "//me:secret@") + "/"
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", server, "--map", "m"], input=lines,
+                                     capture_output=True, text=True, timeout=60)
+        self.assertEqual((program.returncode, program.stderr), (0, f"a track begins: {fake.url}/#track=T\n"))
 
 
 if __name__ == "__main__":

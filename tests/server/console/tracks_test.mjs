@@ -115,6 +115,25 @@ await run({
     await tracks.look();
     assert.equal(view.moved, null);
   },
+  async 'a track that the list does not have gets a line while it is followed'() {
+    const lines = () => list.options.map(({ value, text }) => [value, text.split(',')[0]]);
+    service.answers = { '/v1/tracks': { tracks: [] } };
+    await tracks.refresh();
+    assert.deepEqual(lines(), []);
+    service.answers['/v1/tracks/0123456789abcdef'] = null;
+    await tracks.follow('0123456789abcdef');
+    assert.deepEqual(lines(), [['0123456789abcdef', '01234567']]);
+    assert.equal(list.value, '0123456789abcdef');
+    list.options[0].selected = true;
+    service.answers['/v1/tracks/0123456789abcdef'] = track('0123456789abcdef');
+    await tracks.look();
+    await tracks.refresh();
+    assert.deepEqual(lines(), [['0123456789abcdef', 'city']]);
+    list.options[0].selected = false;
+    await tracks.follow('');
+    await tracks.refresh();
+    assert.deepEqual(lines(), []);
+  },
   async 'the map of a track is wished for once, as it is chosen'() {
     answer(track('one', converged));
     maps.wishes = [];

@@ -192,8 +192,8 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
   const auto picture = client_.Post("/v1/detect?gsd_m=0.5&cell_m=2", testing::text_of(png), "image/png");
   ASSERT_EQ(picture->status, 200) << picture->body;
   EXPECT_EQ(picture->get_header_value("Content-Type"), "image/png");
-  const json features = testing::json_of(
-      client_.Post("/v1/detect?fov_deg=60&agl_m=200&roll_deg=0&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
+  const json features = testing::json_of(client_.Post(
+      "/v1/detect?fov_deg=60&agl_m=200&roll_deg=0&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
   EXPECT_GT(features["cols"], 50);
   EXPECT_NEAR(features["nadir_sigma_m"], 200.0 * std::numbers::pi / 180.0, 0.3) << "a degree at 200 m";
   json posted_back = features;

@@ -39,7 +39,8 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--extent", a.vectors.extent,
                      "Ground that road lines cover: W,S,E,N in degrees, or a file with polygons (GeoJSON, .poly, ...)");
   command.add_option("--classes", a.classes, "Draw exactly these road classes, comma-separated");
-  command.add_option("--rules", a.rules_file, "Table of road classes: lines 'class width_m yes|no'");
+  command.add_option("--rules", a.rules_file,
+                     "Table of road classes in place of the built-in one: lines 'class width_m yes|no'");
   command.add_option("--class-attribute", a.class_attribute,
                      "Attribute with the road class; default: highway, fclass, type, class or road_class");
   command.add_option("--width-attribute", a.width_attribute,

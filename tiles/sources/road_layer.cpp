@@ -82,9 +82,11 @@ bool packs(OGRLayer& layer, const std::string& key) {
   return found;
 }
 
-/// Whether at least half of the first values of the attribute are classes of the rules.
-bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
+/// Of the first values of the attribute that say something, the share that are classes: of the user's rules or of the
+/// usual ones, since a table of a few classes makes no other attribute of it. 0 without values.
+double share_of_classes(OGRLayer& layer, const std::string& attribute, const RoadRules& rules) {
   constexpr int kSample = 200;
+  const RoadRules usual;
   int values = 0;
   int known = 0;
   AttributePlaces places(layer);
@@ -94,12 +96,12 @@ bool holds_classes(OGRLayer& layer, const std::string& attribute, const RoadRule
     const std::unique_ptr<OGRFeature> feature(layer.GetNextFeature());
     if (!feature) break;
     const std::string value = FeatureTags(*feature, places)(attribute);
-    if (value.empty()) continue;
+    if (value.empty() || lower_case(value) == "unknown") continue;  // a word of many tables
     ++values;
-    known += rules.knows(value) ? 1 : 0;
+    known += rules.knows(value) || usual.knows(value) ? 1 : 0;
   }
   layer.ResetReading();
-  return values > 0 && 2 * known >= values;
+  return values > 0 ? static_cast<double>(known) / values : 0.0;
 }
 
 /// The attribute that the user named or that of OpenStreetMap, packed or not, else one that other road data keep the
@@ -108,8 +110,15 @@ std::optional<std::string> class_attribute_of(OGRLayer& layer, const RoadRules& 
   const std::string& wanted = rules.class_attribute();
   if (has_attribute(layer, wanted) || packs(layer, wanted)) return wanted;
   if (wanted != RoadRules().class_attribute()) return std::nullopt;
-  for (const char* usual : {"fclass", "type", "class", "road_class"}) {
-    if (has_attribute(layer, usual) && holds_classes(layer, usual, rules)) return usual;
+  struct Usual {
+    const char* name;
+    double enough;
+  };
+  // fclass is Geofabrik's name, for railways and rivers too; other programs call many things a type.
+  for (const Usual& usual : {Usual{"fclass", 0.1}, {"type", 0.5}, {"class", 0.5}, {"road_class", 0.5}}) {
+    if (has_attribute(layer, usual.name) && share_of_classes(layer, usual.name, rules) >= usual.enough) {
+      return usual.name;
+    }
   }
   return std::nullopt;
 }

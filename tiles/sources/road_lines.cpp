@@ -125,7 +125,7 @@ void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
   if (static_cast<double>(unknown) <= kWorthNoting * static_cast<double>(parts.lines)) return;
   network.notes.push_back(fmt::format(
       "{} of {} lines are not drawn, since the road rules do not know their classes: {}. --rules FILE gives "
-      "widths to them",
+      "widths to them; it replaces the built-in rules, so name all classes that are roads in it",
       unknown, parts.lines, most_frequent(parts.unknown_classes)));
 }
 
@@ -153,8 +153,8 @@ std::string why_none_is_drawn(const RoadParts& parts, const RoadRules& rules) {
   if (parts.lines == 0) return "none of them is a line; points and areas are not drawn, centrelines are";
   if (!parts.unknown_classes.empty()) {
     return fmt::format(
-        "the road rules do not know their classes, {}; give them widths with --rules FILE or name another attribute "
-        "with --class-attribute",
+        "the road rules do not know their classes, {}; give them widths with --rules FILE, which replaces the built-in "
+        "rules, or name another attribute with --class-attribute",
         most_frequent(parts.unknown_classes));
   }
   return fmt::format(

@@ -45,9 +45,10 @@ struct RoadNetwork {
 };
 
 /// The class attribute is that of the rules; where a layer lacks it and the user named none, the first of fclass, type,
-/// class and road_class whose values are mostly classes of the rules. Where no layer has any, every line is a road;
-/// where some layers of lines have one, the lines of the others (rivers, bus routes) are not drawn. OSM PBF and XML,
-/// GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound, InvalidInput
+/// class and road_class whose values are mostly classes (of fclass a tenth is enough). Where no layer has any, every
+/// line is a road; where some layers of lines have one, the lines of the others (rivers, bus routes) are not drawn. OSM
+/// PBF and XML, GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound,
+/// InvalidInput
 /// ("source-unreadable", "layer-unknown" where none of the files has it, "roads-without-georeference",
 /// "source-without-roads", "crs-not-transformable", "extent-unreadable", "roads-around-the-earth" where they span more
 /// than 180 degrees of longitude and no extent is given) or CorruptData ("roads-unreadable").

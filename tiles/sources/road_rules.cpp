@@ -39,6 +39,12 @@ pedestrian        6       yes
 road              6       yes
 service           4       yes
 track             3       yes
+track_grade1      3       yes   # of Geofabrik's Shapefiles: how firm the track is
+track_grade2      3       yes
+track_grade3      3       yes
+track_grade4      3       yes
+track_grade5      3       yes
+unknown           6       yes   # of Geofabrik's Shapefiles and Overture: what OpenStreetMap calls road
 busway            6       yes
 bus_guideway      6       yes
 minor             6       yes   # of OpenMapTiles: unclassified, residential and the like

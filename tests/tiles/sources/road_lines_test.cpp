@@ -67,6 +67,38 @@ TEST_F(RoadLines, ClassesOfGeofabriksExtractsAreKnown) {
   EXPECT_EQ(network.lines.front().half_width_m, 5.0);
 }
 
+TEST_F(RoadLines, TracksOfGeofabriksExtractsHaveAGradeAndAreDrawn) {
+  std::vector<std::string> roads;
+  for (int grade = 1; grade <= 5; ++grade) {
+    roads.push_back(feature(fmt::format(R"("fclass":"track_grade{}")", grade), at(-150, 9 * grade), at(150, 40)));
+  }
+  roads.push_back(feature(R"("fclass":"unknown")", at(-150, -40), at(150, -40)));
+  const RoadNetwork network = read_road_network({geojson(roads)}, {}, RoadRules(), kZone);
+  ASSERT_EQ(network.lines.size(), 6U);
+  EXPECT_EQ(network.lines.front().half_width_m, 1.5);
+  EXPECT_EQ(network.lines.back().half_width_m, 3.0);
+}
+
+TEST_F(RoadLines, AFewKnownClassesInGeofabriksAttributeAreEnough) {
+  const auto lines_with = [&](const std::string& attribute, const RoadRules& rules) {
+    std::vector<std::string> roads{feature(fmt::format(R"("{}":"residential")", attribute), at(-9, 0), at(9, 0))};
+    for (int i = 0; i < 8; ++i) {
+      roads.push_back(feature(fmt::format(R"("{}":"goat_walk")", attribute), at(-9, i + 10), at(9, i + 10)));
+    }
+    return read_road_network({geojson(roads)}, {}, rules, kZone).lines.size();
+  };
+  EXPECT_EQ(lines_with("fclass", RoadRules()), 1U);
+  EXPECT_EQ(lines_with("type", RoadRules()), 9U) << "no classes of roads, so every line is one";
+  EXPECT_EQ(lines_with("fclass", RoadRules::parse("goat_walk 2 yes")), 8U);
+}
+
+TEST_F(RoadLines, ATableOfFewClassesMakesNoOtherAttributeOfTheClass) {
+  const std::string path = geojson({feature(R"("type":"residential")", at(-150, 40), at(150, 40)),
+                                    feature(R"("type":"primary")", at(-150, 0), at(150, 0)),
+                                    feature(R"("type":"motorway")", at(-150, -40), at(150, -40))});
+  EXPECT_EQ(read_road_network({path}, {}, RoadRules::parse("motorway 12 yes"), kZone).lines.size(), 1U);
+}
+
 TEST_F(RoadLines, AnotherAttributeIsTakenForTheClassWhereItHoldsClassesAndSaidSo) {
   const std::string path = geojson({feature(R"("TYPE":"primary")", at(-150, 40), at(150, 40)),
                                     feature(R"("TYPE":"footway")", at(-150, -40), at(150, -40))});
@@ -242,7 +274,8 @@ TEST_F(RoadLines, ClassesThatNoRuleKnowsAreNamed) {
                                     feature(R"("highway":"Autobahn")", at(-150, -40), at(150, -40))});
   const RoadNetwork network = read_road_network({some}, {}, RoadRules(), kZone);
   EXPECT_EQ(network.left_out, 3);
-  EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("3 of 4 lines"), HasSubstr("Feldweg (2), Autobahn (1)"))));
+  EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("3 of 4 lines"), HasSubstr("Feldweg (2), Autobahn (1)"),
+                                               HasSubstr("--rules FILE gives widths to them; it replaces"))));
   const std::string none = geojson({feature(R"("highway":"Feldweg")", at(-150, 0), at(150, 0))});
   EXPECT_THAT(message_of([&] { read_road_network({none}, {}, RoadRules(), kZone); }), HasSubstr("Feldweg (1)"));
 }

@@ -36,13 +36,13 @@ void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
   }
   if (type != wkbPolygon || geometry.IsEmpty() != FALSE) return;
   const OGRPolygon& polygon = *geometry.toPolygon();
-  std::vector<GridPoint> outer = ring_on_plane(*polygon.getExteriorRing(), to_plane, path);
+  const std::vector<GridPoint> outer = ring_on_plane(*polygon.getExteriorRing(), to_plane, path);
   if (outer.size() < 3) return;
   std::vector<std::vector<GridPoint>> holes;
   for (int i = 0; i < polygon.getNumInteriorRings(); ++i) {
     holes.push_back(ring_on_plane(*polygon.getInteriorRing(i), to_plane, path));
   }
-  polygons.emplace_back(std::move(outer), std::move(holes));
+  polygons.emplace_back(outer, holes);
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& t
   edge(box.MaxX, box.MinY, box.MaxX, box.MaxY);
   edge(box.MaxX, box.MaxY, box.MinX, box.MaxY);
   edge(box.MinX, box.MaxY, box.MinX, box.MinY);
-  return PlanePolygon(std::move(ring));
+  return PlanePolygon(ring);
 }
 
 OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane) {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "tiles/sources/plane_polygon.hpp"
-
 namespace roadfix {
 namespace {
 
@@ -27,7 +25,9 @@ double share_by_counting(int col, int row, const std::vector<std::array<GridPoin
   constexpr int kSide = 32;
   int covered = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
-    const GridPoint p = kBlock.point_at({col + (i % kSide + 0.5) / kSide, row + (i / kSide + 0.5) / kSide});
+    const int across = i % kSide;
+    const int down = i / kSide;
+    const GridPoint p = kBlock.point_at({col + (across + 0.5) / kSide, row + (down + 0.5) / kSide});
     covered +=
         std::ranges::any_of(roads, [&](const auto& r) { return distance_to_segment(p, r[0], r[1]) <= half_width; });
   }
@@ -87,22 +87,6 @@ TEST(LineCoverage, FarAwayAndHugeRoadsAreHarmless) {
   coverage.add({-1e7, kBlock.cell_center(0, 10).north_m}, {1e7, kBlock.cell_center(0, 10).north_m}, 3.0);
   EXPECT_EQ(coverage.share(5, 10), 1.0);
   EXPECT_EQ(coverage.share(5, 15), 0.0);
-}
-
-TEST(PlanePolygon, MarksCellsWhoseCentreIsInsideAndSharesNoneWithItsNeighbour) {
-  const GridBox box = kBlock.box();
-  const GridPoint middle{box.min.east_m + 21.3, box.min.north_m + 17.7};
-  const PlanePolygon left({box.min, {middle.east_m, box.min.north_m}, middle, {box.min.east_m, box.max.north_m}});
-  const PlanePolygon right({{middle.east_m, box.min.north_m},
-                            {box.max.east_m, box.min.north_m},
-                            box.max,
-                            {box.min.east_m, box.max.north_m},
-                            middle});
-  std::vector<bool> in_left(24 * 20, false);
-  std::vector<bool> in_right(24 * 20, false);
-  left.mark(kBlock, in_left);
-  right.mark(kBlock, in_right);
-  for (std::size_t i = 0; i < in_left.size(); ++i) EXPECT_NE(in_left[i], in_right[i]) << i % 24 << ' ' << i / 24;
 }
 
 }  // namespace

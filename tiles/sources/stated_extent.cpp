@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
-#include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/line_on_plane.hpp"
 #include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/vector_file.hpp"
 
@@ -16,16 +15,12 @@ namespace {
 
 std::vector<GridPoint> ring_on_plane(const OGRLinearRing& ring, OGRCoordinateTransformation& to_plane,
                                      const std::string& path) {
-  std::vector<GridPoint> result;
-  for (const OGRPoint& point : ring) {
-    double x = point.getX();
-    double y = point.getY();
-    if (to_plane.Transform(1, &x, &y) == FALSE || !std::isfinite(x) || !std::isfinite(y)) {
-      throw InvalidInput("extent-unreadable", fmt::format("{}: the polygon has no place in the zone of the map", path));
-    }
-    result.push_back({x, y});
-  }
-  return result;
+  constexpr double kLongestM = 1000.0;
+  if (ring.IsEmpty() != FALSE) return {};
+  OGRLinearRing closed(ring);
+  closed.closeRings();
+  if (const auto points = line_on_plane(closed, to_plane, kLongestM)) return *points;
+  throw InvalidInput("extent-unreadable", fmt::format("{}: the polygon has no place in the zone of the map", path));
 }
 
 void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const std::string& path,
@@ -36,8 +31,8 @@ void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
   }
   if (type != wkbPolygon || geometry.IsEmpty() != FALSE) return;
   const OGRPolygon& polygon = *geometry.toPolygon();
+  if (polygon.getExteriorRing()->getNumPoints() < 3) return;
   const std::vector<GridPoint> outer = ring_on_plane(*polygon.getExteriorRing(), to_plane, path);
-  if (outer.size() < 3) return;
   std::vector<std::vector<GridPoint>> holes;
   for (int i = 0; i < polygon.getNumInteriorRings(); ++i) {
     holes.push_back(ring_on_plane(*polygon.getInteriorRing(i), to_plane, path));

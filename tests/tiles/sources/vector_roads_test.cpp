@@ -119,6 +119,35 @@ TEST_F(VectorRoads, MayCoverThePolygonsOfAnOsmosisFilter) {
   EXPECT_NEAR(kZone.project(centre_of_roads({path}, options)).east_m, kCentre.east_m, 1.0);
 }
 
+TEST_F(VectorRoads, AnExtentOfFourCornersCoversTheGroundOfTheSameBoxOfDegrees) {
+  // Along a parallel the middle of a side lies 280 m off its chord.
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
+  const LatLon centre = kZone.unproject(kCentre);
+  const auto covered_by = [&](const std::string& extent) {
+    VectorOptions options;
+    options.extent = extent;
+    return cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  };
+  const double south = centre.lat_deg + 20.0 / 111e3;
+  const double west = centre.lon_deg - 0.8;
+  const double east = centre.lon_deg + 0.8;
+  const std::string file = (folder / "box.geojson").string();
+  std::ofstream(file) << fmt::format(
+      R"({{"type":"Polygon","coordinates":[[[{0},{1}],[{2},{1}],[{2},{3}],[{0},{3}],[{0},{1}]]]}})", west, south, east,
+      south + 1.0);
+  const CellArray box = covered_by(fmt::format("{},{},{},{}", west, south, east, south + 1.0));
+  EXPECT_GT(box.observed_count(), 1000U);
+  EXPECT_LT(box.observed_count(), 39000U);
+  const CellArray polygon = covered_by(file);
+  int different = 0;
+  for (int row = 0; row < box.rows(); ++row) {
+    for (int col = 0; col < box.cols(); ++col) {
+      if (is_observed(polygon.at(col, row)) != is_observed(box.at(col, row))) ++different;
+    }
+  }
+  EXPECT_LT(different, kWindow.cols) << "less than a row of cells";
+}
+
 TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
   VectorOptions options;

@@ -1,33 +1,20 @@
 #include "tiles/sources/road_geometry.hpp"
 
-#include <cmath>
 #include <memory>
-#include <vector>
+
+#include "tiles/sources/line_on_plane.hpp"
 
 namespace roadfix {
 namespace {
 
 bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
               RoadNetwork& network) {
-  const int count = line.getNumPoints();
-  if (count < 2) return false;
-  std::vector<double> x(static_cast<std::size_t>(count));
-  std::vector<double> y(x.size());
-  std::vector<int> good(x.size(), FALSE);
-  for (int i = 0; i < count; ++i) {
-    x[static_cast<std::size_t>(i)] = line.getX(i);
-    y[static_cast<std::size_t>(i)] = line.getY(i);
-  }
-  to_plane.Transform(count, x.data(), y.data(), nullptr, good.data());
-  const std::size_t first = network.points.size();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (good[i] == FALSE || !std::isfinite(x[i]) || !std::isfinite(y[i])) {
-      network.points.resize(first);
-      return false;
-    }
-    network.points.push_back({x[i], y[i]});
-  }
-  network.lines.push_back({first, x.size(), drawing.width_m / 2.0, drawing.road_class});
+  constexpr double kLongestM = 2000.0;
+  if (line.getNumPoints() < 2) return false;
+  const auto points = line_on_plane(line, to_plane, kLongestM);
+  if (!points) return false;
+  network.lines.push_back({network.points.size(), points->size(), drawing.width_m / 2.0, drawing.road_class});
+  network.points.insert(network.points.end(), points->begin(), points->end());
   return true;
 }
 

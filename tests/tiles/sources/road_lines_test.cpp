@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <ogrsf_frmts.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -253,6 +254,39 @@ TEST_F(RoadLines, CurvesAreDrawnHoweverTheyAreNested) {
     const RoadNetwork network = read_road_network({path}, options, RoadRules(), kZone);
     EXPECT_TRUE(std::ranges::any_of(network.points, [](GridPoint p) { return p.north_m > 49.0; })) << wkt;
   }
+}
+
+TEST_F(RoadLines, FollowTheParallelThatTheyAreStraightAlongInDegrees) {
+  const LatLon centre = kZone.unproject(kCentre);
+  const LatLon from{centre.lat_deg, centre.lon_deg - 0.3};
+  const LatLon to{centre.lat_deg, centre.lon_deg + 0.3};
+  const auto line = [](double first_lon, double last_lon, double lat) {
+    return fmt::format(R"({{"type":"Feature","properties":{{"highway":"primary"}},"geometry":{{"type":"LineString",)"
+                       R"("coordinates":[[{0},{2}],[{1},{2}]]}}}})",
+                       first_lon, last_lon, lat);
+  };
+  const RoadNetwork network =
+      read_road_network({geojson({line(from.lon_deg, to.lon_deg, centre.lat_deg)})}, {}, RoadRules(), kZone);
+  ASSERT_GT(network.points.size(), 20U);
+  EXPECT_EQ(network.lines.front().points, network.points.size());
+  for (std::size_t i = 1; i < network.points.size(); ++i) {
+    const GridPoint a = network.points[i - 1];
+    const GridPoint b = network.points[i];
+    EXPECT_LT(std::hypot(b.east_m - a.east_m, b.north_m - a.north_m), 2100.0);
+    const GridPoint middle{(a.east_m + b.east_m) / 2.0, (a.north_m + b.north_m) / 2.0};
+    EXPECT_NEAR((kZone.unproject(middle).lat_deg - centre.lat_deg) * 111e3, 0.0, 0.2);
+  }
+}
+
+TEST_F(RoadLines, GoTheShortWayAcrossThe180thMeridian) {
+  const std::string path = geojson({R"({"type":"Feature","properties":{"highway":"primary"},"geometry":)"
+                                    R"({"type":"LineString","coordinates":[[179.9,-17],[-179.9,-17]]}})"});
+  VectorOptions options;
+  options.extent = "179.9,-17.1,-179.9,-16.9";
+  const UtmZone zone = *UtmZone::from_epsg(32760);
+  const RoadNetwork network = read_road_network({path}, options, RoadRules(), zone);
+  ASSERT_GT(network.points.size(), 9U);
+  for (const GridPoint& point : network.points) EXPECT_NEAR(point.east_m, zone.project({-17, 180}).east_m, 11e3);
 }
 
 TEST_F(RoadLines, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {

@@ -9,6 +9,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/sources/nodata.hpp"
+#include "tiles/sources/vrt_parts.hpp"
 
 namespace roadfix {
 namespace {
@@ -97,6 +98,7 @@ void RasterFile::find_bands() {
                         static_cast<std::uint8_t>(entry.c1), static_cast<std::uint8_t>(entry.c4)});
   }
   has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
+  filled_ = filled_parts(*dataset_, colour_bands_.front());
   for (const int band : colour_bands_) nodata_.push_back(nodata_of(*dataset_->GetRasterBand(band)));
 }
 
@@ -234,6 +236,7 @@ cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
   if (alpha_band_ > 0 || has_mask_) valid = read_opacity(window) >= 0.5;
   clear_nodata(values, nodata_, valid);
+  if (filled_) clear_beside(*filled_, window, valid);
   return valid;
 }
 

@@ -92,6 +92,7 @@ class RasterFile {
   std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
   int alpha_band_ = 0;                                ///< 0 without
   double full_opacity_ = 0.0;                         ///< 0 = not known yet
+  std::optional<std::vector<cv::Rect>> filled_;       ///< parts of a VRT in which its images lie
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
 };
 

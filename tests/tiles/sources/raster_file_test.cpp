@@ -1,7 +1,9 @@
 #include "tiles/sources/raster_file.hpp"
 
+#include <gdal_utils.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -154,6 +156,59 @@ TEST_F(RasterFileTest, OverviewsWithoutTheMaskOfTheirImageAreNotRead) {
   const std::string without = write_raster(folder / "b.tif", spec, band_number, right_half);
   add_overview(without, GA_ReadOnly);
   EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), -1);
+}
+
+/// As gdalbuildvrt makes it.
+std::string mosaic_of(const std::filesystem::path& path, const std::vector<std::string>& images) {
+  std::vector<const char*> names;
+  for (const std::string& image : images) names.push_back(image.c_str());
+  const GdalMessages quiet;
+  const DatasetPtr vrt(GDALDataset::FromHandle(
+      GDALBuildVRT(path.c_str(), static_cast<int>(names.size()), nullptr, names.data(), nullptr, nullptr)));
+  return path.string();
+}
+
+TEST_F(RasterFileTest, GapsBetweenTheImagesOfAVrtHoldNothing) {
+  const auto image = [&](const char* name, double east_m, double north_m, double pixel_m) {
+    const std::array<double, 6> transform{400000.0 + east_m, pixel_m, 0.0, 4200000.0 + north_m, 0.0, -pixel_m};
+    return write_raster(folder / name, {.transform = transform}, [](int, int col, int) { return col % 2; });
+  };
+  const std::string path = mosaic_of(
+      folder / "a.vrt", {image("a.tif", 0, 0, 1), image("b.tif", 100, -20, 1), image("c.tif", 164, -84.0, 1)});
+  const cv::Size size(228, 148);
+  const std::vector<cv::Rect> images{{0, 0, 64, 64}, {100, 20, 64, 64}, {164, 84, 64, 64}};
+  const auto holds = [&](double col, double row) {
+    return std::ranges::any_of(images, [&](const cv::Rect& part) {
+      return col > part.x && col < part.x + part.width && row > part.y && row < part.y + part.height;
+    });
+  };
+  RasterFile file(path, {});
+  ASSERT_EQ(file.size(), size);
+  for (const cv::Rect& window : {cv::Rect({0, 0}, size), cv::Rect(50, 10, 120, 90), cv::Rect(70, 0, 20, 20)}) {
+    const cv::Mat valid = file.read(window, {}).valid;
+    for (int row = 0; row < window.height; ++row) {
+      for (int col = 0; col < window.width; ++col) {
+        ASSERT_EQ(valid.at<std::uint8_t>(row, col) != 0, holds(window.x + col + 0.5, window.y + row + 0.5))
+            << window << ' ' << col << ' ' << row;
+      }
+    }
+  }
+  add_overview(path, GA_ReadOnly);
+  ASSERT_EQ(RasterFile(path, {}).overview_for(2.0), 0);
+  RasterFile half(path, {}, 0);
+  const cv::Mat valid = half.read({{0, 0}, half.size()}, {}).valid;
+  for (int row = 0; row < valid.rows; ++row) {
+    for (int col = 0; col < valid.cols; ++col) {
+      EXPECT_EQ(valid.at<std::uint8_t>(row, col) != 0, holds(2 * col + 1, 2 * row + 1)) << col << ' ' << row;
+    }
+  }
+}
+
+TEST_F(RasterFileTest, AVrtWithoutGapsHoldsAllThatItsImagesHold) {
+  const std::string image = write_raster(folder / "a.tif", {.nodata = 10.0}, [](int, int col, int) { return col; });
+  RasterFile file(mosaic_of(folder / "a.vrt", {image}), {});
+  const cv::Mat valid = file.read({{0, 0}, file.size()}, {}).valid;
+  EXPECT_EQ(cv::countNonZero(valid), 64 * 63);
 }
 
 TEST_F(RasterFileTest, OverviewsFromBeforeAValueMeantNodataAreNotRead) {

@@ -43,6 +43,12 @@ std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
   return std::nullopt;
 }
 
+/// GDAL before 3.7 knows them by a remark beside the type only, and reads -1 as 255.
+bool holds_signed_bytes(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
 double largest_opacity(GDALDataType type) {
   switch (type) {
     case GDT_Byte:
@@ -90,6 +96,7 @@ void RasterFile::find_bands() {
     colour_bands_ = {opaque[0]};
   }
   GDALRasterBand& first = *dataset_->GetRasterBand(colour_bands_.front());
+  signed_bytes_ = holds_signed_bytes(first);
   const GDALColorTable* table = colour_bands_.size() == 1 ? first.GetColorTable() : nullptr;
   for (int i = 0; table != nullptr && i < table->GetColorEntryCount(); ++i) {
     GDALColorEntry entry{};
@@ -134,7 +141,7 @@ void RasterFile::find_reference(const RasterOptions& options) {
 
 std::optional<ValueRange> RasterFile::declared_range() const {
   GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
-  if (band.GetRasterDataType() != GDT_Byte) return std::nullopt;
+  if (band.GetRasterDataType() != GDT_Byte || signed_bytes_) return std::nullopt;
   const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
   const int count = bits != nullptr ? std::clamp(std::atoi(bits), 1, 8) : 8;
   return ValueRange{0.0, static_cast<double>((1 << count) - 1)};
@@ -147,6 +154,7 @@ bool RasterFile::holds_integers() const {
 int RasterFile::overview_for(double reduction) const {
   GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
   int best = -1;
+  if (signed_bytes_) return best;  // overviews do not tell that theirs are
   double best_factor = 1.0;
   for (int i = 0; i < band.GetOverviewCount(); ++i) {
     GDALRasterBand* overview = band.GetOverview(i);
@@ -196,6 +204,10 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
       GF_Read, window.x, window.y, window.width, window.height, pixels.data, window.width, window.height, type,
       channels, colour_bands_.data(), value_bytes * channels, static_cast<GSpacing>(pixels.step), value_bytes, nullptr);
   if (outcome != CE_None) fail(window, messages.text());
+  if (signed_bytes_) {
+    cv::Mat values = pixels.reshape(1);
+    cv::subtract(values, cv::Scalar(256.0), values, values >= 128.0);
+  }
   return pixels;
 }
 

@@ -93,6 +93,7 @@ class RasterFile {
   int alpha_band_ = 0;                                ///< 0 without
   double full_opacity_ = 0.0;                         ///< 0 = not known yet
   std::optional<std::vector<cv::Rect>> filled_;       ///< parts of a VRT in which its images lie
+  bool signed_bytes_ = false;                         ///< in the type of unsigned ones
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
 };
 

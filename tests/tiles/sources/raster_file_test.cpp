@@ -123,6 +123,22 @@ TEST_F(RasterFileTest, SixteenBitsAreStretchedAndClamped) {
   EXPECT_EQ(pixels.values.at<std::uint8_t>(0, 60), 255);
 }
 
+TEST_F(RasterFileTest, SignedBytesAreReadWithTheirSigns) {
+#if GDAL_VERSION_NUM < GDAL_COMPUTE_VERSION(3, 7, 0)
+  RasterSpec spec{.bands = 3, .nodata = -1.0, .creation = {"PIXELTYPE=SIGNEDBYTE"}};
+  constexpr int kTurn = 256;  // as its bytes are written
+#else
+  RasterSpec spec{.bands = 3, .type = GDT_Int8, .nodata = -1.0};
+  constexpr int kTurn = 0;
+#endif
+  const auto value = [=](int, int col, int) { return col == 0 ? kTurn - 1 : col == 1 ? kTurn - 100 : col; };
+  const RasterPixels pixels = read(spec, value, {}, {-100.0, 155.0});
+  EXPECT_EQ(cv::countNonZero(pixels.valid), 63 * 64);
+  EXPECT_EQ(pixels.valid.at<std::uint8_t>(5, 0), 0);
+  EXPECT_EQ(pixels.values.at<cv::Vec3b>(5, 1), cv::Vec3b(0, 0, 0));
+  EXPECT_EQ(pixels.values.at<cv::Vec3b>(5, 50), cv::Vec3b(150, 150, 150));
+}
+
 TEST_F(RasterFileTest, OneBitImagesDeclareTheirRange) {
   const RasterFile file(write_raster(folder / "a.tif", {.creation = {"NBITS=1"}}, [](int, int, int) { return 1.0; }),
                         {});

@@ -56,6 +56,9 @@ void require_gdal() {
     CPLSetConfigOption("RAW_CHECK_FILE_SIZE", "YES");
     CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
     CPLSetConfigOption("OGR_INTERLEAVED_READING", "YES");
+    // A progressive JPEG is unpacked as a whole, with 3 to 6 bytes a pixel, and GDAL stops at 500 MB where this is not
+    // set. The largest JPEG takes 26 GB; whoever wants less says so in the environment, where libjpeg looks too.
+    if (CPLGetConfigOption("JPEGMEM", nullptr) == nullptr) CPLSetConfigOption("JPEGMEM", "26000M");
     // Reading must leave nothing beside the user's files.
     CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "NO");
   });
@@ -90,6 +93,18 @@ DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* con
   }
   const std::string said = messages.text();
   throw InvalidInput("source-unreadable", fmt::format("{}: cannot be opened ({}); {}", path, said, remedy(path)));
+}
+
+std::string_view remedy_of_pixels(std::string_view reason) {
+  const auto says = [&](std::string_view words) { return reason.find(words) != std::string_view::npos; };
+  if (says("No such file")) {
+    return "an image that it is made of is missing: put it back, or make the file anew from those that are there";
+  }
+  if (says("JPEGMEM") || says("Backing store")) {
+    return "a progressive JPEG is unpacked as a whole, and this one takes more memory than is allowed: allow it with "
+           "the environment variable JPEGMEM, for example JPEGMEM=8000M";
+  }
+  return "the file is cut off or damaged: fetch it again and repeat the command";
 }
 
 OGRSpatialReference utm_reference(UtmZone zone) {

@@ -43,6 +43,9 @@ using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 /// `open_options` are those of GDALOpenEx.
 DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options = nullptr);
 
+/// What to do about pixels that cannot be read, by what GDAL says of them.
+std::string_view remedy_of_pixels(std::string_view reason);
+
 /// Reference systems with x east or longitude first, whatever their authority says.
 OGRSpatialReference utm_reference(UtmZone zone);
 OGRSpatialReference wgs84_reference();

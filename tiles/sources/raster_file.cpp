@@ -283,11 +283,9 @@ std::vector<float> RasterFile::sample_values() {
 }
 
 void RasterFile::fail(cv::Rect window, const std::string& reason) const {
-  throw CorruptData(
-      "image-unreadable-block",
-      fmt::format("{}: the pixels at column {} row {} ({} x {}) cannot be read ({}); the file is cut off or "
-                  "damaged: fetch it again and repeat the command",
-                  path_, window.x, window.y, window.width, window.height, reason));
+  throw CorruptData("image-unreadable-block",
+                    fmt::format("{}: the pixels at column {} row {} ({} x {}) cannot be read ({}); {}", path_, window.x,
+                                window.y, window.width, window.height, reason, remedy_of_pixels(reason)));
 }
 
 }  // namespace roadfix

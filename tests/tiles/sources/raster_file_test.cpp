@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string_view>
@@ -277,6 +278,33 @@ TEST_F(RasterFileTest, FilesThatAreNoImagesAreRefusedByName) {
   EXPECT_EQ(code_of([&] { RasterFile((folder / "none.tif").string(), {}); }), "source-not-found");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "empty.tif").string(), {}); }), "source-unreadable");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "broken.tif").string(), {}); }), "source-unreadable");
+}
+
+TEST_F(RasterFileTest, AVrtWithoutItsImageSaysThatItIsMissing) {
+  const std::string image = write_raster(folder / "a.tif", {}, band_number);
+  RasterFile file(mosaic_of(folder / "a.vrt", {image}), {});
+  std::filesystem::remove(image);
+  const std::string message = testing::message_of([&] { file.read({0, 0, 64, 64}, {}); });
+  EXPECT_THAT(message, ::testing::HasSubstr("a.tif"));
+  EXPECT_THAT(message, ::testing::HasSubstr("an image that it is made of is missing"));
+}
+
+TEST_F(RasterFileTest, ProgressiveJpegsMayTakeAllMemoryUnlessTheEnvironmentForbidsIt) {
+  const RasterSpec spec{.width = 2000, .height = 1500, .bands = 3};
+  const std::string tif = write_raster(folder / "a.tif", spec, band_number);
+  const std::string path = (folder / "a.jpg").string();
+  CPLStringList options;
+  options.SetNameValue("PROGRESSIVE", "YES");
+  const DatasetPtr from = open_dataset(tif, GDAL_OF_RASTER);
+  GDALDriver* jpeg = GetGDALDriverManager()->GetDriverByName("JPEG");
+  DatasetPtr(jpeg->CreateCopy(path.c_str(), from.get(), FALSE, options.List(), nullptr, nullptr)).reset();
+  const auto read_whole = [&] { RasterFile(path, {}).read({0, 0, 2000, 1500}, {}); };
+  EXPECT_STREQ(CPLGetConfigOption("JPEGMEM", ""), "26000M");
+  EXPECT_EQ(code_of(read_whole), "no error");
+  setenv("JPEGMEM", "2M", 1);
+  const std::string message = testing::message_of(read_whole);
+  unsetenv("JPEGMEM");
+  EXPECT_THAT(message, ::testing::HasSubstr("allow it with the environment variable JPEGMEM"));
 }
 
 TEST_F(RasterFileTest, ATruncatedImageFailsAtTheBlockThatIsMissing) {

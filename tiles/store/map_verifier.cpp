@@ -9,6 +9,7 @@
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
+#include "tiles/store/map_description.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
@@ -37,10 +38,9 @@ class Verifier {
     total_ = number("SELECT (SELECT count(*) FROM road_probability) + (SELECT count(*) FROM roadfix_evidence)");
     check_database();
     if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
-    check_lattice();
+    std::ranges::move(problems_of_description(map_, settings_), std::back_inserter(verdict_.problems));
     verdict_.tiles_to_fuse = number("SELECT count(*) FROM roadfix_pending");
     check_ledger();
-    check_ancillary();
     check_evidence();
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
     check_summary();
@@ -86,29 +86,6 @@ class Verifier {
     }
   }
 
-  void check_lattice() {
-    Statement set(map_,
-                  "SELECT count(*) FROM gpkg_tile_matrix_set WHERE table_name = 'road_probability' AND srs_id = ?1 AND "
-                  "min_x = 0 AND min_y = 0 AND max_x = ?2 AND max_y = ?3");
-    set.with(settings_.zone.epsg(), kLattice.max.east_m, kLattice.max.north_m).step();
-    bool right = set.integer(0) == 1;
-    Statement level(
-        map_,
-        "SELECT count(*) FROM gpkg_tile_matrix WHERE table_name = 'road_probability' AND zoom_level = ?1 AND "
-        "matrix_width = ?2 AND matrix_height = ?3 AND tile_width = ?4 AND tile_height = ?4 AND "
-        "pixel_x_size = ?5 AND pixel_y_size = ?5");
-    for (int zoom = kCoarsestZoom; zoom <= table_.finest_zoom(); ++zoom) {
-      level.with(zoom, matrix_width(zoom), matrix_height(zoom), kTileCells, cell_of_zoom(zoom)).step();
-      right = right && level.integer(0) == 1;
-    }
-    if (!right) {
-      report(
-          "lattice-wrong",
-          "gpkg_tile_matrix_set and gpkg_tile_matrix are not those of the zone and cell size of the map. Restore the "
-          "map from a copy");
-    }
-  }
-
   void check_ledger() {
     const std::int64_t unexplained = number(
         "SELECT count(*) FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON b.source_id = e.source_id AND "
@@ -126,18 +103,6 @@ class Verifier {
                          "map from a copy",
                          open.text(0), open.integer(1)));
     }
-  }
-
-  void check_ancillary() {
-    const std::int64_t wrong = number(
-        "SELECT (SELECT count(*) FROM road_probability t LEFT JOIN gpkg_2d_gridded_tile_ancillary a ON a.tpudt_name = "
-        "'road_probability' AND a.tpudt_id = t.id WHERE a.scale IS NOT 1.0 OR a.offset IS NOT 0.0) + "
-        "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_id NOT IN (SELECT id FROM "
-        "road_probability))");
-    if (wrong == 0) return;
-    report("ancillary-wrong", fmt::format("{} rows of gpkg_2d_gridded_tile_ancillary are missing, wrong or left over: "
-                                          "other programs misread the map. Restore it from a copy",
-                                          wrong));
   }
 
   void check_evidence() {

@@ -103,6 +103,27 @@ TEST_F(MapVerifier, FindsWrongScales) {
               ElementsAre("ancillary-wrong"));
 }
 
+TEST_F(MapVerifier, FindsADescriptionByWhichOtherProgramsMisreadTheMap) {
+  for (const std::string change : {"scale = 1.0", "offset = 0.5", "data_null = 0", "data_null = NULL",
+                                   "datatype = 'float'", "grid_cell_encoding = 'grid-value-is-center'"}) {
+    const fs::path copy = folder / "copy.gpkg";
+    fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
+    testing::open_sqlite(copy).execute(("UPDATE gpkg_2d_gridded_coverage_ancillary SET " + change).c_str());
+    const std::vector<MapProblem> problems = verify_map(copy).problems;
+    ASSERT_EQ(problems.size(), 1U) << change;
+    EXPECT_EQ(problems.front().code, "coverage-wrong") << change;
+  }
+  EXPECT_THAT(codes_after("DELETE FROM gpkg_2d_gridded_coverage_ancillary"), ElementsAre("coverage-wrong"));
+}
+
+TEST_F(MapVerifier, FindsRegistrationErrorsThatNoSourceHas) {
+  for (const std::string sigma : {"0", "-2.5", "9e999", "'much'"}) {
+    const std::string change = "UPDATE roadfix_sources SET registration_sigma_m = " + sigma;
+    EXPECT_THAT(codes_after(change.c_str()), ElementsAre("registration-wrong", "registration-wrong")) << sigma;
+  }
+  EXPECT_THAT(verify_map(path).problems.front().what, HasSubstr("source 'a' states a registration error of much m"));
+}
+
 TEST_F(MapVerifier, FindsABrokenLedger) {
   EXPECT_THAT(codes_after("UPDATE roadfix_blocks SET done = 0 WHERE tile_column = 848"),
               ElementsAre("ledger-broken", "ledger-broken"));

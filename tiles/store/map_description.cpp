@@ -1,0 +1,87 @@
+#include "tiles/store/map_description.hpp"
+
+#include <fmt/format.h>
+
+#include "core/grid/lattice.hpp"
+#include "tiles/store/tile_matrix.hpp"
+
+namespace roadfix {
+namespace {
+
+using sqlite::Connection;
+using sqlite::Statement;
+
+void check_lattice(Connection& map, const MapSettings& settings, std::vector<MapProblem>& problems) {
+  Statement set(map,
+                "SELECT count(*) FROM gpkg_tile_matrix_set WHERE table_name = 'road_probability' AND srs_id = ?1 AND "
+                "min_x = 0 AND min_y = 0 AND max_x = ?2 AND max_y = ?3");
+  set.with(settings.zone.epsg(), kLattice.max.east_m, kLattice.max.north_m).step();
+  bool right = set.integer(0) == 1;
+  Statement level(map,
+                  "SELECT count(*) FROM gpkg_tile_matrix WHERE table_name = 'road_probability' AND zoom_level = ?1 AND "
+                  "matrix_width = ?2 AND matrix_height = ?3 AND tile_width = ?4 AND tile_height = ?4 AND "
+                  "pixel_x_size = ?5 AND pixel_y_size = ?5");
+  for (int zoom = kCoarsestZoom; zoom <= zoom_of(settings.cell_m); ++zoom) {
+    level.with(zoom, matrix_width(zoom), matrix_height(zoom), kTileCells, cell_of_zoom(zoom)).step();
+    right = right && level.integer(0) == 1;
+  }
+  if (right) return;
+  problems.push_back({"lattice-wrong",
+                      "gpkg_tile_matrix_set and gpkg_tile_matrix are not those of the zone and cell size of the map. "
+                      "Restore the map from a copy"});
+}
+
+/// As create_map writes it.
+void check_coverage(Connection& map, std::vector<MapProblem>& problems) {
+  Statement coverage(map,
+                     "SELECT count(*) FROM gpkg_2d_gridded_coverage_ancillary WHERE tile_matrix_set_name = "
+                     "'road_probability' AND datatype = 'integer' AND scale = 1.0 / 254 AND offset = 0.0 AND precision "
+                     "= 1.0 / 254 AND data_null = 65535 AND grid_cell_encoding = 'grid-value-is-area'");
+  coverage.step();
+  if (coverage.integer(0) == 1) return;
+  problems.push_back({"coverage-wrong",
+                      "gpkg_2d_gridded_coverage_ancillary is not as a map has it (integers with a scale of 1/254, an "
+                      "offset of 0 and 65535 for nothing): other programs misread the map. Restore it from a copy"});
+}
+
+void check_tile_scales(Connection& map, std::vector<MapProblem>& problems) {
+  Statement wrong(
+      map,
+      "SELECT (SELECT count(*) FROM road_probability t LEFT JOIN gpkg_2d_gridded_tile_ancillary a ON a.tpudt_name = "
+      "'road_probability' AND a.tpudt_id = t.id WHERE a.scale IS NOT 1.0 OR a.offset IS NOT 0.0) + "
+      "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_id NOT IN (SELECT id FROM "
+      "road_probability))");
+  wrong.step();
+  if (wrong.integer(0) == 0) return;
+  problems.push_back(
+      {"ancillary-wrong", fmt::format("{} rows of gpkg_2d_gridded_tile_ancillary are missing, wrong or left over: "
+                                      "other programs misread the map. Restore it from a copy",
+                                      wrong.integer(0))});
+}
+
+void check_registration(Connection& map, std::vector<MapProblem>& problems) {
+  // 9e999 is infinite, and a text is more than any number.
+  Statement wrong(map,
+                  "SELECT name, registration_sigma_m FROM roadfix_sources WHERE (registration_sigma_m > 0 AND "
+                  "registration_sigma_m < 9e999) IS NOT 1 ORDER BY name");
+  while (wrong.step()) {
+    problems.push_back(
+        {"registration-wrong",
+         fmt::format("source '{}' states a registration error of {} m, by which positions would count as surer or less "
+                     "sure than they are. Ingest it again with --replace, or restore the map from a copy",
+                     wrong.text(0), wrong.text(1))});
+  }
+}
+
+}  // namespace
+
+std::vector<MapProblem> problems_of_description(Connection& map, const MapSettings& settings) {
+  std::vector<MapProblem> problems;
+  check_lattice(map, settings, problems);
+  check_coverage(map, problems);
+  check_tile_scales(map, problems);
+  check_registration(map, problems);
+  return problems;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,15 @@
+// Do the tables that describe a map say what its tiles are? Other programs read the map by them, the service the
+// errors.
+#pragma once
+
+#include <vector>
+
+#include "tiles/store/map_verifier.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+/// Of lattice, coverage, scales of the tiles and registration errors.
+std::vector<MapProblem> problems_of_description(sqlite::Connection& map, const MapSettings& settings);
+
+}  // namespace roadfix

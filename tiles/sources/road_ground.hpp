@@ -39,6 +39,11 @@ struct RoadParts {
   }
 };
 
+/// Throws InvalidInput "degrees-as-metres" where the coordinates of a projected reference system could all be
+/// longitudes and latitudes: none has its roads within 360 m of its origin.
+void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
+void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer);
+
 /// Takes down how well the place of the layer's roads is known.
 void add_datum_error(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts);
 

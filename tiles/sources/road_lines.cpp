@@ -79,6 +79,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   });
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
+    refuse_degrees_as_metres(file, layer);
     add_layer(layer, rules, path, parts);
     add_datum_error(file, layer, zone, parts);
     if (options.extent.empty()) add_covered(file, layer, zone, parts);
@@ -182,6 +183,7 @@ std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path) 
   for (OGRLayer* layer : file.layers()) {
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
     if (!box) continue;
+    refuse_degrees_as_metres(*box, file.crs_of(*layer), path);
     const TransformationPtr to_earth = transformation(file.crs_of(*layer), wgs84_reference(), path);
     double lon = (box->MinX + box->MaxX) / 2.0;
     double lat = (box->MinY + box->MaxY) / 2.0;

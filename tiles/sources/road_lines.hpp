@@ -50,8 +50,8 @@ struct RoadNetwork {
 /// PBF and XML, GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound,
 /// InvalidInput
 /// ("source-unreadable", "layer-unknown" where none of the files has it, "roads-without-georeference",
-/// "source-without-roads", "crs-not-transformable", "extent-unreadable", "roads-around-the-earth" where they span more
-/// than 180 degrees of longitude and no extent is given) or CorruptData ("roads-unreadable").
+/// "source-without-roads", "crs-not-transformable", "degrees-as-metres", "extent-unreadable", "roads-around-the-earth"
+/// where they span more than 180 degrees of longitude and no extent is given) or CorruptData ("roads-unreadable").
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);
 

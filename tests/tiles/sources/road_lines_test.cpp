@@ -242,10 +242,10 @@ TEST_F(RoadLines, ARiverIsNoRoadWhereTheRoadsAreAllTooNarrow) {
 }
 
 TEST_F(RoadLines, CurvesAreDrawnHoweverTheyAreNested) {
-  const char* const collections[] = {"CIRCULARSTRING(0 0,50 50,100 0)",
-                                     "COMPOUNDCURVE((0 -50,0 0),CIRCULARSTRING(0 0,50 50,100 0))",
-                                     "MULTICURVE((0 -50,0 0),CIRCULARSTRING(0 0,50 50,100 0))",
-                                     "GEOMETRYCOLLECTION(POINT(0 0),MULTICURVE(CIRCULARSTRING(0 0,50 50,100 0)))"};
+  const char* const collections[] = {
+      "CIRCULARSTRING(1000 0,1050 50,1100 0)", "COMPOUNDCURVE((1000 -50,1000 0),CIRCULARSTRING(1000 0,1050 50,1100 0))",
+      "MULTICURVE((1000 -50,1000 0),CIRCULARSTRING(1000 0,1050 50,1100 0))",
+      "GEOMETRYCOLLECTION(POINT(1000 0),MULTICURVE(CIRCULARSTRING(1000 0,1050 50,1100 0)))"};
   for (const char* wkt : collections) {
     const std::string path = (folder / "curves.csv").string();
     std::ofstream(path) << "highway,WKT\nprimary,\"" << wkt << "\"\n";
@@ -291,8 +291,9 @@ TEST_F(RoadLines, GoTheShortWayAcrossThe180thMeridian) {
 
 TEST_F(RoadLines, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {
   const std::string path = (folder / "mixed.csv").string();
-  std::ofstream(path) << "highway,WKT\nprimary,\"GEOMETRYCOLLECTION(POLYGON((0 0,9 0,9 9,0 0)),POINT(5 5),"
-                         "GEOMETRYCOLLECTION(LINESTRING(0 0,100 0),MULTILINESTRING((0 50,100 50))))\"\n";
+  std::ofstream(path)
+      << "highway,WKT\nprimary,\"GEOMETRYCOLLECTION(POLYGON((1000 0,1009 0,1009 9,1000 0)),POINT(1005 5),"
+         "GEOMETRYCOLLECTION(LINESTRING(1000 0,1100 0),MULTILINESTRING((1000 50,1100 50))))\"\n";
   VectorOptions options;
   options.crs = "EPSG:32637";
   const RoadNetwork network = read_road_network({path}, options, RoadRules(), kZone);
@@ -349,6 +350,20 @@ TEST_F(RoadLines, AcrossThe180thMeridianAskForAnExtent) {
   EXPECT_EQ(code_of([&] { read(""); }), "roads-around-the-earth");
   EXPECT_THAT(message_of([&] { read(""); }), HasSubstr("from longitude -179.99 to 179.99"));
   EXPECT_EQ(read("179.5,-17,-179.5,-16").lines.size(), 2U);
+}
+
+TEST_F(RoadLines, OfDegreesThatAreDeclaredAsMetresAreRefused) {
+  const std::string road = feature(R"("highway":"primary")", at(-50, -50), at(50, 50));
+  for (const char* crs : {"EPSG:32637", "EPSG:3857", "EPSG:2263"}) {
+    const std::string path = geojson({road});
+    VectorOptions options;
+    options.crs = crs;
+    EXPECT_EQ(code_of([&] { centre_of_roads({path}, options); }), "degrees-as-metres") << crs;
+    EXPECT_EQ(code_of([&] { read_road_network({path}, options, RoadRules(), kZone); }), "degrees-as-metres") << crs;
+    options.extent = testing::extent_around_centre(100);
+    EXPECT_THAT(message_of([&] { read_road_network({path}, options, RoadRules(), kZone); }),
+                HasSubstr("give --crs EPSG:4326"));
+  }
 }
 
 TEST_F(RoadLines, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {

@@ -58,10 +58,16 @@ std::vector<std::string> layers_of(const std::string& path) {
   return layers;
 }
 
+/// A description of layers, not of images.
+bool is_vector_vrt(const std::string& path) {
+  return ending_of(path) == ".vrt" && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
+}
+
 /// A file that neither opens as raster nor as vectors is reported by name.
 SourceKind kind_of(const std::string& path, const std::string& layer) {
   constexpr SourceKind kVectors = SourceKind::kRoadVectors;
   if (one_of(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
+  if (is_vector_vrt(path)) return kVectors;
   if (!layer.empty() && !layers_of(path).empty()) return kVectors;
   {
     const GdalMessages messages;
@@ -120,6 +126,10 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   for (const std::string& file : files) {
     if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
     const std::string ending = ending_of(file);
+    if (is_vector_vrt(file)) {
+      others.push_back(file);  // of the layers beside it, mostly
+      continue;
+    }
     if (one_of(kImageEndings, ending)) images.push_back(file);
     if (one_of(kVectorEndings, ending)) vectors.push_back(file);
     if (one_of(kOtherEndings, ending)) others.push_back(file);

@@ -64,6 +64,21 @@ TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {
   EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
 }
 
+TEST_F(SourceFilesTest, AVrtOfLayersIsVectorsAndLeftOutOfAFolder) {
+  std::ofstream(folder / "lines.geojson") << kLine;
+  const std::string path = (folder / "roads.vrt").string();
+  std::ofstream(path) << R"(<OGRVRTDataSource><OGRVRTLayer name="lines"><SrcDataSource relativeToVRT="1">)"
+                      << "lines.geojson</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>";
+  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
+  const SourceFiles all = find_source(folder.path().string(), SourceMeaning::kAuto);
+  EXPECT_THAT(all.paths, ElementsAre((folder / "lines.geojson").string()));
+  EXPECT_THAT(all.left_out, ElementsAre(path));
+  std::ofstream(folder / "broken.vrt") << "<VRTDataset";
+  EXPECT_EQ(code_of([&] { find_source((folder / "broken.vrt").string(), SourceMeaning::kAuto); }), "source-unreadable");
+}
+
 TEST_F(SourceFilesTest, FilesThatOnlyNeedAnotherFormatSayWhich) {
   const auto advice = [&](const char* name, const char* text) {
     std::ofstream(folder / name) << text;

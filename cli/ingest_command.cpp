@@ -48,6 +48,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const auto [source, blocks] = plan_source(request, settings, detector);
   SourceSummary summary = source->summary();
   std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
+  if (auto note = note_on_distance(*source, arguments.map)) summary.notes.push_back(std::move(*note));
   print_notes(request.files, summary);
   const SourceRecord record = record_of(arguments, request, summary);
   const nlohmann::json json = summary_json(record, summary, blocks, settings);

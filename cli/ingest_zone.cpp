@@ -11,6 +11,7 @@
 #include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
+#include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -55,12 +56,14 @@ void refuse_another_zone(const SourceRequest& request, const MapSettings& settin
   if (home.number() == settings.zone.number()) return;
   throw InvalidInput(
       "source-in-another-zone",
-      fmt::format("{}: lies at longitude {:.2f}, in UTM zone EPSG:{}, too far from EPSG:{} of the map to have a place "
-                  "on it. Ingest it into a map file of its own (another --map); or all sources into a new map with "
-                  "--zone EPSG:{}, which reaches 500 km to either side of longitude {} (lengths at its rims are "
-                  "{:.1f} % too long). If the file's reference system is wrong, give the right one with --crs",
-                  request.files.location, centre.lon_deg, home.epsg(), settings.zone.epsg(), home.epsg(),
-                  6 * home.number() - 183, 100.0 * stretch(kFalseEastingM)));
+      fmt::format(
+          "{}: lies at longitude {:.2f}, in UTM zone EPSG:{}, too far from EPSG:{} of the map to have a place "
+          "on it. Ingest it into a map file of its own (another --map); or all sources into a new map with "
+          "--zone EPSG:{}, which reaches 500 km to either side of longitude {} (lengths at its rims are "
+          "{:.1f} % too long). If the file's reference system is wrong, give the right one with --crs; latitude and "
+          "longitude may also be swapped in it",
+          request.files.location, centre.lon_deg, home.epsg(), settings.zone.epsg(), home.epsg(),
+          6 * home.number() - 183, 100.0 * stretch(kFalseEastingM)));
 }
 
 /// Throws in place of `error`, which names the file, where a folder holds other files that fit.
@@ -130,6 +133,25 @@ std::vector<std::string> zone_notes(const CellSource& source, const MapSettings&
                     far_m / 1e3, zone.epsg(), 100.0 * stretch(far_m)));
   }
   return notes;
+}
+
+std::optional<std::string> note_on_distance(const CellSource& source, const std::filesystem::path& map) {
+  constexpr double kNearM = 10e3;
+  if (!std::filesystem::exists(map)) return std::nullopt;
+  const GridBox known = MapReader(map).info().extent;
+  const GridBox own = source.extent();
+  if (known.empty()) return std::nullopt;
+  const auto gap_m = [](double low, double high, double other_low, double other_high) {
+    return std::max({0.0, other_low - high, low - other_high});
+  };
+  const double away_m = std::hypot(gap_m(own.min.east_m, own.max.east_m, known.min.east_m, known.max.east_m),
+                                   gap_m(own.min.north_m, own.max.north_m, known.min.north_m, known.max.north_m));
+  if (away_m <= std::max({kNearM, known.width_m(), known.height_m()})) return std::nullopt;
+  return fmt::format(
+      "it lies {:.0f} km from all that the map holds, which is {:.1f} x {:.1f} km. If it belongs elsewhere, latitude "
+      "and longitude may be swapped in it, or its reference system is wrong (--crs gives the right one); roadfix "
+      "remove takes it out of the map",
+      away_m / 1e3, known.width_m() / 1e3, known.height_m() / 1e3);
 }
 
 }  // namespace roadfix::cli

@@ -1,8 +1,10 @@
-// Which UTM zone a map gets, and what is said of sources that lie in another one than the map.
+// Which UTM zone a map gets, and what is said of sources that lie in another one than the map, or far from it.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,5 +29,8 @@ PlannedSource plan_source(const SourceRequest& request, const MapSettings& setti
 
 /// What to tell of a source that reaches beyond the zone of the map.
 std::vector<std::string> zone_notes(const CellSource& source, const MapSettings& settings);
+
+/// What to tell of a source that lies farther from all that the map holds than that is wide; nothing of a new map.
+std::optional<std::string> note_on_distance(const CellSource& source, const std::filesystem::path& map);
 
 }  // namespace roadfix::cli

@@ -165,6 +165,25 @@ TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
+TEST_F(MapCommands, IngestTellsOfASourceFarFromAllThatTheMapHolds) {
+  const auto told_of_roads_at = [&](double degrees_east) {
+    const std::vector<double> box = nlohmann::json::parse(roadfix("info --json " + path.string()).out)["bbox"];
+    const double lon = box[0] + degrees_east;
+    const nlohmann::json road{
+        {"type", "Feature"},
+        {"properties", {{"highway", "primary"}}},
+        {"geometry", {{"type", "LineString"}, {"coordinates", {{lon, box[1]}, {lon + 0.002, box[1] + 0.002}}}}}};
+    std::ofstream(folder / "roads.geojson") << road;
+    const ProgramResult result =
+        roadfix("ingest " + (folder / "roads.geojson").string() + " --dry-run --map " + path.string());
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(told_of_roads_at(0.05), Not(HasSubstr("latitude and longitude may be swapped")));
+  EXPECT_THAT(told_of_roads_at(0.7),
+              ::testing::AllOf(HasSubstr("note: it lies 61 km"), HasSubstr("latitude and longitude may be swapped")));
+}
+
 TEST_F(MapCommands, IngestRefusesOptionsThatDoNothingWithItsSources) {
   const std::string pixels = folder / "m.tif";
   ASSERT_EQ(roadfix("export " + path.string() + " " + pixels).code, 0);

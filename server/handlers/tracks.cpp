@@ -178,8 +178,8 @@ http::Response get_events(const Service& service, const http::Request& request) 
     for (const StoredStep& step : news->steps) {
       text += fmt::format("id: {}\nevent: step\ndata: {}\n\n", step.sequence, step.answer);
     }
-    over = !news->ended.empty();
-    if (over) text += fmt::format("event: end\ndata: {{\"reason\":\"{}\"}}\n\n", news->ended);
+    over = news->ended.has_value();
+    if (over) text += fmt::format("event: end\ndata: {{\"reason\":\"{}\"}}\n\n", to_string(*news->ended));
     return text.empty() ? ":\n\n" : text;  // a comment keeps the connection alive
   };
   return response;

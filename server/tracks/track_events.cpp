@@ -27,8 +27,8 @@ std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
     return news;
   }
   const auto track = registry_.store().find(id_);
-  news.ended = track ? registry_.ended(*track) : "finished";
-  if (!news.ended.empty()) return news;
+  news.ended = track ? registry_.ended(*track) : TrackEnd::kFinished;
+  if (news.ended) return news;
   lock.lock();
   registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
   if (registry_.stopping_) return std::nullopt;

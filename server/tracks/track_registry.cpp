@@ -47,9 +47,9 @@ TrackSettings stored_settings(const StoredTrack& track, const api::Limits& limit
   }
 }
 
-NotFound track_ended(const std::string& id, const std::string& how) {
+NotFound track_ended(const std::string& id, TrackEnd how) {
   return {"track-ended", fmt::format("the track '{}' has {}: POST /v1/tracks begins a new one", id,
-                                     how == "expired" ? "expired without a step" : "been finished")};
+                                     how == TrackEnd::kExpired ? "expired without a step" : "been finished")};
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
                     flying.size(), own, limits_.tracks, limits_.tracks_per_client));
   }
   const std::int64_t now = now_us();
-  StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, ""};
+  StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, {}};
   store().add(track);
   live_[track.id] = std::move(fresh);
   heard_[track.id] = {Clock::now(), Clock::now()};
@@ -130,14 +130,14 @@ int TrackRegistry::streams() const {
 
 std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) const {
   std::vector<StoredTrack> tracks = store().flying();
-  std::erase_if(tracks, [&](const StoredTrack& track) { return track.client != client || !ended(track).empty(); });
+  std::erase_if(tracks, [&](const StoredTrack& track) { return track.client != client || ended(track); });
   return tracks;
 }
 
 StoredTrack TrackRegistry::find(const std::string& id) const {
   const auto track = store().find(id);
   if (!track) throw NotFound("track-not-found", fmt::format("there is no track '{}': POST /v1/tracks begins one", id));
-  if (const std::string how = ended(*track); !how.empty()) throw track_ended(id, how);
+  if (const auto how = ended(*track)) throw track_ended(id, *how);
   return *track;
 }
 
@@ -162,9 +162,9 @@ std::chrono::microseconds TrackRegistry::age_of_last_step(const std::string& id)
   return std::chrono::floor<std::chrono::microseconds>(Clock::now() - since);
 }
 
-std::string TrackRegistry::ended(const StoredTrack& track) const {
-  if (!track.ended.empty()) return track.ended;
-  return idle(track.id) > limits_.idle ? "expired" : "";
+std::optional<TrackEnd> TrackRegistry::ended(const StoredTrack& track) const {
+  if (!track.ended && idle(track.id) > limits_.idle) return TrackEnd::kExpired;
+  return track.ended;
 }
 
 std::optional<StoredStep> TrackRegistry::last_step(const std::string& id) const {
@@ -205,11 +205,12 @@ std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   const auto known = live_.find(id);
   if (known != live_.end()) return known->second;
   // It may have ended since it was found; while `mutex_` is held, none does.
-  if (const auto now = store().find(id); !now || !now->ended.empty()) throw track_ended(id, now ? now->ended : "");
+  const auto now = store().find(id);
+  if (const auto how = now ? now->ended : TrackEnd::kFinished) throw track_ended(id, *how);
   return live_.emplace(id, loaded(track, map)).first->second;
 }
 
-void TrackRegistry::end(const std::string& id, const std::string& how) {
+void TrackRegistry::end(const std::string& id, TrackEnd how) {
   const std::lock_guard lock(mutex_);
   store().end(id, how);
   live_.erase(id);
@@ -218,11 +219,11 @@ void TrackRegistry::end(const std::string& id, const std::string& how) {
   news_.notify_all();
 }
 
-void TrackRegistry::finish(const std::string& id) { end(find(id).id, "finished"); }
+void TrackRegistry::finish(const std::string& id) { end(find(id).id, TrackEnd::kFinished); }
 
 void TrackRegistry::expire() {
   for (const StoredTrack& track : store().flying()) {
-    if (const std::string how = ended(track); !how.empty()) end(track.id, how);
+    if (const auto how = ended(track)) end(track.id, *how);
   }
 }
 
@@ -263,7 +264,7 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
                           result.state.recent.to_bytes()};
   turn.doubt();
   if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {
-    throw track_ended(id, "finished");
+    throw track_ended(id, TrackEnd::kFinished);
   }
   turn.settle(std::move(result.state));
   const std::lock_guard registry_lock(mutex_);

@@ -92,8 +92,8 @@ class TrackRegistry {
   std::shared_ptr<LiveTrack> live(const std::string& id);
   std::shared_ptr<LiveTrack> loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const;
   TrackerState stored_state(const std::string& id) const;
-  std::string ended(const StoredTrack& track) const;
-  void end(const std::string& id, const std::string& how);
+  std::optional<TrackEnd> ended(const StoredTrack& track) const;
+  void end(const std::string& id, TrackEnd how);
   void expire();
 
   const std::filesystem::path path_;
@@ -121,7 +121,7 @@ class TrackRegistry::Listener {
  public:
   struct News {
     std::vector<StoredStep> steps;
-    std::string ended;  ///< as StoredTrack::ended
+    std::optional<TrackEnd> ended;  ///< as StoredTrack::ended
   };
 
   Listener(TrackRegistry& registry, std::string id, std::int64_t after);

@@ -83,13 +83,23 @@ bool is_of_another_program(sqlite::Connection& connection, std::int64_t version)
                                 "'request', 'map', 'counters', 'particles')") != 6;
 }
 
+const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
+
+std::optional<TrackEnd> end_of(std::string_view column) {
+  if (column.empty()) return std::nullopt;
+  return column == to_string(TrackEnd::kExpired) ? TrackEnd::kExpired : TrackEnd::kFinished;
+}
+
 StoredTrack track_of(const sqlite::Statement& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.integer(5), row.integer(6), row.text(7)};
+  return {row.text(0), row.text(1),    row.text(2),    row.text(3),
+          row.text(4), row.integer(5), row.integer(6), end_of(row.text(7))};
 }
 
 StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.integer(1), row.text(2)}; }
 
 }  // namespace
+
+const char* to_string(TrackEnd end) { return end == TrackEnd::kExpired ? "expired" : "finished"; }
 
 class TrackStore::Impl {
  public:
@@ -162,7 +172,7 @@ void TrackStore::add(const StoredTrack& t) {
   impl_->with([&] {
     sqlite::Statement(impl_->connection(),
                       fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
-        .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, t.ended)
+        .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
         .run();
     impl_->has_written();
   });
@@ -252,12 +262,12 @@ std::vector<StoredStep> TrackStore::steps_after(const std::string& id, std::int6
   });
 }
 
-void TrackStore::end(const std::string& id, const std::string& how) {
+void TrackStore::end(const std::string& id, TrackEnd how) {
   impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
     sqlite::Statement(impl_->connection(),
                       "UPDATE tracks SET ended = ?2, counters = '', particles = NULL, frames = NULL WHERE id = ?1")
-        .with(id, how)
+        .with(id, end_column(how))
         .run();
     sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();
     sqlite::Statement(impl_->connection(),

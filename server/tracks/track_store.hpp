@@ -15,6 +15,11 @@
 
 namespace roadfix::server {
 
+enum class TrackEnd { kFinished, kExpired };
+
+/// "finished" or "expired".
+const char* to_string(TrackEnd end);
+
 struct StoredTrack {
   std::string id;
   std::string client;
@@ -23,7 +28,7 @@ struct StoredTrack {
   std::string map_version;
   std::int64_t created_us = 0;
   std::int64_t touched_us = 0;
-  std::string ended;  ///< empty while it flies, else "finished" or "expired"
+  std::optional<TrackEnd> ended;  ///< nullopt while it flies
 };
 
 struct StoredState {
@@ -66,7 +71,7 @@ class TrackStore {
 
   /// Takes the particles and steps away and keeps that there was such a track, for as long as it is among the last
   /// 100 that ended.
-  void end(const std::string& id, const std::string& how);
+  void end(const std::string& id, TrackEnd how);
 
  private:
   class Impl;

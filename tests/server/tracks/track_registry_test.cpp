@@ -249,7 +249,7 @@ TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "server-busy");
   EXPECT_EQ(stream->next()->steps.at(0).answer, answer);
   tracks->finish(id);
-  EXPECT_EQ(stream->next()->ended, "finished");
+  EXPECT_EQ(stream->next()->ended, TrackEnd::kFinished);
   tracks->stop();
 }
 

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 constexpr std::int64_t kPlenty = std::int64_t{1} << 30;
 
-StoredTrack track(const std::string& id) { return {id, "::1", "{}", "town", "v1", 1, 1, ""}; }
+StoredTrack track(const std::string& id) { return {id, "::1", "{}", "town", "v1", 1, 1, {}}; }
 
 StoredState state(std::size_t bytes) { return {"{}", std::vector<std::byte>(bytes, std::byte{7}), {}}; }
 
@@ -74,11 +74,11 @@ TEST(TrackStore, TakesNoStepOfATrackThatEnded) {
   TrackStore store(folder / "tracks.sqlite", kPlenty);
   store.add(track("a"));
   ASSERT_TRUE(store.add_step("a", 2, state(100), {0, 0, "answer"}));
-  store.end("a", "finished");
+  store.end("a", TrackEnd::kFinished);
   EXPECT_FALSE(store.add_step("a", 3, state(100), {1, 0, "answer"}));
   EXPECT_FALSE(store.last_step("a")) << "its steps went with it";
   EXPECT_TRUE(store.flying().empty());
-  EXPECT_EQ(store.find("a")->ended, "finished");
+  EXPECT_EQ(store.find("a")->ended, TrackEnd::kFinished);
 }
 
 TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
@@ -87,13 +87,14 @@ TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
   for (int i = 0; i <= 100; ++i) {
     StoredTrack ended = track("t" + std::to_string(i));
     ended.touched_us = i;
-    ended.ended = "expired";
+    ended.ended = TrackEnd::kExpired;
     store.add(ended);
   }
   store.add(track("flying"));
-  store.end("t100", "finished");
+  store.end("t100", TrackEnd::kFinished);
   EXPECT_FALSE(store.find("t0"));
-  EXPECT_TRUE(store.find("t1"));
+  ASSERT_TRUE(store.find("t1"));
+  EXPECT_EQ(store.find("t1")->ended, TrackEnd::kExpired);
   EXPECT_TRUE(store.find("flying"));
 }
 
@@ -110,7 +111,7 @@ TEST(TrackStore, IsAsBeforeWhenItIsFullAndGoesOnWhenThereIsRoom) {
   EXPECT_EQ(store.last_step("a")->answer, "first");
   EXPECT_EQ(store.state("a").particles.size(), 40'000U);
   EXPECT_EQ(store.find("a")->touched_us, 5);
-  store.end("b", "finished");
+  store.end("b", TrackEnd::kFinished);
   EXPECT_TRUE(store.add_step("a", 6, state(80'000), {1, 0, "second"}));
   EXPECT_EQ(store.last_step("a")->answer, "second");
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>

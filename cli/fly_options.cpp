@@ -1,7 +1,5 @@
 #include "cli/fly_options.hpp"
 
-#include <algorithm>
-
 #include "cli/fly/localizer.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <memory>

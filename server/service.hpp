@@ -1,7 +1,6 @@
 // What the handlers share, and the table of routes made of them.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
 #include "core/detect/road_detector.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <string>
-#include <utility>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"

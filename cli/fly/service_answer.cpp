@@ -1,7 +1,6 @@
 #include "cli/fly/service_answer.hpp"
 
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "core/units/error.hpp"
 

@@ -7,7 +7,6 @@
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "cli/fly/service_answer.hpp"
 #include "core/detect/image_codec.hpp"

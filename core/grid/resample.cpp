@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 
 #include "core/grid/feature_rotator.hpp"
 #include "core/grid/sampling.hpp"

@@ -9,9 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stop_token>
-#include <string>
 #include <vector>
 
 #include "core/filter/clusters.hpp"

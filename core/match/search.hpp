@@ -10,7 +10,6 @@
 // luck.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>

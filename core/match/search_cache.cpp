@@ -1,8 +1,6 @@
 #include "core/match/search_cache.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace roadfix {
 

@@ -1,7 +1,6 @@
 // Complex numbers on squares: planes in rows, and their spectra in an order of the transform's own.
 #pragma once
 
-#include <cassert>
 #include <cstddef>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "server/api/tile_picture.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,5 @@
 #include "server/api/track_json.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "core/units/error.hpp"

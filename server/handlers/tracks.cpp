@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <string>
 
 #include "core/locate/tracker.hpp"
 #include "core/units/error.hpp"

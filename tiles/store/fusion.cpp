@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "core/grid/log_odds.hpp"
 

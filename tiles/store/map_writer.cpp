@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "core/units/error.hpp"
 #include "tiles/store/create_map.hpp"

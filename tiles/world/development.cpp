@@ -1,8 +1,6 @@
 #include "tiles/world/development.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tiles/world/palette.hpp"
 #include "tiles/world/polygon.hpp"

@@ -1,7 +1,5 @@
 #include "tiles/world/paint_streets.hpp"
 
-#include <cmath>
-
 #include "tiles/world/palette.hpp"
 #include "tiles/world/random.hpp"
 #include "tiles/world/site.hpp"

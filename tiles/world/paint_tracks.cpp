@@ -1,7 +1,6 @@
 #include "tiles/world/paint_tracks.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "tiles/world/palette.hpp"
 #include "tiles/world/random.hpp"

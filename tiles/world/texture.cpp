@@ -1,6 +1,5 @@
 #include "tiles/world/texture.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 #include <system_error>
 #include <vector>
 

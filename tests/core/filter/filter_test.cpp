@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/filter/clusters.hpp"
 #include "core/filter/particle_bytes.hpp"

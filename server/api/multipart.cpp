@@ -56,7 +56,6 @@ Part headers_of(std::string_view body, std::size_t& at) {
     if (colon == std::string_view::npos) refuse("a part's header has no colon", line_at);
     const std::string name = lower_case(trimmed(line.substr(0, colon)));
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (name == "content-type") part.media_type = lower_case(trimmed(value.substr(0, value.find(';'))));
     if (name != "content-disposition") continue;
     const auto found = attribute(value, "name");
     if (!found) refuse("a part has no name", line_at);

@@ -9,7 +9,6 @@ namespace roadfix::api {
 
 struct Part {
   std::string name;
-  std::string media_type;    ///< lower case, without parameters; empty where the part does not say
   std::string_view content;  ///< inside the body
 };
 

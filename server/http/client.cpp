@@ -49,7 +49,7 @@ Address address_of(const std::string& base) {
 
 std::optional<Answer> answer_of(const httplib::Result& result) {
   if (!result) return std::nullopt;
-  Answer answer{result->status, result->get_header_value("Content-Type"), result->body, std::nullopt};
+  Answer answer{result->status, result->body, std::nullopt};
   if (const auto seconds = whole_number<int>(result->get_header_value("Retry-After"))) {
     answer.retry_after = std::chrono::seconds(*seconds);
   }

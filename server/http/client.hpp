@@ -10,7 +10,6 @@ namespace roadfix::http {
 
 struct Answer {
   int status = 0;
-  std::string content_type;
   std::string body;
   std::optional<std::chrono::seconds> retry_after;
 };

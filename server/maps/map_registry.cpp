@@ -81,7 +81,6 @@ void MapRegistry::watch(std::chrono::milliseconds interval) {
         if (problem != before) spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), problem);
       }
       lock.lock();
-      if (stop.stop_requested()) return;
     }
   });
 }
@@ -112,8 +111,7 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
   const std::string name = path.stem();
   try {
     const auto reader = std::make_shared<const MapReader>(path, cache_bytes_);
-    auto map =
-        std::make_shared<const ServedMap>(ServedMap{name, path, reader, view_of(reader, name, search_cache_bytes_)});
+    auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, search_cache_bytes_)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     return {stamp, std::move(map), {}};
   } catch (const Error& error) {

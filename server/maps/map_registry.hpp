@@ -21,7 +21,6 @@ namespace roadfix::server {
 /// A map as it was when it was opened. Requests keep it alive while a newer one takes its place.
 struct ServedMap {
   std::string name;
-  std::filesystem::path path;
   std::shared_ptr<const MapReader> reader;
   MapView view;
 

@@ -29,7 +29,7 @@ class Field {
                        fmt::format("bench manifest: {} {}", path_.empty() ? "the document" : path_, what));
   }
 
-  void allow_only(std::initializer_list<std::string_view> keys) const {
+  void allow_only(const std::vector<std::string_view>& keys) const {
     require(value_.is_object(), "must be an object");
     for (const auto& [key, unused] : value_.items()) {
       if (std::ranges::find(keys, key) == keys.end())
@@ -126,27 +126,28 @@ Exclusion parse_exclusion(const Field& field) {
   return {share("top"), share("bottom"), share("left"), share("right")};
 }
 
+void parse_property(const Field& field, const QualityProperty& property, QualityRange& range) {
+  double& low = range.low.*property.value;
+  double& high = range.high.*property.value;
+  if (!field.is_array()) {
+    low = high = field.number(0.0, property.max);
+    return;
+  }
+  const auto bounds = field.elements();
+  if (bounds.size() != 2) field.refuse("must be a number or [lowest, highest]");
+  low = bounds[0].number(0.0, property.max);
+  high = bounds[1].number(low, property.max);
+}
+
 QualityRange parse_noise(const Field& field) {
-  field.allow_only({"erase", "invent", "block", "shift_m", "scale", "tilt_deg"});
+  std::vector<std::string_view> keys;
+  for (const QualityProperty& property : kQualityProperties) keys.push_back(property.key);
+  field.allow_only(keys);
   QualityRange range;
-  const auto parse = [&](const std::string& key, double FeatureQuality::*property, double highest) {
-    if (!field.has(key)) return;
-    const Field value = field.at(key);
-    if (!value.is_array()) {
-      range.low.*property = range.high.*property = value.number(0.0, highest);
-      return;
-    }
-    const auto bounds = value.elements();
-    if (bounds.size() != 2) value.refuse("must be a number or [lowest, highest]");
-    range.low.*property = bounds[0].number(0.0, highest);
-    range.high.*property = bounds[1].number(range.low.*property, highest);
-  };
-  parse("erase", &FeatureQuality::erase, 1.0);
-  parse("invent", &FeatureQuality::invent, 10.0);
-  parse("block", &FeatureQuality::block, 0.9);
-  parse("shift_m", &FeatureQuality::shift_m, 1000.0);
-  parse("scale", &FeatureQuality::scale, 0.2);
-  parse("tilt_deg", &FeatureQuality::tilt_deg, 20.0);
+  for (const QualityProperty& property : kQualityProperties) {
+    const std::string key(property.key);
+    if (field.has(key)) parse_property(field.at(key), property, range);
+  }
   return range;
 }
 

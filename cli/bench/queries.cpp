@@ -72,10 +72,8 @@ GeoPose geo(const GridPose& pose, const UtmZone& zone) {
 /// Between both, property by property.
 FeatureQuality draw(const QualityRange& range, Random& random) {
   FeatureQuality quality;
-  for (double FeatureQuality::*property :
-       {&FeatureQuality::erase, &FeatureQuality::invent, &FeatureQuality::block, &FeatureQuality::shift_m,
-        &FeatureQuality::scale, &FeatureQuality::tilt_deg}) {
-    quality.*property = uniform(random, range.low.*property, range.high.*property);
+  for (const QualityProperty& property : kQualityProperties) {
+    quality.*property.value = uniform(random, range.low.*property.value, range.high.*property.value);
   }
   return quality;
 }
@@ -216,19 +214,14 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Ro
 /// ", 60 % erased, 0 to 4 m shifted"; empty where nothing is wrong.
 std::string errors_of(const QualityRange& noise) {
   std::string words;
-  const auto add = [&](double FeatureQuality::*property, double unit, const char* what) {
-    const double low = unit * noise.low.*property;
-    const double high = unit * noise.high.*property;
-    if (high <= 0.0) return;
-    words += low == high ? fmt::format(", {:g} {}", low, what) : fmt::format(", {:g} to {:g} {}", low, high, what);
-  };
-  constexpr double kPercent = 100.0;
-  add(&FeatureQuality::erase, kPercent, "% erased");
-  add(&FeatureQuality::invent, kPercent, "% invented");
-  add(&FeatureQuality::block, kPercent, "% blocked");
-  add(&FeatureQuality::shift_m, 1.0, "m shifted");
-  add(&FeatureQuality::scale, kPercent, "% scaled");
-  add(&FeatureQuality::tilt_deg, 1.0, "deg tilted");
+  for (const QualityProperty& property : kQualityProperties) {
+    const double unit = property.words.starts_with('%') ? 100.0 : 1.0;
+    const double low = unit * noise.low.*property.value;
+    const double high = unit * noise.high.*property.value;
+    if (high <= 0.0) continue;
+    words += low == high ? fmt::format(", {:g}", low) : fmt::format(", {:g} to {:g}", low, high);
+    words += fmt::format(" {}", property.words);
+  }
   return words;
 }
 

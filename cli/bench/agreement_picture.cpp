@@ -56,8 +56,7 @@ CellArray map_under(const MapView& map, const FeatureMap& features, const GridPo
   const GridPose centre = centre_of(features, pose);
   const double reach_m =
       0.5 * std::hypot(features.cells.cols(), features.cells.rows()) * features.cell_m + 2.0 * map.cell_m;
-  const GridPoint at = centre.position;
-  const GridBox box{{at.east_m - reach_m, at.north_m - reach_m}, {at.east_m + reach_m, at.north_m + reach_m}};
+  const GridBox box = grown({centre.position, centre.position}, reach_m);
   const RoadGrid grid = map.read(GridGeometry::covering(box, map.cell_m));
   return cut_out(grid, centre, features.cells.cols(), features.cells.rows(), features.cell_m).cells;
 }

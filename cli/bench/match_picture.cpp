@@ -17,11 +17,7 @@ const cv::Scalar kWrong(60, 60, 230);
 
 GridBox common_box(std::span<const Orthoimage> imagery) {
   GridBox box = imagery.front().box();
-  for (const Orthoimage& ortho : imagery) {
-    const GridBox other = ortho.box();
-    box.min = {std::min(box.min.east_m, other.min.east_m), std::min(box.min.north_m, other.min.north_m)};
-    box.max = {std::max(box.max.east_m, other.max.east_m), std::max(box.max.north_m, other.max.north_m)};
-  }
+  for (const Orthoimage& ortho : imagery) box = united(box, ortho.box());
   return box;
 }
 

@@ -62,10 +62,7 @@ GridPoint PixelToGrid::at(int x, int y) const {
 
 GridBox PixelToGrid::box() const {
   GridBox box{points_.front(), points_.front()};
-  for (const GridPoint p : points_) {
-    box.min = {std::min(box.min.east_m, p.east_m), std::min(box.min.north_m, p.north_m)};
-    box.max = {std::max(box.max.east_m, p.east_m), std::max(box.max.north_m, p.north_m)};
-  }
+  for (const GridPoint p : points_) box = united(box, {p, p});
   return box;
 }
 

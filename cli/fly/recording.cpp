@@ -106,7 +106,7 @@ Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t 
     if (before != nullptr && plan.tells_odometry) {
       const double seconds = frame.time_s - before->time_s;
       const Odometry moved = offset_from(before->truth, odometry.drifted(frame.truth, -seconds));
-      input.odometry = odometry.measure(moved, std::hypot(moved.forward_m, moved.right_m), seconds, motion);
+      input.odometry = odometry.measure(moved, distance_m(moved), seconds, motion);
     }
     if (frame_comes(plan, step, camera)) {
       input.features = frame.observation.features;

@@ -30,7 +30,7 @@ std::uint64_t digest_of(const FeatureMap& features) {
 }  // namespace
 
 void LastView::move(const std::optional<Odometry>& odometry) {
-  moved_m += odometry ? std::hypot(odometry->forward_m, odometry->right_m) : kMovedM;
+  moved_m += odometry ? distance_m(*odometry) : kMovedM;
   turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
 }
 

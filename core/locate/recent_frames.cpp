@@ -25,8 +25,6 @@ std::array<double, 2> size_m(const FeatureMap& features) {
 double longer_side_m(const FeatureMap& features) { return std::ranges::max(size_m(features)); }
 double shorter_side_m(const FeatureMap& features) { return std::ranges::min(size_m(features)); }
 
-double distance_m(const BodyOffset& offset) { return std::hypot(offset.forward_m, offset.right_m); }
-
 double slip_m(const Frame& frame) {
   const double arm = 0.5 * longer_side_m(frame.placed.features);
   return std::sqrt(frame.position_m2 + arm * arm * frame.turn_rad2);

@@ -5,7 +5,7 @@
 namespace roadfix {
 
 OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise) {
-  const double metres = noise.odometry_m + noise.odometry_share * std::hypot(odometry.forward_m, odometry.right_m);
+  const double metres = noise.odometry_m + noise.odometry_share * distance_m(odometry);
   const double turn = noise.odometry_turn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
   return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
 }
@@ -14,7 +14,7 @@ std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry
                                                         double lost) {
   constexpr double kLostShare = 0.5;
   constexpr double kLostTurn = 0.3;
-  const double metres = kLostShare * lost * std::hypot(odometry.forward_m, odometry.right_m);
+  const double metres = kLostShare * lost * distance_m(odometry);
   for (auto& row : covariance) {
     for (double& value : row) value *= 1.0 + lost;
   }

@@ -26,6 +26,8 @@ GridPoint nearest(const GridBox& box, GridPoint point) {
 
 double distance_m(GridPoint a, GridPoint b) { return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m); }
 
+double distance_m(const BodyOffset& offset) { return std::hypot(offset.forward_m, offset.right_m); }
+
 bool contains(const GridCircle& circle, GridPoint point) { return distance_m(point, circle.centre) <= circle.radius_m; }
 
 GridPose moved(const GridPose& reference, const BodyOffset& by) {

@@ -67,6 +67,8 @@ GridBox grown(const GridBox& box, double by_m);
 GridPoint nearest(const GridBox& box, GridPoint point);
 
 double distance_m(GridPoint a, GridPoint b);
+/// How far away the other pose is.
+double distance_m(const BodyOffset& offset);
 
 /// Whether the closed disc holds the point.
 bool contains(const GridCircle& circle, GridPoint point);

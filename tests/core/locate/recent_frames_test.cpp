@@ -80,8 +80,7 @@ TEST(RecentFrames, AreBoundedInNumberGroundAndReach) {
       EXPECT_LE(recent.frames().size(), RecentFrames::kMaxFrames);
       EXPECT_LE(cells_of(recent), RecentFrames::kMaxCells);
       for (const auto& frame : recent.frames()) {
-        EXPECT_LE(std::hypot(frame.placed.offset.forward_m, frame.placed.offset.right_m),
-                  RecentFrames::kMaxSides * 2.0 * side);
+        EXPECT_LE(distance_m(frame.placed.offset), RecentFrames::kMaxSides * 2.0 * side);
       }
     }
     EXPECT_GE(recent.frames().size(), 2U);

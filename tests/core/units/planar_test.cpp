@@ -55,6 +55,10 @@ TEST(BodyOffset, GoesAheadAndToTheRightOfWhereTheBodyPoints) {
   EXPECT_NEAR(there.heading.degrees(), -10.0, 1e-9);
 }
 
+TEST(BodyOffset, IsAsLongAsTheWayBetweenThePoses) {
+  EXPECT_EQ(distance_m(BodyOffset{-3.0, 4.0, Angle::degrees(90.0)}), 5.0);
+}
+
 TEST(BodyOffset, IsFoundAgainBetweenTheTwoPoses) {
   const GridPose from{{600'000.0, 6'400'000.0}, Angle::degrees(-160.0)};
   const BodyOffset offset{-120.0, 4.0, Angle::degrees(-35.0)};

@@ -19,10 +19,7 @@ namespace {
 RoadGrid whole(const MapView& map) { return map.read(GridGeometry::covering(map.extent, map.cell_m)); }
 
 Observed seen_by(const RoadGrid& grid) {
-  return [&grid](GridPoint point) {
-    const auto at = grid.geometry.position_of(point);
-    return is_observed(grid.cells.get(static_cast<int>(std::floor(at.col)), static_cast<int>(std::floor(at.row))));
-  };
+  return [&grid](GridPoint point) { return is_observed(grid.cell_at(point)); };
 }
 
 Observed seen_by(const Orthoimage& ortho) {

@@ -107,10 +107,7 @@ class SimulatedSensor : public Sensor {
     return {std::move(features), {}};
   }
 
-  bool shows(GridPoint point) const override {
-    const auto at = ground_.geometry.position_of(point);
-    return is_observed(ground_.cells.get(static_cast<int>(std::floor(at.col)), static_cast<int>(std::floor(at.row))));
-  }
+  bool shows(GridPoint point) const override { return is_observed(ground_.cell_at(point)); }
 
  private:
   RoadGrid ground_;

@@ -19,11 +19,8 @@ double level_cell_near(const MapView& map, double pixel_m) {
 
 /// Bilinear over the observed neighbours; nullopt where the cell that holds the point is unobserved.
 std::optional<double> sample(const RoadGrid& grid, GridPoint point) {
+  if (!is_observed(grid.cell_at(point))) return std::nullopt;
   const auto position = grid.geometry.position_of(point);
-  if (!is_observed(
-          grid.cells.get(static_cast<int>(std::floor(position.col)), static_cast<int>(std::floor(position.row))))) {
-    return std::nullopt;
-  }
   const double x = position.col - 0.5;
   const double y = position.row - 0.5;
   const int col = static_cast<int>(std::floor(x));

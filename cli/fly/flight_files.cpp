@@ -13,23 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-struct Covariance {
-  double ee = 0.0;
-  double en = 0.0;
-  double nn = 0.0;
-};
-
 Angle axis_of(const Record& record, const UtmZone& zone) {
   return zone.grid_from_true(record.estimate.clusters.front().ellipse_heading, record.best.position);
 }
 
-Covariance covariance_of(const TrackCluster& cluster) {
+PositionCovariance covariance_of(const TrackCluster& cluster) {
   const auto& sigma = cluster.sigma_m;
-  const double s = sin(cluster.ellipse_heading);
-  const double c = cos(cluster.ellipse_heading);
-  const double along = sigma[0] * sigma[0];
-  const double across = sigma[1] * sigma[1];
-  return {along * s * s + across * c * c, (along - across) * s * c, along * c * c + across * s * s};
+  return position_covariance({sigma[0] * sigma[0], sigma[1] * sigma[1]}, cluster.ellipse_heading);
 }
 
 json place(GridPoint point, const UtmZone& zone) {
@@ -76,7 +66,7 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
   for (const Record& r : run.records) {
     const TrackCluster& best = r.estimate.clusters.front();
     const LatLon truth = zone.unproject(r.truth.position);
-    const Covariance covariance = covariance_of(best);
+    const PositionCovariance covariance = covariance_of(best);
     lines += fmt::format(
         "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{:.3f},{:.3f},{:.2f},{:.3f},"
         "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",
@@ -84,9 +74,9 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
         zone.true_from_grid(r.truth.heading, r.truth.position).compass_degrees(), best.pose.position.lat_deg,
         best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
         r.estimate.converged ? 1 : 0, best.sigma_m[0], best.sigma_m[1], best.ellipse_heading.degrees(),
-        best.heading_sigma.degrees(), covariance.ee, covariance.en, covariance.nn, r.estimate.cluster_count,
-        r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt, r.estimate.resets, best.scale,
-        best.scale_sigma, r.step_ms);
+        best.heading_sigma.degrees(), covariance.east_east, covariance.east_north, covariance.north_north,
+        r.estimate.cluster_count, r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt,
+        r.estimate.resets, best.scale, best.scale_sigma, r.step_ms);
   }
   return lines;
 }

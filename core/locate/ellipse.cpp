@@ -5,6 +5,13 @@
 
 namespace roadfix {
 
+PositionCovariance position_covariance(const std::array<double, 2>& variances, Angle axis) {
+  const auto [along, across] = variances;
+  const double s = sin(axis);
+  const double c = cos(axis);
+  return {along * s * s + across * c * c, (along - across) * s * c, along * c * c + across * s * s};
+}
+
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
   const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
   const double east2 = covariance[0][0] + registration2;

@@ -17,6 +17,16 @@ struct Ellipse {
   Angle heading;                  ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
 };
 
+/// Of a position on a plane, m^2.
+struct PositionCovariance {
+  double east_east = 0.0;
+  double east_north = 0.0;
+  double north_north = 0.0;
+};
+
+/// `variances` (m^2) lie along the axis, which is clockwise from the plane's north, and across it.
+PositionCovariance position_covariance(const std::array<double, 2>& variances, Angle axis);
+
 /// `at` is where the match placed the vehicle, `covariance` (m^2, rad^2) how uncertain the match alone leaves that. The
 /// registration error of the map's sources is added to both axes.
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance);

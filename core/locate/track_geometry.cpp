@@ -46,20 +46,16 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
   std::vector<Proposal> proposals;
   for (const FixMode& mode : fix.modes) {
     const GridPose at = on_grid(mode.pose, map.zone);
-    const double axis = map.zone.grid_from_true(mode.ellipse_heading, at.position).radians();
-    const double along2 = kWiden * mode.sigma_m[0] * mode.sigma_m[0] + 1.0;
-    const double across2 = kWiden * mode.sigma_m[1] * mode.sigma_m[1] + 1.0;
-    const double s = std::sin(axis);
-    const double c = std::cos(axis);
-    const double shared = (along2 - across2) * s * c;
+    const auto widened = [&](double sigma_m) { return kWiden * sigma_m * sigma_m + 1.0; };
+    const PositionCovariance place = position_covariance({widened(mode.sigma_m[0]), widened(mode.sigma_m[1])},
+                                                         map.zone.grid_from_true(mode.ellipse_heading, at.position));
     const double turn2 = kWiden * std::pow(mode.heading_sigma.radians(), 2.0) + 1e-4;
-    proposals.push_back({at,
-                         {{{along2 * s * s + across2 * c * c, shared, 0.0},
-                           {shared, along2 * c * c + across2 * s * s, 0.0},
-                           {0.0, 0.0, turn2}}},
-                         std::max(mode.weight, kMinWeight),
-                         std::log(mode.scale),
-                         std::sqrt(kWiden) * cell_at_the_edge});
+    proposals.push_back(
+        {at,
+         {{{place.east_east, place.east_north, 0.0}, {place.east_north, place.north_north, 0.0}, {0.0, 0.0, turn2}}},
+         std::max(mode.weight, kMinWeight),
+         std::log(mode.scale),
+         std::sqrt(kWiden) * cell_at_the_edge});
   }
   return proposals;
 }

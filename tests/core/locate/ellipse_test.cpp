@@ -19,11 +19,8 @@ MapView map_registered_to(double sigma_m) {
 
 /// Of a position that is `along_m` unsure in the direction `grid` and `across_m` across it.
 PoseCovariance covariance_of(Angle grid, double along_m, double across_m) {
-  const double s = sin(grid);
-  const double c = cos(grid);
-  const double a2 = along_m * along_m;
-  const double b2 = across_m * across_m;
-  return {{{a2 * s * s + b2 * c * c, (a2 - b2) * s * c, 0.0}, {(a2 - b2) * s * c, a2 * c * c + b2 * s * s, 0.0}, {}}};
+  const PositionCovariance of = position_covariance({along_m * along_m, across_m * across_m}, grid);
+  return {{{of.east_east, of.east_north, 0.0}, {of.east_north, of.north_north, 0.0}, {}}};
 }
 
 TEST(Ellipse, PointsAlongTheUnsureDirectionFromTrueNorthWithinHalfATurn) {

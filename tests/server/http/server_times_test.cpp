@@ -8,7 +8,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class HttpServerTimes : public testing::HttpServerTest {};
+class HttpServerTimes : public testing::HttpServerTest {
+ protected:
+  /// Has a thread, has sent a part of its body, and sends no more.
+  std::unique_ptr<testing::RawConnection> stalled() const {
+    auto slow = std::make_unique<testing::RawConnection>(port_);
+    slow->send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
+    wait_for_figure("roadfix_connections 1\n");
+    return slow;
+  }
+};
 
 TEST_F(HttpServerTimes, EndsAHeadThatComesTooSlowly) {
   settings_.head_time = 100ms;
@@ -46,28 +55,24 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   settings_.body_time = 10min;
   settings_.crowded_time = 10ms;
   const auto server = started();
-  testing::RawConnection slow(port_);
-  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
-  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  const auto slow = stalled();
   httplib::Client other = client();
   other.set_read_timeout(60s);
   const auto echo = other.Get("/echo?text=alive");
   ASSERT_TRUE(echo) << "the only thread was kept by a client that sends nothing";
   EXPECT_EQ(echo->body, "alive");
-  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+  EXPECT_THAT(slow->read_all(), ::testing::HasSubstr("request-timeout"));
 }
 
 TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhenItIsStopped) {
   settings_.body_time = 10min;
   settings_.crowded_time = 10ms;
   const auto server = started();
-  testing::RawConnection slow(port_);
-  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nabc");
-  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  const auto slow = stalled();
   const auto start = std::chrono::steady_clock::now();
   server->stop();
   EXPECT_LT(std::chrono::steady_clock::now() - start, 60s);
-  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+  EXPECT_THAT(slow->read_all(), ::testing::HasSubstr("request-timeout"));
 }
 
 TEST_F(HttpServerTimes, SendsABodyAwayForWhichOthersLeaveNoMemoryAndTakesItLater) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <ogrsf_frmts.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/sources/road_features.hpp"
+#include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/vector_roads.hpp"
 
 namespace roadfix {

@@ -141,11 +141,9 @@ std::optional<std::string> note_on_distance(const CellSource& source, const std:
   const GridBox known = MapReader(map).info().extent;
   const GridBox own = source.extent();
   if (known.empty()) return std::nullopt;
-  const auto gap_m = [](double low, double high, double other_low, double other_high) {
-    return std::max({0.0, other_low - high, low - other_high});
-  };
-  const double away_m = std::hypot(gap_m(own.min.east_m, own.max.east_m, known.min.east_m, known.max.east_m),
-                                   gap_m(own.min.north_m, own.max.north_m, known.min.north_m, known.max.north_m));
+  const GridBox both = united(own, known);
+  const double away_m = std::hypot(std::max(0.0, both.width_m() - own.width_m() - known.width_m()),
+                                   std::max(0.0, both.height_m() - own.height_m() - known.height_m()));
   if (away_m <= std::max({kNearM, known.width_m(), known.height_m()})) return std::nullopt;
   return fmt::format(
       "it lies {:.0f} km from all that the map holds, which is {:.1f} x {:.1f} km. If it belongs elsewhere, latitude "

@@ -131,7 +131,9 @@ void add_detect_command(CLI::App& app) {
       ->required();
   command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
   add_frame_options(*command, options->frame);
-  command->add_option("--cell", options->cell_m, "Cell size in metres")->capture_default_str()->check(positive());
+  command->add_option("--cell", options->cell_m, "Cell size in metres")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 100.0));
   command->add_option("--seed", options->seed, "Seed of detectors that use random numbers")
       ->capture_default_str()
       ->check(seed());

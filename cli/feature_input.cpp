@@ -55,9 +55,9 @@ FeatureMap features_in(const std::string& path, const FeatureInputOptions& optio
   return detect_features(*detector, view, map_cell_m, options.seed);
 }
 
-FeatureMap all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
+FeatureInput all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
   FeatureMap features = features_in(options.path, options, detector, map_cell_m);
-  if (options.also.empty()) return features;
+  if (options.also.empty()) return {std::move(features), {}, {}};
   if (options.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
                         fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
@@ -67,7 +67,8 @@ FeatureMap all_features(const FeatureInputOptions& options, const RoadDetector* 
     const Another another = parse_also(text);
     parts.push_back({features_in(another.path, options, detector, map_cell_m), another.offset});
   }
-  return combined(parts, kMaxCells);
+  FeatureMap all = combined(parts, kMaxCells);
+  return {std::move(all), std::move(parts.front().features), {}};
 }
 
 }  // namespace
@@ -97,11 +98,12 @@ FeatureInput read_feature_input(const FeatureInputOptions& options, double map_c
         "input-kind-missing",
         "say what the input is: --cell for a feature map; --gsd, --exif or --agl with --fov or --focal-px for a frame");
   }
-  if (options.cell_m > 0.0) return {all_features(options, nullptr, map_cell_m), {}};
+  if (options.cell_m > 0.0) return all_features(options, nullptr, map_cell_m);
   const auto detector = make_detector(options.detector);
   const auto start = std::chrono::steady_clock::now();
-  FeatureMap features = all_features(options, detector.get(), map_cell_m);
-  return {std::move(features), std::chrono::steady_clock::now() - start};
+  FeatureInput input = all_features(options, detector.get(), map_cell_m);
+  input.detect_time = std::chrono::steady_clock::now() - start;
+  return input;
 }
 
 }  // namespace roadfix::cli

@@ -25,6 +25,7 @@ struct FeatureInputOptions {
 
 struct FeatureInput {
   FeatureMap features;
+  std::optional<FeatureMap> own_frame;  ///< where others are laid around it: the first by itself
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of the frames
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/bbox_option.hpp"
 #include "cli/calibration_option.hpp"
@@ -31,7 +32,7 @@ struct FixArguments {
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
   std::optional<double> nadir_sigma_m;
-  double time_limit_s = 0.0;
+  std::optional<double> time_limit_s;
   double proof_s = 0.0;
   std::string calibration;
   FixOptions fix;
@@ -90,8 +91,9 @@ void run_fix(const FixArguments& options) {
   if (options.nadir_sigma_m) input.features.nadir_sigma_m = *options.nadir_sigma_m;
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
+  fix_options.own_frame = std::move(input.own_frame);
   fix_options.stop = stop_on_signals();
-  fix_options.time_limit = milliseconds(options.time_limit_s);
+  if (options.time_limit_s) fix_options.time_limit = milliseconds(*options.time_limit_s);
   fix_options.proof_time = milliseconds(options.proof_s);
   Progress progress("searching", "headings");
   const auto began = std::chrono::steady_clock::now();
@@ -110,7 +112,9 @@ void run_fix(const FixArguments& options) {
 
 void add_fix_command(CLI::App& app) {
   auto* command = app.add_subcommand("fix", "Finds where a feature map or a frame was taken");
-  command->footer("Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
+  command->footer(
+      "Exit code: 0 for an answer, whichever (scripts read \"status\" of --json), 1 for none, 2 for wrong usage.\n"
+      "Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
   const auto o = std::make_shared<FixArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
   add_feature_input_options(*command, o->input);

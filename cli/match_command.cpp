@@ -3,9 +3,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +16,7 @@
 #include "cli/threads_option.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "core/units/text.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/view/map_file_view.hpp"
@@ -58,8 +59,9 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
 
 /// One pose a line; empty lines and a first line of column names are skipped.
 void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
-  std::ifstream in(path);
-  if (!in) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
+  const auto text = read_file(path);
+  if (!text) throw NotFound("file-not-found", fmt::format("{} cannot be read", path));
+  std::istringstream in(*text);
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     if (++number == 1) line = without_byte_order_mark(line);

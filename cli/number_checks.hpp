@@ -18,7 +18,7 @@ CLI::Validator not_negative(double max = kMaxNumber);
 /// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.
 CLI::Validator seed();
 
-/// The shortest time is one of them: 0 stands for no limit.
+/// Rounded up: a time above 0 stays one.
 std::chrono::milliseconds milliseconds(double seconds);
 
 }  // namespace roadfix::cli

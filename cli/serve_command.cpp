@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct ServeOptions {
   std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
   double request_time_s = 30.0;
   double body_time_s = 60.0;
-  double turn_time_s = 0.0;  ///< 0: as long as the request time
+  std::optional<double> turn_time_s;  ///< else as long as the request time
   double idle_time_s = 15.0;
   double watch_s = 1.0;
   double track_idle_s = 3600.0;
@@ -59,7 +60,7 @@ server::Configuration configuration(const ServeOptions& options) {
   result.picture_cache_bytes = options.picture_cache_mib * kMiB;
   result.http.body_time = milliseconds(options.body_time_s);
   result.http.request_time = milliseconds(options.request_time_s);
-  result.http.turn_time = options.turn_time_s > 0.0 ? milliseconds(options.turn_time_s) : result.http.request_time;
+  result.http.turn_time = options.turn_time_s ? milliseconds(*options.turn_time_s) : result.http.request_time;
   result.http.idle_time = milliseconds(options.idle_time_s);
   result.watch_interval = milliseconds(options.watch_s);
   result.track_limits.idle = milliseconds(options.track_idle_s);
@@ -67,6 +68,7 @@ server::Configuration configuration(const ServeOptions& options) {
   result.track_limits.store_bytes = static_cast<std::int64_t>(options.tracks_mib * kMiB);
   // Each takes a thread for as long as it is open.
   result.track_limits.streams = std::min(options.service.track_limits.streams, options.service.http.threads / 2);
+  result.track_limits.steps_waiting = std::max(1, options.service.http.threads / 4);
   return result;
 }
 
@@ -124,7 +126,8 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--threads", http.threads, "Connections served at the same time", kMaxThreads);
   add("--searches", http.heavy_running, "Searches and detections at the same time");
   add("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
-  add("--search-threads", o.service.search_threads, "Threads of one search", kMaxThreads);
+  add("--search-threads", o.service.search_threads,
+      "Threads of a search; searches that run at the same time share them", kMaxThreads);
   add("--body-memory", o.all_bodies_mib,
       "Bodies of all requests at once, MiB; further ones get 503. At least --max-body", kMaxMiB);
   add("--idle-time", o.idle_time_s, "Seconds after which an idle connection is closed", kMaxSeconds);
@@ -171,6 +174,7 @@ void add_serve_command(CLI::App& app) {
   const auto options = std::make_shared<ServeOptions>();
   ServeOptions& o = *options;
   o.service.http.heavy_running = processors();
+  o.service.search_threads = processors();
   command->add_option("--maps", o.service.maps,
                       "Folder of the maps (*.gpkg); added, changed and removed files are detected");
   command->add_option("--tracks", o.service.tracks,

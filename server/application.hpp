@@ -20,7 +20,7 @@ struct Configuration {
   std::size_t map_cache_bytes = std::size_t{256} << 20;     ///< decoded tiles, for each map
   std::size_t search_cache_bytes = std::size_t{512} << 20;  ///< what searches build, for each map
   std::size_t picture_cache_bytes = std::size_t{64} << 20;
-  int search_threads = 1;                          ///< of one search
+  int search_threads = 1;                          ///< of all searches
   std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
   http::ServerSettings http;
   api::Limits limits;

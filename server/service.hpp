@@ -11,6 +11,7 @@
 #include "server/http/server.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
+#include "server/search_threads.hpp"
 #include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
@@ -23,7 +24,7 @@ struct Service {
   http::Metrics& metrics;
   PictureCache& pictures;
   TrackRegistry& tracks;
-  int search_threads = 1;
+  SearchThreads& search_threads;
   std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
 };
 

@@ -3,92 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
-#include "core/units/names_once.hpp"
+#include "core/units/json_file.hpp"
 #include "core/units/text.hpp"
 
 namespace roadfix::bench {
 namespace {
 
-using nlohmann::json;
-
-/// A JSON value that knows its place in the manifest, so that every complaint can name it.
-class Field {
- public:
-  Field(const json& value, std::string path) : value_(value), path_(std::move(path)) {}
-
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw InvalidInput("manifest-field",
-                       fmt::format("bench manifest: {} {}", path_.empty() ? "the document" : path_, what));
-  }
-
-  void allow_only(const std::vector<std::string_view>& keys) const {
-    require(value_.is_object(), "must be an object");
-    for (const auto& [key, unused] : value_.items()) {
-      if (std::ranges::find(keys, key) == keys.end())
-        refuse(fmt::format("has the unknown field '{}'; known are: {}", key, fmt::join(keys, ", ")));
-    }
-  }
-  bool has(const std::string& key) const { return value_.contains(key); }
-  Field at(const std::string& key) const {
-    if (!has(key)) refuse(fmt::format("lacks the field '{}'", key));
-    return {value_.at(key), path_.empty() ? key : path_ + "." + key};
-  }
-  std::vector<Field> elements() const {
-    require(value_.is_array(), "must be an array");
-    std::vector<Field> fields;
-    for (std::size_t i = 0; i < value_.size(); ++i) fields.emplace_back(value_[i], fmt::format("{}[{}]", path_, i));
-    return fields;
-  }
-  bool is_null() const { return value_.is_null(); }
-  bool is_array() const { return value_.is_array(); }
-  bool truth() const {
-    require(value_.is_boolean(), "must be true or false");
-    return value_.get<bool>();
-  }
-  bool is_object() const { return value_.is_object(); }
-  std::string text() const {
-    require(value_.is_string(), "must be a string");
-    return value_.get<std::string>();
-  }
-  double number(double low, double high) const {
-    require(value_.is_number(), "must be a number");
-    const auto number = value_.get<double>();
-    if (!(number >= low && number <= high))
-      refuse(fmt::format("is {}; it must lie within {} to {}", number, low, high));
-    return number;
-  }
-  std::int64_t whole_number(double low, double high) const {
-    const double value = number(low, high);
-    require(value == std::floor(value), "must be a whole number");
-    return static_cast<std::int64_t>(value);
-  }
-  std::string one_of(std::initializer_list<std::string_view> words) const {
-    std::string word = text();
-    if (std::ranges::find(words, word) == words.end())
-      refuse(fmt::format("is '{}'; it must be one of: {}", word, fmt::join(words, ", ")));
-    return word;
-  }
-
- private:
-  void require(bool condition, std::string_view what) const {
-    if (!condition) refuse(std::string(what));
-  }
-  const json& value_;
-  std::string path_;
-};
+const JsonFile kFile{"bench manifest", "manifest-field", "manifest-json", ""};
 
 constexpr double kMaxFootprintM = 10'000.0;
 constexpr double kMaxCount = 1e6;
 
-ManifestSource parse_source(const Field& field, const std::filesystem::path& directory) {
+ManifestSource parse_source(const JsonField& field, const std::filesystem::path& directory) {
   const std::string as = field.at("as").one_of({"imagery", "roads", "invented"});
   if (as != "invented") {
     field.allow_only({"path", "as"});
@@ -101,11 +33,11 @@ ManifestSource parse_source(const Field& field, const std::filesystem::path& dir
           field.at("side_m").number(500.0, 8000.0)};
 }
 
-ManifestMap parse_map(const Field& field, const std::filesystem::path& directory) {
+ManifestMap parse_map(const JsonField& field, const std::filesystem::path& directory) {
   field.allow_only({"name", "sources"});
   ManifestMap map;
   map.name = field.at("name").text();
-  for (const Field& source : field.at("sources").elements()) {
+  for (const JsonField& source : field.at("sources").elements()) {
     map.sources.push_back(parse_source(source, directory));
   }
   if (map.sources.empty()) field.refuse("has no sources");
@@ -116,17 +48,17 @@ bool has_map(const Manifest& manifest, const std::string& name) {
   return std::ranges::any_of(manifest.maps, [&](const ManifestMap& map) { return map.name == name; });
 }
 
-double optional_number(const Field& field, const std::string& key, double low, double high) {
+double optional_number(const JsonField& field, const std::string& key, double low, double high) {
   return field.has(key) ? field.at(key).number(low, high) : 0.0;
 }
 
-Exclusion parse_exclusion(const Field& field) {
+Exclusion parse_exclusion(const JsonField& field) {
   field.allow_only({"top", "bottom", "left", "right"});
   const auto share = [&](const std::string& key) { return optional_number(field, key, 0.0, 0.9); };
   return {share("top"), share("bottom"), share("left"), share("right")};
 }
 
-void parse_property(const Field& field, const QualityProperty& property, QualityRange& range) {
+void parse_property(const JsonField& field, const QualityProperty& property, QualityRange& range) {
   double& low = range.low.*property.value;
   double& high = range.high.*property.value;
   if (!field.is_array()) {
@@ -139,7 +71,7 @@ void parse_property(const Field& field, const QualityProperty& property, Quality
   high = bounds[1].number(low, property.max);
 }
 
-QualityRange parse_noise(const Field& field) {
+QualityRange parse_noise(const JsonField& field) {
   std::vector<std::string_view> keys;
   for (const QualityProperty& property : kQualityProperties) keys.push_back(property.key);
   field.allow_only(keys);
@@ -151,15 +83,15 @@ QualityRange parse_noise(const Field& field) {
   return range;
 }
 
-void parse_footprint_and_count(const Field& field, QuerySet& set) {
-  const Field footprint = field.at("footprint_m");
+void parse_footprint_and_count(const JsonField& field, QuerySet& set) {
+  const JsonField footprint = field.at("footprint_m");
   const auto sides = footprint.elements();
   if (sides.size() != 2) footprint.refuse("must be [width, height] in metres");
   set.footprint = {sides[0].number(1.0, kMaxFootprintM), sides[1].number(1.0, kMaxFootprintM)};
   set.count = static_cast<int>(field.at("count").whole_number(1.0, kMaxCount));
 }
 
-void parse_prior(const Field& field, QuerySet& set) {
+void parse_prior(const JsonField& field, QuerySet& set) {
   if (!field.is_object()) {
     field.one_of({"map"});
     return;
@@ -174,7 +106,7 @@ void parse_prior(const Field& field, QuerySet& set) {
 }
 
 /// A field that would do nothing is a mistake about what the queries are.
-void refuse_without_effect(const Field& field, QuerySet::Kind kind) {
+void refuse_without_effect(const JsonField& field, QuerySet::Kind kind) {
   const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
     for (const char* key : keys) {
       if (field.has(key)) field.at(key).refuse(why);
@@ -187,7 +119,7 @@ void refuse_without_effect(const Field& field, QuerySet::Kind kind) {
   }
 }
 
-QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std::filesystem::path& directory) {
+QuerySet parse_query_set(const JsonField& field, const Manifest& manifest, const std::filesystem::path& directory) {
   field.allow_only({"map", "image", "frames", "count", "footprint_m", "exclude", "prior", "noise", "unobserved", "from",
                     "elsewhere", "together"});
   QuerySet set;
@@ -222,37 +154,22 @@ QuerySet parse_query_set(const Field& field, const Manifest& manifest, const std
   return set;
 }
 
-json parse_text(std::string_view text) {
-  const auto refuse_second = [](const std::string& name) {
-    throw InvalidInput("manifest-field",
-                       fmt::format("bench manifest: '{}' is given twice in one object: remove one of them", name));
-  };
-  try {
-    return parse_with_names_once(text, refuse_second);
-  } catch (const json::parse_error& error) {
-    throw InvalidInput("manifest-json",
-                       fmt::format("bench manifest: byte {} is no JSON: {}", error.byte, error.what()));
-  } catch (const json::out_of_range& error) {
-    throw InvalidInput("manifest-json", fmt::format("bench manifest: {}", error.what()));
-  }
-}
-
 }  // namespace
 
 Manifest parse_manifest(std::string_view text, const std::filesystem::path& directory) {
-  const json document = parse_text(text);
-  const Field root(document, "");
+  const nlohmann::json document = parse_json(text, kFile);
+  const JsonField root(document, kFile);
   root.allow_only({"maps", "queries", "methods"});
   Manifest manifest;
-  for (const Field& map : root.at("maps").elements()) {
+  for (const JsonField& map : root.at("maps").elements()) {
     ManifestMap parsed = parse_map(map, directory);
     if (has_map(manifest, parsed.name)) map.at("name").refuse(fmt::format("is '{}', as of a map before", parsed.name));
     manifest.maps.push_back(std::move(parsed));
   }
-  for (const Field& set : root.at("queries").elements())
+  for (const JsonField& set : root.at("queries").elements())
     manifest.queries.push_back(parse_query_set(set, manifest, directory));
   if (root.has("methods")) {
-    for (const Field& method : root.at("methods").elements())
+    for (const JsonField& method : root.at("methods").elements())
       manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
   } else {
     manifest.methods = {"roads"};

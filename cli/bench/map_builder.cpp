@@ -1,6 +1,7 @@
 #include "cli/bench/map_builder.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -32,7 +33,8 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
   plan.width_m = plan.height_m = source.side_m;
   world::Random random(source.seed, 0);
   world::invent_streets(plan, random);
-  const std::filesystem::path unfinished = cache / fmt::format("unfinished-{}.geojson", source.seed);
+  const std::filesystem::path unfinished =
+      cache / fmt::format("unfinished-{}-{:g}-{}.geojson", source.seed, source.side_m, ::getpid());
   world::write_road_truth(unfinished.string(), plan.streets, world::place(settings, world::kDefaultCentre));
   std::filesystem::rename(unfinished, file);
   return file;

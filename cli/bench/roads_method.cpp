@@ -1,9 +1,11 @@
 #include "cli/bench/roads_method.hpp"
 
 #include <chrono>
+#include <vector>
 
 #include "cli/bench/agreement_picture.hpp"
 #include "core/detect/frame.hpp"
+#include "core/grid/combine.hpp"
 #include "core/locate/match_poses.hpp"
 
 namespace roadfix::bench {
@@ -16,8 +18,11 @@ class RoadsMethod : public Method {
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
-    const FeatureMap features = features_of(query);
-    const Fix fix = locate(map_, features, query.prior, options_.fix);
+    const std::vector<PlacedFeatures> parts = parts_of(query);
+    const FeatureMap features = together(parts);
+    FixOptions options = options_.fix;
+    if (parts.size() > 1) options.own_frame = parts.front().features;
+    const Fix fix = locate(map_, features, query.prior, options);
     Answer answer;
     answer.status = fix.status;
     answer.reason = fix.reason;
@@ -33,7 +38,7 @@ class RoadsMethod : public Method {
   }
 
   cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const override {
-    return agreement_picture(map_, imagery, query, features_of(query), answer);
+    return agreement_picture(map_, imagery, query, together(parts_of(query)), answer);
   }
 
  private:
@@ -41,13 +46,16 @@ class RoadsMethod : public Method {
     return detect_features(detector_, view, options_.cell_m, options_.seed);
   }
 
-  FeatureMap features_of(const Query& query) const {
-    constexpr double kMaxCells = 25e6;
-    if (query.features) return *query.features;
-    if (query.earlier.empty()) return detected(*query.view);
+  std::vector<PlacedFeatures> parts_of(const Query& query) const {
+    if (query.features) return {{*query.features, {}}};
     std::vector<PlacedFeatures> parts{{detected(*query.view), {}}};
     for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.view), frame.offset});
-    return combined(parts, kMaxCells);
+    return parts;
+  }
+
+  static FeatureMap together(const std::vector<PlacedFeatures>& parts) {
+    constexpr double kMaxCells = 25e6;
+    return parts.size() == 1 ? parts.front().features : combined(parts, kMaxCells);
   }
 
   const MapView& map_;

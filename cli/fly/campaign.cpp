@@ -79,7 +79,7 @@ LocalizerFactory library_localizers(const MapView& map, int particles, int measu
     settings.measure_every = measure_every;
     settings.vehicle = vehicle;
     settings.seed = seed;
-    settings.max_search_km2 = 0.0;  // nobody waits for the processors
+    settings.max_search_km2.reset();  // nobody waits for the processors
     return make_localizer(map, settings, stop);
   };
 }

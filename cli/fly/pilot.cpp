@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -99,14 +99,14 @@ std::vector<GridPoint> survey_lanes(const GridBox& box, double spacing_m) {
 }
 
 std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const UtmZone& zone) {
-  std::ifstream in(file);
-  if (!in) throw NotFound("waypoints-missing", fmt::format("{} cannot be opened", file.string()));
+  const auto text = read_file(file);
+  if (!text) throw NotFound("waypoints-missing", fmt::format("{} cannot be read", file.string()));
   std::vector<GridPoint> points;
   const auto add = [&](const nlohmann::json& place) {
     points.push_back(zone.project({place.at(1).get<double>(), place.at(0).get<double>()}));
   };
   try {
-    const nlohmann::json document = nlohmann::json::parse(in);
+    const nlohmann::json document = nlohmann::json::parse(*text);
     for (const auto& feature : document.at("features")) {
       const auto& geometry = feature.at("geometry");
       if (geometry.at("type") == "Point") add(geometry.at("coordinates"));

@@ -35,7 +35,7 @@ class Camera {
   CameraFrame take(const Shot& shot) const {
     const double gsd = imagery_.image.gsd_m;
     const Footprint covered{shot.scale * footprint_.width_m, shot.scale * footprint_.height_m};
-    GroundImage frame = cut_out(around(shot.pose, covered), shot.pose, covered, shot.scale * gsd);
+    GroundImage frame = cut_out(imagery_, shot.pose, covered, shot.scale * gsd);
     frame.gsd_m = gsd;
     return {std::move(frame), std::nullopt, cell_m_, shot.seed};
   }
@@ -43,20 +43,6 @@ class Camera {
   bool shows(GridPoint point) const { return sees(imagery_, point); }
 
  private:
-  /// The part of the imagery that a cut can touch: what is blurred for it should not be the whole city.
-  Orthoimage around(const GridPose& pose, const Footprint& covered) const {
-    const GroundImage& all = imagery_.image;
-    const double reach = std::hypot(covered.width_m, covered.height_m) / 2.0 + 4.0 * all.gsd_m;
-    const auto pixel = [&](double metres) { return static_cast<int>(std::floor(metres / all.gsd_m)); };
-    const int left = pixel(pose.position.east_m - reach - imagery_.north_west.east_m);
-    const int top = pixel(imagery_.north_west.north_m - pose.position.north_m - reach);
-    const int side = pixel(2.0 * reach) + 2;
-    const cv::Rect part = cv::Rect(left, top, side, side) & cv::Rect({0, 0}, all.pixels.size());
-    if (part.empty()) return imagery_;
-    return {{all.pixels(part), all.observed(part), all.gsd_m},
-            {imagery_.north_west.east_m + part.x * all.gsd_m, imagery_.north_west.north_m - part.y * all.gsd_m}};
-  }
-
   const Orthoimage& imagery_;
   Footprint footprint_;
   CameraErrors errors_;

@@ -2,110 +2,71 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
-#include "core/units/names_once.hpp"
+#include "core/units/json_file.hpp"
 
 namespace roadfix {
 namespace {
 
-using nlohmann::json;
+const JsonFile kFile{"network description", "model-description", "model-description",
+                     "models/README.md lists its fields"};
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw InvalidInput("model-description",
-                     fmt::format("The network's description: {}. models/README.md lists its fields.", what));
+  throw InvalidInput(kFile.field_code, fmt::format("{}: {}; {}", kFile.name, what, kFile.remedy));
 }
 
-const json& field(const json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end()) refuse(fmt::format("\"{}\" is missing", name));
-  return *found;
+int integer_in(const JsonField& root, const char* name, double min, double max) {
+  return static_cast<int>(root.at(name).whole_number(min, max));
 }
 
-double number_in(const json& value, const char* name, double min, double max) {
-  if (!value.is_number()) refuse(fmt::format("\"{}\" must be a number", name));
-  const double number = value.get<double>();
-  if (!(number >= min && number <= max))
-    refuse(fmt::format("\"{}\" = {} lies outside {} to {}", name, number, min, max));
-  return number;
+std::array<double, 3> three(const JsonField& field, double min, double max) {
+  const std::vector<JsonField> values = field.elements();
+  if (values.size() != 3) field.refuse("must be three numbers");
+  return {values[0].number(min, max), values[1].number(min, max), values[2].number(min, max)};
 }
 
-int integer_in(const json& object, const char* name, int min, int max) {
-  const double number = number_in(field(object, name), name, min, max);
-  if (number != std::floor(number)) refuse(fmt::format("\"{}\" must be a whole number", name));
-  return static_cast<int>(number);
-}
-
-std::string text_of(const json& object, const char* name) {
-  const json& value = field(object, name);
-  if (!value.is_string()) refuse(fmt::format("\"{}\" must be a string", name));
-  return value.get<std::string>();
-}
-
-bool first_of(const json& object, const char* name, std::string_view first, std::string_view second) {
-  const std::string text = text_of(object, name);
-  if (text != first && text != second) refuse(fmt::format("\"{}\" must be \"{}\" or \"{}\"", name, first, second));
-  return text == first;
-}
-
-std::array<double, 3> three(const json& object, const char* name, double min, double max) {
-  const json& values = field(object, name);
-  if (!values.is_array() || values.size() != 3) refuse(fmt::format("\"{}\" must be three numbers", name));
-  std::array<double, 3> result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = number_in(values[i], name, min, max);
-  return result;
-}
-
-LocalContrast local_contrast_of(const json& value) {
-  if (!value.is_object()) refuse("\"local_contrast\" must be an object");
-  const LocalContrast local{integer_in(value, "window_px", 3, 1023),
-                            number_in(field(value, "floor"), "floor", 1e-3, 255.0)};
-  if (local.window_px % 2 == 0) refuse("\"window_px\" must be odd");
+LocalContrast local_contrast_of(const JsonField& field) {
+  field.allow_only({"window_px", "floor"});
+  const LocalContrast local{integer_in(field, "window_px", 3, 1023), field.at("floor").number(1e-3, 255.0)};
+  if (local.window_px % 2 == 0) field.at("window_px").refuse("must be odd");
   return local;
 }
 
 void check_tiles(const NetworkDescription& network) {
-  if (network.multiple % network.stride != 0) refuse("\"multiple\" must be a multiple of \"stride\"");
+  if (network.multiple % network.stride != 0) refuse("multiple must be a multiple of stride");
   if (network.tile_px % network.multiple != 0 || network.overlap_px % network.multiple != 0) {
-    refuse("\"tile_px\" and \"overlap_px\" must be multiples of \"multiple\"");
+    refuse("tile_px and overlap_px must be multiples of multiple");
   }
-  if (2 * network.overlap_px > network.tile_px) refuse("\"overlap_px\" must be at most half of \"tile_px\"");
-}
-
-json parsed(std::string_view text) {
-  try {
-    return parse_with_names_once(text,
-                                 [](const std::string& name) { refuse(fmt::format("\"{}\" is given twice", name)); });
-  } catch (const json::exception&) {
-    return {};
-  }
+  if (2 * network.overlap_px > network.tile_px) refuse("overlap_px must be at most half of tile_px");
 }
 
 }  // namespace
 
 NetworkDescription parse_network_description(std::string_view text) {
-  const json object = parsed(text);
-  if (!object.is_object()) refuse("it is not a JSON object");
+  const nlohmann::json document = parse_json(text, kFile);
+  const JsonField root(document, kFile);
+  root.allow_only({"name", "gsd_m", "stride", "multiple", "tile_px", "overlap_px", "channels", "local_contrast", "mean",
+                   "std", "output", "calibration", "licence", "fnv1a64"});
   NetworkDescription network;
-  network.name = text_of(object, "name");
-  network.gsd_m = number_in(field(object, "gsd_m"), "gsd_m", 0.01, 100.0);
-  network.stride = integer_in(object, "stride", 1, 64);
-  network.multiple = integer_in(object, "multiple", 1, 256);
-  network.tile_px = integer_in(object, "tile_px", 16, 4096);
-  network.overlap_px = integer_in(object, "overlap_px", 0, 2048);
-  network.rgb = first_of(object, "channels", "rgb", "bgr");
-  if (object.contains("local_contrast")) network.local_contrast = local_contrast_of(object["local_contrast"]);
-  network.mean = three(object, "mean", 0.0, 255.0);
-  network.std = three(object, "std", 1e-3, 1e6);
-  network.logits = first_of(object, "output", "logits", "probability");
-  const json& calibration = field(object, "calibration");
-  if (!calibration.is_object()) refuse("\"calibration\" must be an object");
-  network.calibration_scale = number_in(field(calibration, "scale"), "scale", 0.01, 100.0);
-  network.calibration_bias = number_in(field(calibration, "bias"), "bias", -50.0, 50.0);
-  if (object.contains("fnv1a64")) network.fnv1a64 = text_of(object, "fnv1a64");
+  network.name = root.at("name").text();
+  network.gsd_m = root.at("gsd_m").number(0.01, 100.0);
+  network.stride = integer_in(root, "stride", 1, 64);
+  network.multiple = integer_in(root, "multiple", 1, 256);
+  network.tile_px = integer_in(root, "tile_px", 16, 4096);
+  network.overlap_px = integer_in(root, "overlap_px", 0, 2048);
+  network.rgb = root.at("channels").one_of({"rgb", "bgr"}) == "rgb";
+  if (root.has("local_contrast")) network.local_contrast = local_contrast_of(root.at("local_contrast"));
+  network.mean = three(root.at("mean"), 0.0, 255.0);
+  network.std = three(root.at("std"), 1e-3, 1e6);
+  network.logits = root.at("output").one_of({"logits", "probability"}) == "logits";
+  const JsonField calibration = root.at("calibration");
+  calibration.allow_only({"scale", "bias"});
+  network.calibration_scale = calibration.at("scale").number(0.01, 100.0);
+  network.calibration_bias = calibration.at("bias").number(-50.0, 50.0);
+  if (root.has("fnv1a64")) network.fnv1a64 = root.at("fnv1a64").text();
   check_tiles(network);
   return network;
 }

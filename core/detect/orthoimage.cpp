@@ -1,9 +1,30 @@
 #include "core/detect/orthoimage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace roadfix {
+namespace {
+
+/// The part of the imagery that a cut can touch. What is blurred for it should not be a whole city, and OpenCV warps no
+/// picture with a side of 32,767 pixels or more. Empty where it touches none.
+Orthoimage around(const Orthoimage& imagery, const GridPoint& centre, const Footprint& footprint, double gsd_m) {
+  const GroundImage& all = imagery.image;
+  const double blur_m = 4.0 * all.gsd_m + 2.0 * gsd_m;
+  const double reach_m = std::hypot(footprint.width_m, footprint.height_m) / 2.0 + blur_m;
+  const auto pixel = [&](double metres, int count) {
+    return static_cast<int>(std::clamp(std::floor(metres / all.gsd_m), 0.0, static_cast<double>(count)));
+  };
+  const double east_m = centre.east_m - imagery.north_west.east_m;
+  const double south_m = imagery.north_west.north_m - centre.north_m;
+  const cv::Rect part(cv::Point(pixel(east_m - reach_m, all.pixels.cols), pixel(south_m - reach_m, all.pixels.rows)),
+                      cv::Point(pixel(east_m + reach_m, all.pixels.cols), pixel(south_m + reach_m, all.pixels.rows)));
+  return {{all.pixels(part), all.observed(part), all.gsd_m},
+          {imagery.north_west.east_m + part.x * all.gsd_m, imagery.north_west.north_m - part.y * all.gsd_m}};
+}
+
+}  // namespace
 
 GridBox Orthoimage::box() const {
   return {{north_west.east_m, north_west.north_m - image.pixels.rows * image.gsd_m},
@@ -25,13 +46,15 @@ std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pos
   return {corner(h, -w), corner(h, w), corner(-h, w), corner(-h, -w)};
 }
 
-GroundImage cut_out(const Orthoimage& imagery, const GridPose& pose, const Footprint& footprint, double gsd_m) {
+GroundImage cut_out(const Orthoimage& all, const GridPose& pose, const Footprint& footprint, double gsd_m) {
+  const Orthoimage imagery = around(all, pose.position, footprint, gsd_m);
   const GroundImage& from = imagery.image;
   const cv::Size size(static_cast<int>(std::lround(footprint.width_m / gsd_m)),
                       static_cast<int>(std::lround(footprint.height_m / gsd_m)));
   const double step = gsd_m / from.gsd_m;
   const double c = step * cos(pose.heading);
   const double s = step * sin(pose.heading);
+  if (from.pixels.empty()) return {cv::Mat::zeros(size, from.pixels.type()), cv::Mat::zeros(size, CV_8UC1), gsd_m};
   // Pixel centres: source = at + R (target - centre), with OpenCV's integer coordinates at pixel centres.
   const double at_x = (pose.position.east_m - imagery.north_west.east_m) / from.gsd_m - 0.5;
   const double at_y = (imagery.north_west.north_m - pose.position.north_m) / from.gsd_m - 0.5;

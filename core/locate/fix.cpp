@@ -87,6 +87,27 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
   return result;
 }
 
+/// Of frames that were not where they are said to have been, those that agree with each other find their place, and the
+/// pose that is asked for is that of another one. A frame that shows hardly any road cannot tell.
+bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMode& best, double rho_of_all) {
+  constexpr double kLeastShare = 0.5;
+  const FeatureMap cells = in_cells_of(map, own_frame);
+  if (refusal_of(cells) || shows_less_than_a_road_across(cells)) return false;
+  const auto rho = rho_at(map, resampled(cells, cells.cell_m, best.scale), best.pose);
+  return rho.value_or(0.0) < kLeastShare * rho_of_all;
+}
+
+void refuse_contradicting_frames(Fix& fix) {
+  constexpr double kMostProbable = 0.5;
+  fix.status = FixStatus::kNoFix;
+  fix.reason = "frames-contradict";
+  fix.explanation =
+      "the frames fit at one place together, but the one whose position is asked for does not fit there by itself: "
+      "check where the others were taken from, and that no frame or movement comes late";
+  fix.probability = std::min(fix.probability, kMostProbable);
+  fix.modes.front().weight = fix.probability;
+}
+
 void require_valid(const FixOptions& options, double area_km2) {
   if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
     throw InvalidInput("confidence-out-of-range",
@@ -107,7 +128,7 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   result.progress = options.progress;
   result.stop = options.stop;
   result.proof_time = options.proof_time;
-  if (options.time_limit.count() > 0) result.deadline = started + options.time_limit;
+  if (options.time_limit) result.deadline = started + *options.time_limit;
   return result;
 }
 
@@ -147,6 +168,10 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.max_modes)));
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
+  }
+  if (fix.status == FixStatus::kFix && options.own_frame &&
+      contradicts(map, *options.own_frame, found.modes.front(), fix.modes.front().rho)) {
+    refuse_contradicting_frames(fix);
   }
   fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();

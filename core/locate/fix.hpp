@@ -25,12 +25,15 @@ struct FixOptions {
   /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
   /// [0, kMaxScaleRange].
   double scale_range = 0.0;
-  double max_search_km2 = 0.0;              ///< 0 = unlimited; beyond it LimitExceeded
-  std::chrono::milliseconds time_limit{0};  ///< 0 = unlimited; at it the search ends as it is: no_fix with what it has
+  std::optional<double> max_search_km2{};  ///< beyond it LimitExceeded
+  /// At it the search ends as it is: no_fix with what it has.
+  std::optional<std::chrono::milliseconds> time_limit{};
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
+  /// Where several frames were laid together: the one whose nadir is asked for. A fix has to be borne out by it alone.
+  std::optional<FeatureMap> own_frame{};
   int threads = 1;
   std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< see SearchOptions
   std::stop_token stop{};                                                 ///< Interrupted when requested

@@ -100,12 +100,12 @@ void require_scale_range(double range) {
                      fmt::format("the scale range is {}: give a share from 0 to {}", range, kMaxScaleRange));
 }
 
-void require_searchable(double area_km2, double limit_km2) {
-  if (limit_km2 == 0.0 || area_km2 <= limit_km2) return;
+void require_searchable(double area_km2, std::optional<double> limit_km2) {
+  if (!limit_km2 || area_km2 <= *limit_km2) return;
   throw LimitExceeded("search-area-too-large",
                       fmt::format("the prior leaves {:.1f} km2 to search, more than the limit of {:.1f} km2: give a "
                                   "smaller circle or box",
-                                  area_km2, limit_km2));
+                                  area_km2, *limit_km2));
 }
 
 }  // namespace roadfix

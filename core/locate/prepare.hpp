@@ -1,6 +1,8 @@
 // What the outside gives of a feature map, made ready for the grid of a map.
 #pragma once
 
+#include <optional>
+
 #include "core/grid/feature_map.hpp"
 #include "core/locate/map_view.hpp"
 
@@ -14,7 +16,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 /// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMaxScaleRange.
 void require_scale_range(double range);
 
-/// Throws LimitExceeded ("search-area-too-large"). A limit of 0 is none.
-void require_searchable(double area_km2, double limit_km2);
+/// Throws LimitExceeded ("search-area-too-large").
+void require_searchable(double area_km2, std::optional<double> limit_km2);
 
 }  // namespace roadfix

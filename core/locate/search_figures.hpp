@@ -26,8 +26,8 @@ struct SearchFigures {
   /// places beside it thin out like an exponential tail of Fisher's z above the lowest of them (the domain of
   /// attraction of Gumbel). Large = chance does not explain it.
   double surprise = 0.0;
-  /// Fisher's z of the best place minus that of the next distinct one in the region, in standard deviations of the
-  /// scores of all scanned poses. Large = no other place explains it.
+  /// Fisher's z of the best place minus that of the next distinct one in the region (where there is none, of the lowest
+  /// around it), in standard deviations of the scores of all scanned poses. Large = no other place explains it.
   double lead = 0.0;
   /// The same distance in mean excesses of that tail. Of chance alone it is about exponential with mean 1.
   double gap = 0.0;

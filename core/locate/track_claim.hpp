@@ -16,8 +16,9 @@ struct TrackClaim {
   /// before a kidnapping, and has an upper bound, so that a track that has long been right does not go on for long when
   /// it is not any more.
   double log_odds = 0.0;
-  /// A search has told the belief from all other places: a fix, or nearly one at the place that was believed before
-  /// it. Until measurements speak against it.
+  /// A search has told the belief from all other places, or where the whole map is too much to search, from those up to
+  /// some kilometres around: a fix, or nearly one at the place that was believed before it. Until measurements speak
+  /// against it.
   bool confirmed = false;
 
   void accept();

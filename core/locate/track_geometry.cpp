@@ -30,7 +30,12 @@ std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
     const GridPoint at{p.east_m[i], p.north_m[i]};
     box = united(box, {at, at});
   }
-  return prior_within(map, {box.centre(), distance_m(box.min, box.max) / 2.0});
+  const GridPoint centre = box.centre();
+  double radius_m = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    radius_m = std::max(radius_m, distance_m(centre, {p.east_m[i], p.north_m[i]}));
+  }
+  return prior_within(map, {centre, radius_m});
 }
 
 std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double radius_m, Angle heading_half_width) {

@@ -76,9 +76,9 @@ struct TrackSettings {
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
   /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
   double beyond_map_m = 1000.0;
-  /// Of the prior where the start is searched for; 0 = unlimited. Where a uniform start was more, recovery looks around
-  /// the last place.
-  double max_search_km2 = 2000.0;
+  /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
+  /// place.
+  std::optional<double> max_search_km2 = 2000.0;
   std::chrono::seconds longest_gap{600};           ///< after it the belief is thrown away
   std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
 
@@ -160,7 +160,7 @@ struct StepResult {
 
 struct StepLimits {
   int threads = 1;
-  std::chrono::milliseconds search_time{0};  ///< limit of one search; a step has two at most; 0 = unlimited
+  std::optional<std::chrono::steady_clock::time_point> searches_end{};  ///< at it a search ends as it is
   std::stop_token stop;
 };
 
@@ -171,7 +171,7 @@ class Tracker {
   Tracker(MapView map, TrackSettings settings);
 
   /// Throws InvalidInput: "step-late" for a sequence number not above the last, "time-backwards", those of
-  /// OdometryMotion and of unusable feature maps; Interrupted by `stop`, and by `search_time` at the first step.
+  /// OdometryMotion and of unusable feature maps; Interrupted by `stop`, and by `searches_end` at the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
   /// Thinned to at most `count` poses, every k-th particle.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;

@@ -1,5 +1,6 @@
 // The searches of a track: where it begins, and where its belief has to be told from other places or found again.
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -99,14 +100,15 @@ bool Tracker::Step::holds_at_other_scales(const Fix& fix, const Prior& prior, co
 void Tracker::Step::confirm(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
-  state_.looked_time_us = input_.time_us;
+  state_.looked_time_us.reset();  // the next frame tells whether the odometry carries the place on rightly
 }
 
 /// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
 /// takes longer. At its beginning that is an error, as a smaller prior helps.
 std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen) {
   state_.last_search = state_.measured;
-  std::optional<Fix> fix = search_for(seen, prior, {.scale_range = settings_.vehicle.scale_range});
+  std::optional<Fix> fix =
+      search_for(seen, prior, {.scale_range = settings_.vehicle.scale_range, .own_frame = features_});
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
   if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);
@@ -116,8 +118,11 @@ std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const Featur
 /// nullopt where the area is beyond the limit.
 std::optional<Fix> Tracker::Step::search_for(const FeatureMap& features, const Prior& prior, FixOptions options) {
   options.max_search_km2 = settings_.max_search_km2;
-  options.threads = 1;  // threads of a search add up in any order, and a track must come out the same
-  options.time_limit = limits_.search_time;
+  options.threads = limits_.threads;
+  if (limits_.searches_end) {
+    const auto left = *limits_.searches_end - std::chrono::steady_clock::now();
+    options.time_limit = std::max(std::chrono::ceil<std::chrono::milliseconds>(left), std::chrono::milliseconds(0));
+  }
   options.stop = limits_.stop;
   options.calibration = settings_.calibration;
   try {

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <span>
+#include <tuple>
 
 #include "core/grid/feature_rotator.hpp"
 #include "core/match/footprint.hpp"
@@ -16,6 +20,11 @@ namespace roadfix {
 namespace {
 
 constexpr int kHeadingsTogether = static_cast<int>(ScanDirection().bins.size());
+
+/// A total order: which of equal ones are kept does not depend on which thread was first.
+bool is_better(const ScanPose& a, const ScanPose& b) {
+  return std::tie(b.score, a.bin, a.row, a.col) < std::tie(a.score, b.bin, b.row, b.col);
+}
 
 class Scan {
  public:
@@ -38,14 +47,18 @@ class Scan {
     std::ranges::sort(bases);
     bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
     const int count = static_cast<int>(bases.size());
-    parallel_for((count + kHeadingsTogether - 1) / kHeadingsTogether, request_.threads, [&](int i) {
+    const int pairs = (count + kHeadingsTogether - 1) / kHeadingsTogether;
+    squares_.assign(static_cast<std::size_t>(pairs), 0.0);
+    parallel_for(pairs, request_.threads, [&](int i) {
       const int first = i * kHeadingsTogether;
       scan_pair(std::span(bases).subspan(static_cast<std::size_t>(first),
-                                         static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))));
+                                         static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))),
+                squares_[static_cast<std::size_t>(i)]);
     });
+    result_.score_square_sum = std::accumulate(squares_.begin(), squares_.end(), 0.0);
     result_.share =
         static_cast<double>(scanned_) / static_cast<double>(std::max<std::size_t>(1, request_.headings.size()));
-    std::ranges::sort(result_.maxima, std::ranges::greater{}, &ScanPose::score);
+    std::ranges::sort(result_.maxima, is_better);
     if (result_.maxima.size() > request_.keep) result_.maxima.resize(request_.keep);
     return std::move(result_);
   }
@@ -65,8 +78,8 @@ class Scan {
     return directions;
   }
 
-  /// A pair of neighbouring headings, and the same turned by half a turn.
-  void scan_pair(std::span<const int> bases) {
+  /// A pair of neighbouring headings, and the same turned by half a turn. Of their scores also the sum of squares.
+  void scan_pair(std::span<const int> bases, double& squares) {
     if (deadline_.over()) return;
     std::unique_ptr<ScanBuffers> buffers = taken_buffers();
     const CellArray first = patch_at(bases.front());
@@ -87,6 +100,7 @@ class Scan {
       if (deadline_.over()) return;
       for (const ScanDirection& direction : directions) tile_scan_.scan(tile, direction, floor, *buffers, found);
     }
+    squares = found.squares;
     add(std::move(found), std::move(buffers));
   }
 
@@ -102,15 +116,14 @@ class Scan {
   void add(ScanFindings found, std::unique_ptr<ScanBuffers> buffers) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(buffers));
-    result_.score_square_sum += found.squares;
     result_.poses += found.poses;
     scanned_ += found.headings;
     if (request_.scanned) request_.scanned(scanned_);
     result_.maxima.insert(result_.maxima.end(), found.maxima.begin(), found.maxima.end());
     if (result_.maxima.size() < 4 * request_.keep) return;
     const auto cut = result_.maxima.begin() + static_cast<std::ptrdiff_t>(request_.keep);
-    std::ranges::nth_element(result_.maxima, cut, std::ranges::greater{}, &ScanPose::score);
-    floor_ = cut->score;
+    std::ranges::nth_element(result_.maxima, cut, is_better);
+    floor_ = std::nextafter(cut->score, -std::numeric_limits<float>::infinity());  // its equals may be better
     result_.maxima.erase(cut, result_.maxima.end());
   }
 
@@ -136,6 +149,7 @@ class Scan {
   TileScan tile_scan_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<ScanBuffers>> idle_;
+  std::vector<double> squares_;  ///< of each pair: added up in their order, whichever thread was first
   float floor_ = 0.0F;
   std::size_t scanned_ = 0;  ///< headings
   ScanResult result_;

@@ -70,8 +70,7 @@ struct SearchMode {
   GridPose pose;
   double scale = 1.0;  ///< of the feature map's size, within the scale range
   double score = 0.0;
-  double rho = 0.0;      ///< equation (5) at the nearest cell
-  double pearson = 0.0;  ///< the same about the separate means
+  double pearson = 0.0;  ///< equation (5) about the separate means, at the nearest cell
   std::int64_t observed_cells = 0;
   PoseCovariance covariance{};  ///< from the shape of the peak, and the cell size
   /// Road in both that the score rests on (shared_road.hpp); of the best mode alone, of others 0.

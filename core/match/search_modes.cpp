@@ -36,7 +36,6 @@ SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& backgro
   mode.scale = level.scales.factor(pose.scale);
   mode.score = peak.scores[kPeakRadius][kPeakRadius][kPeakRadius];
   mode.pearson = pearson(peak.centre).value_or(0.0);
-  mode.rho = rho(peak.centre).value_or(0.0);
   mode.observed_cells = peak.centre.n;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) mode.covariance[i][j] = unit[i] * unit[j] * shape.covariance[i][j];

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -24,7 +25,11 @@ void parallel_for(int count, int threads, const std::function<void(int)>& work) 
   };
   {
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < std::min(threads, count); ++i) helpers.emplace_back(run);
+    try {
+      for (int i = 1; i < std::min(threads, count); ++i) helpers.emplace_back(run);
+    } catch (const std::system_error&) {
+      // The system gives no more threads: those that there are do all of it.
+    }
     run();
   }
   if (failure) std::rethrow_exception(failure);

@@ -42,6 +42,7 @@ struct Features {
   FeatureMap map;
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
   std::optional<FrameCamera> camera_in_file;                             ///< of a frame with exif=true
+  std::optional<FeatureMap> own_frame{};  ///< where others are laid around it: the request's picture by itself
 };
 
 /// How well the nadir is known as the client says, 1 sigma per axis: it knows more than a camera's description tells.

@@ -69,19 +69,27 @@ void Fields::add_text(const std::string& name, std::string text) {
   }
 }
 
-void Fields::add(const json& object, std::span<const std::string> known) {
+void Fields::add(json object, std::span<const std::string> known) {
   if (!object.is_object()) throw InvalidField("bad-json", "body", "the JSON body must be an object");
-  for (const auto& [name, value] : object.items()) {
+  for (auto& [name, value] : object.get_ref<json::object_t&>()) {
     if (std::ranges::find(known, name) == known.end()) {
       throw InvalidField(
           "unknown-field", name,
           fmt::format("'{}' is not a field of this request; allowed: {}", shown(name), fmt::join(known, ", ")));
     }
     if (value.is_null()) continue;
-    if (!values_.try_emplace(name, Value{value, false}).second) {
+    if (!values_.try_emplace(name, Value{std::move(value), false}).second) {
       throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
     }
   }
+}
+
+Fields Fields::without(std::span<const std::string> left_out) const {
+  Fields result;
+  for (const auto& [name, value] : values_) {
+    if (std::ranges::find(left_out, name) == left_out.end()) result.values_.emplace(name, value);
+  }
+  return result;
 }
 
 const Fields::Value* Fields::find(const std::string& name) const {

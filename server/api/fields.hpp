@@ -37,7 +37,7 @@ class Fields {
 
   /// Adds the members of a JSON object, of which every name must be one of `known`.
   /// Throws InvalidField ("unknown-field", "duplicate-parameter", "bad-json").
-  void add(const nlohmann::json& object, std::span<const std::string> known);
+  void add(nlohmann::json object, std::span<const std::string> known);
   void add_text(const std::string& name, std::string text);
 
   bool has(const std::string& name) const { return values_.contains(name); }
@@ -61,6 +61,7 @@ class Fields {
   }
   /// The member of a JSON body as it is; nullptr where it is absent.
   const nlohmann::json* member(const std::string& name) const;
+  Fields without(std::span<const std::string> left_out) const;
   /// Names and values of all but `left_out`, to compare requests by: the order in which they came does not count.
   std::string summary(std::span<const std::string> left_out) const;
 

@@ -35,7 +35,7 @@ GeoPose parse_pose(const json& pose, std::size_t index) {
           Angle::degrees(number_within(pose, "heading_deg", place, kDegrees))};
 }
 
-/// Rounded up, since 0 means no limit, or no proof.
+/// Rounded up, since 0 means no proof.
 std::chrono::milliseconds milliseconds_of(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000.0 * seconds)));
 }
@@ -91,9 +91,8 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
 
 void shorten(FixOptions& options, http::Clock::time_point deadline) {
   constexpr double kShare = 0.95;
-  const auto left = std::max(std::chrono::milliseconds(1),
-                             milliseconds_of(kShare * 0.001 * static_cast<double>(time_left(deadline).count())));
-  if (options.time_limit.count() == 0 || left < options.time_limit) options.time_limit = left;
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(kShare * time_left(deadline));
+  options.time_limit = std::min(left, options.time_limit.value_or(left));
 }
 
 std::chrono::milliseconds time_left(http::Clock::time_point deadline) {

@@ -24,7 +24,7 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
 /// Ends the search early enough before the deadline to answer with what it has. Throws as time_left().
 void shorten(FixOptions& options, http::Clock::time_point deadline);
 
-/// At least a millisecond, as no limit is 0. Throws Interrupted ("request-deadline") when nothing is left.
+/// Throws Interrupted ("request-deadline") when nothing is left.
 std::chrono::milliseconds time_left(http::Clock::time_point deadline);
 
 /// "poses": objects with lat, lon, heading_deg. Throws InvalidField with the place ("poses[3].lat") or LimitExceeded

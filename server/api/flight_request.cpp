@@ -68,6 +68,8 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
   }
   Features first = features_of(content, detector, default_cell_m, limits, stop);
   if (!content.fields.has("also")) return first;
+  static const std::vector<std::string> kPictures{"image", "also"};  // megabytes
+  Content other{content.fields.without(kPictures), {}, true};
   std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
   for (const json& frame : others_of(content, limits)) {
     const std::string place = fmt::format("also[{}]", parts.size() - 1);
@@ -75,12 +77,13 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
       throw InvalidField("bad-parameter", place, "a frame is an object with image, forward_m, right_m and turn_deg");
     }
     const BodyOffset offset = offset_of(frame, place);
-    const Content other{content.fields, picture_of(frame, place), true};
+    other.image = picture_of(frame, place);
     Features features = named(place, [&] { return features_of(other, detector, default_cell_m, limits, stop); });
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();
   }
-  return {combined(parts, static_cast<double>(limits.cells)), first.detect_time, first.camera_in_file};
+  FeatureMap all = combined(parts, static_cast<double>(limits.cells));
+  return {std::move(all), first.detect_time, first.camera_in_file, std::move(parts.front().features)};
 }
 
 }  // namespace roadfix::api

@@ -38,10 +38,12 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.calibration = service.calibration;
-  options.threads = service.search_threads;
+  options.own_frame = features.own_frame;
   api::shorten(options, request.deadline);
   const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
   options.stop = watch.token();
+  const SearchThreads::Share share(service.search_threads);
+  options.threads = share.threads();
   auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
   if (features.camera_in_file) answer["camera"] = api::to_json(*features.camera_in_file);
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));

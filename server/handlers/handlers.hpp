@@ -8,6 +8,10 @@
 
 namespace roadfix::server {
 
+/// In a queue that is not the one of heavy requests at most one request waits per so many threads: most of the
+/// service's connections are left to others.
+inline constexpr int kThreadsPerWaiting = 4;
+
 /// / and /console/{file}: the operator's page
 void add_console_routes(http::Router& router);
 /// /healthz, /readyz, /metrics, /openapi.json, /v1/limits

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <string_view>
+#include <optional>
+#include <string>
 
 #include "core/locate/decision.hpp"
 #include "core/units/error.hpp"
+#include "core/units/lru_cache.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -25,9 +27,9 @@ constexpr api::Range kFootprint{20.0, 5000.0};
 constexpr double kUsualFootprintM = 400.0;
 /// Less of a footprint on the map says nothing about the place.
 constexpr double kMinObservedShare = 0.5;
-/// Tiles are drawn one at a time, and those that wait leave most of the service's connections to others.
-constexpr int kTilesDrawn = 1;
-constexpr int kThreadsPerWaitingTile = 4;
+constexpr int kTilesDrawn = 1;            ///< at a time
+constexpr std::size_t kPlaceBytes = 160;  // that one takes beside its key and a copy of it
+constexpr std::size_t kPlacesBytes = std::size_t{16} << 20;
 
 FixOptions fix_options(const Service& service, const http::Request& request) {
   FixOptions options;
@@ -45,7 +47,8 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.footprint_m = fields.number("footprint_m", kFootprint);
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
   query.fix = fix_options(service, request);
-  query.fix.threads = service.search_threads;
+  const SearchThreads::Share share(service.search_threads);
+  query.fix.threads = share.threads();
   const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
   query.fix.stop = watch.token();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
@@ -69,66 +72,61 @@ Layer layer_of(const Service& service, const http::Request& request) {
           fields.word("style", kTileStyles)};
 }
 
-/// Before the probability of a place that is kept.
-constexpr std::string_view kFixMark = "fix ";
-
-std::string kept_text(const Localizability& found) {
-  if (found.observed_share < kMinObservedShare) return {};
-  return fmt::format("{}{:.4f}", found.status == FixStatus::kFix ? kFixMark : "", found.probability);
-}
-
-std::optional<api::PlaceAnswer> kept_answer(std::string_view text) {
-  const bool fix = text.starts_with(kFixMark);
-  const auto probability = api::parse_number(text.substr(fix ? kFixMark.size() : 0));
-  return probability ? std::optional(api::PlaceAnswer{fix, *probability}) : std::nullopt;
-}
-
-/// Of a place, searched for once and kept beside the tiles that show it: a tile that runs out of time goes on where it
-/// was when it is asked for again.
-std::optional<api::PlaceAnswer> place_answer(const Service& service, const http::Request& request, const Layer& layer,
-                                             GridPoint place) {
-  const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
-  std::optional<std::string> kept = service.pictures.find(key);
-  if (!kept) {
-    if (request.abandoned()) throw http::ClientGone();
-    LocalizabilityQuery query;
-    query.position = layer.map->view.zone.unproject(place);
-    query.footprint_m = layer.footprint_m;
-    query.fix = fix_options(service, request);
-    const Localizability found = localizability(layer.map->view, query);
-    if (found.reason == kTimeLimitReason) {
-      throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
-    }
-    kept = kept_text(found);
-    service.pictures.insert(key, *kept);
+std::optional<api::PlaceAnswer> searched(const Service& service, const http::Request& request, const Layer& layer,
+                                         GridPoint place) {
+  LocalizabilityQuery query;
+  query.position = layer.map->view.zone.unproject(place);
+  query.footprint_m = layer.footprint_m;
+  query.fix = fix_options(service, request);
+  const Localizability found = localizability(layer.map->view, query);
+  if (found.reason == kTimeLimitReason) {
+    throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
   }
-  return kept_answer(*kept);
+  if (found.observed_share < kMinObservedShare) return std::nullopt;
+  return api::PlaceAnswer{found.status == FixStatus::kFix, found.probability};
 }
+
+/// What the tiles of all maps share.
+struct Tiles {
+  explicit Tiles(int waiting) : turns(kTilesDrawn, waiting) {}
+
+  http::Admission turns;
+  /// A tile that runs out of time goes on where it was when it is asked for again.
+  LruCache<std::string, std::optional<api::PlaceAnswer>> places{kPlacesBytes};
+};
 
 std::string drawn(const Service& service, const http::Request& request, const Layer& layer, api::TileAddress tile,
-                  http::Admission& turns) {
+                  Tiles& tiles) {
+  const auto answer_at = [&](GridPoint place) {
+    const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
+    if (const auto kept = tiles.places.find(key)) return *kept;
+    if (request.abandoned()) throw http::ClientGone();
+    const std::optional<api::PlaceAnswer> answer = searched(service, request, layer, place);
+    tiles.places.insert(key, answer, kPlaceBytes + 2 * key.size());
+    return answer;
+  };
   const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
   return kept_or_drawn(service.pictures, key, [&] {
-    const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
-    return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style),
-                                   [&](GridPoint place) { return place_answer(service, request, layer, place); });
+    const http::Admission::Ticket turn = tiles.turns.enter(request.client, request.deadline, request.abandoned);
+    return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style), answer_at);
   });
 }
 
 /// A service that is started with another calibration draws other tiles.
 std::string variation(const Service& service, const Layer& layer, const std::string& path) {
   const Calibration& c = service.calibration ? *service.calibration : default_calibration();
-  std::string key = fmt::format("{} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest);
+  std::string key = fmt::format("{} {} {} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest,
+                                c.position_sigma_scale, c.heading_sigma_scale);
   for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.max);
   return key;
 }
 
-http::Response get_tile(const Service& service, const http::Request& request, http::Admission& turns) {
+http::Response get_tile(const Service& service, const http::Request& request, Tiles& tiles) {
   const auto& at = request.path_parameters;
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const Layer layer = layer_of(service, request);
   const std::string tag = entity_tag(layer.map->edition(), variation(service, layer, request.path));
-  return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, turns); });
+  return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, tiles); });
 }
 
 http::Response get_tilejson(const Service& service, const http::Request& request) {
@@ -153,12 +151,12 @@ void add_localizability_routes(http::Router& router, const Service& service) {
               http::Load::kHeavyAnswer,
               [&service](const http::Request& request) { return get_localizability(service, request); }});
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
-  const auto turns = std::make_shared<http::Admission>(kTilesDrawn, service.http.threads / kThreadsPerWaitingTile);
+  const auto tiles = std::make_shared<Tiles>(service.http.threads / kThreadsPerWaiting);
   router.add({"GET",
               "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
               {"footprint_m", "style", "version"},
               http::Load::kLight,
-              [&service, turns](const http::Request& request) { return get_tile(service, request, *turns); }});
+              [&service, tiles](const http::Request& request) { return get_tile(service, request, *tiles); }});
   router.add({"GET",
               "/v1/maps/{map}/localizability/tilejson.json",
               {"footprint_m", "style"},

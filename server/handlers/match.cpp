@@ -20,11 +20,12 @@ http::Response post_match(const Service& service, const http::Request& request) 
   const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
   MatchOptions options;
   options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
-  options.threads = service.search_threads;
   const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
   options.stop = limit.token();
+  const SearchThreads::Share share(service.search_threads);
+  options.threads = share.threads();
   return json_response(api::to_json(match(map->view, features.map, poses, options), map->view));
 }
 

@@ -110,9 +110,10 @@ http::Response take_step(const Service& service, const http::Request& request, P
         api::features_of(step.content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
   }
   StepLimits limits;
-  limits.threads = service.search_threads;
-  // Two searches, and the rest of the step.
-  limits.search_time = std::max(api::time_left(request.deadline) / 3, std::chrono::milliseconds(1));
+  const SearchThreads::Share share(service.search_threads);
+  limits.threads = share.threads();
+  constexpr int kRestOfStep = 10;  // a tenth of the time
+  limits.searches_end = request.deadline - api::time_left(request.deadline) / kRestOfStep;
   limits.stop = limit.token();
   std::string answer = service.tracks.step(track.id, input, digest, limits, request.received);
   const std::string status = api::stored_json(answer).at("status");

@@ -46,8 +46,9 @@ http::Response get_window(const Service& service, const http::Request& request, 
 
 void add_window_route(http::Router& router, const Service& service) {
   // The map around a long window on a slant takes hundreds of megabytes. Not among the heavy requests, whose turns are
-  // longer; and none is sent away: no more wait than have a thread.
-  const auto turns = std::make_shared<http::Admission>(service.http.heavy_running, service.http.threads);
+  // longer.
+  const auto turns =
+      std::make_shared<http::Admission>(service.http.heavy_running, service.http.threads / kThreadsPerWaiting);
   router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), http::Load::kLight,
               [&service, turns](const http::Request& request) { return get_window(service, request, *turns); }});
 }

@@ -117,7 +117,8 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
 
 std::optional<std::size_t> TrackRegistry::flying() const {
   try {
-    return store().flying().size();
+    const std::vector<StoredTrack> tracks = store().flying();
+    return std::ranges::count_if(tracks, [&](const StoredTrack& track) { return !ended(track); });
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -239,15 +240,21 @@ std::optional<std::string> TrackRegistry::answered(const std::string& id, std::i
   return taken->answer;
 }
 
-void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequence) const {
-  std::shared_ptr<LiveTrack> track;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = live_.find(id);
-    if (known == live_.end()) return;
-    track = known->second;
+void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequence) {
+  std::unique_lock lock(mutex_);
+  const auto known = live_.find(id);
+  if (known == live_.end()) return;
+  // Each holds a connection's thread, and a step before it may take as long as a search.
+  if (steps_waiting_ >= limits_.steps_waiting) {
+    throw http::Busy(fmt::format("{} steps of tracks wait for those before them already; try again", steps_waiting_),
+                     std::chrono::seconds(1));
   }
+  const std::shared_ptr<LiveTrack> track = known->second;
+  ++steps_waiting_;
+  lock.unlock();
   track->await_predecessor(sequence, limits_.order_wait);
+  lock.lock();
+  --steps_waiting_;
 }
 
 std::string TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
@@ -268,7 +275,7 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   }
   turn.settle(std::move(result.state));
   const std::lock_guard registry_lock(mutex_);
-  heard_[id] = {came, Clock::now()};
+  if (live_.contains(id)) heard_[id] = {came, Clock::now()};  // else it has ended since
   ++changes_;
   news_.notify_all();
   return text;

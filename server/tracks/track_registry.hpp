@@ -30,6 +30,7 @@ struct TrackLimits {
   int streams = 16;                           ///< of events, at the same time
   std::chrono::milliseconds idle{3'600'000};  ///< without a step, then a track has ended
   std::chrono::milliseconds order_wait{100};  ///< for a step that was overtaken on its way here
+  int steps_waiting = 16;                     ///< for those before them, of all tracks
   std::int64_t store_bytes = std::int64_t{8} << 30;
 };
 
@@ -74,8 +75,8 @@ class TrackRegistry {
   /// step of the same number.
   std::optional<std::string> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
   /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
-  /// the searches for that, so that it holds none meanwhile.
-  void await_predecessor(const std::string& id, std::int64_t sequence) const;
+  /// the searches for that, so that it holds none meanwhile. Throws Busy where too many wait.
+  void await_predecessor(const std::string& id, std::int64_t sequence);
   /// Takes the step and returns its answer once it cannot be lost any more. Throws what Tracker::advance throws,
   /// InvalidInput ("map-replaced") and the store's errors; the track is then as it was. `came` is when the step did.
   std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
@@ -114,6 +115,7 @@ class TrackRegistry {
   std::map<std::string, Heard> heard_;  ///< last steps or beginnings, of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
   int streams_ = 0;
+  int steps_waiting_ = 0;
   bool stopping_ = false;
 };
 

@@ -13,6 +13,7 @@
 #include "server/api/web_mercator.hpp"
 #include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/raw_http.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -22,14 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-bool eventually(const auto& condition) {
-  for (int i = 0; i < 400; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(25ms);
-  }
-  return false;
-}
+using testing::eventually;
 
 bool refuses_connections(int port) {
   try {
@@ -137,12 +131,12 @@ TEST(ServiceLife, AnswersARequestInFlightWhenItIsAskedToStop) {
 }
 
 /// A calibration that weighs nothing but the ground.
-std::string calibration_by_ground(const testing::TemporaryFolder& folder, double weight) {
+std::string calibration_by_ground(const testing::TemporaryFolder& folder, double weight, double sigma_scale = 1.0) {
   const std::filesystem::path path = folder / ("ground-" + std::to_string(weight) + ".json");
   json document{{"format", kCalibrationFormat},
                 {"bias", 0.0},
                 {"highest", 0.9},
-                {"sigma_scale", {{"position", 1.0}, {"heading", 1.0}}}};
+                {"sigma_scale", {{"position", sigma_scale}, {"heading", 1.0}}}};
   for (const CountedFigure& figure : kCountedFigures) {
     document["terms"][figure.name] = {{"weight", figure.name == "ground" ? weight : 0.0}, {"most", 10.0}};
   }
@@ -165,12 +159,15 @@ TEST(ServiceLife, IsAsSureAsTheCalibrationItIsGiven) {
 TEST(ServiceLife, SendsTilesOfLocalizabilityAnewUnderAnotherCalibration) {
   const testing::TemporaryFolder folder;
   testing::write_map_file(folder / "town.gpkg", testing::Town().roads, 2.0);
-  const auto tag = [&](double weight) {
-    const testing::ServiceProcess service(folder.path(), {"--calibration", calibration_by_ground(folder, weight)});
+  const auto tag = [&](double weight, double sigma_scale) {
+    const testing::ServiceProcess service(folder.path(),
+                                          {"--calibration", calibration_by_ground(folder, weight, sigma_scale)});
     return testing::client_of(service).Get("/v1/maps/town/localizability/tiles/16/0/0.png")->get_header_value("ETag");
   };
-  EXPECT_EQ(tag(0.2), tag(0.2));
-  EXPECT_NE(tag(0.2), tag(0.3));
+  const std::string first = tag(0.2, 1.0);
+  EXPECT_EQ(tag(0.2, 1.0), first);
+  EXPECT_NE(tag(0.3, 1.0), first);
+  EXPECT_NE(tag(0.2, 2.0), first);
 }
 
 TEST(ServiceLife, SendsTilesAnewWhenTheOverviewsOfAMapAreFused) {

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/detect/orthoimage.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/world/world_files.hpp"
@@ -49,16 +50,11 @@ cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, cons
   const int reach = static_cast<int>(std::ceil(side * std::numbers::sqrt2 / 2.0)) + 2;
   const cv::Rect around(static_cast<int>(col) - reach, static_cast<int>(row) - reach, 2 * reach, 2 * reach);
   const cv::Rect pixels = around & cv::Rect(0, 0, placement.cols, placement.rows);
-  const double c = cos(pose.heading);
-  const double s = sin(pose.heading);
-  // Picture pixel centre = centre of the frame + columns to the right of the heading + rows back from it.
-  const double middle = (side - 1) / 2.0;
-  const cv::Matx23d picture_from_frame(c, -s, col - 0.5 - pixels.x - middle * c + middle * s,  //
-                                       s, c, row - 0.5 - pixels.y - middle * s - middle * c);
-  cv::Mat3b frame;
-  cv::warpAffine(read_pixels(picture, pixels), frame, picture_from_frame, {side, side},
-                 cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
-  return frame;
+  const GridPoint north_west = placement.point_of(pixels.x, pixels.y);
+  const cv::Mat observed(pixels.size(), CV_8UC1, cv::Scalar(255));
+  return cut_out({{read_pixels(picture, pixels), observed, placement.gsd_m}, north_west}, pose,
+                 {footprint_m, footprint_m}, placement.gsd_m)
+      .pixels;
 }
 
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,

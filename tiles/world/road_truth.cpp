@@ -1,16 +1,21 @@
 #include "tiles/world/road_truth.hpp"
 
 #include <fmt/format.h>
-#include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix::world {
 namespace {
+
+using nlohmann::ordered_json;
 
 struct Piece {
   PlanPoint from;
@@ -54,23 +59,19 @@ const char* surface_tag(Surface surface) {
   return nullptr;
 }
 
-void require(bool done, const std::string& path, const GdalMessages& messages) {
-  if (!done) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written ({})", path, messages.text()));
-}
-
-void add(OGRLayer& layer, const Street& street, const Polyline& line, const Placement& placement,
-         const std::string& path, const GdalMessages& messages) {
-  OGRLineString geometry;
+ordered_json feature_of(const Street& street, const Polyline& line, const Placement& placement) {
+  constexpr double kPerDegree = 1e8;  // to a millimetre
+  ordered_json coordinates = ordered_json::array();
   for (const PlanPoint& p : line) {
     const LatLon at = placement.zone.unproject(placement.point_of(p.x / placement.gsd_m, p.y / placement.gsd_m));
-    geometry.addPoint(at.lon_deg, at.lat_deg);
+    coordinates.push_back({std::round(kPerDegree * at.lon_deg) / kPerDegree,  //
+                           std::round(kPerDegree * at.lat_deg) / kPerDegree});
   }
-  OGRFeature feature(layer.GetLayerDefn());
-  feature.SetField("highway", street.road_class.c_str());
-  feature.SetField("width_m", street.width_m);
-  if (const char* surface = surface_tag(street.surface)) feature.SetField("surface", surface);
-  feature.SetGeometry(&geometry);
-  require(layer.CreateFeature(&feature) == OGRERR_NONE, path, messages);
+  ordered_json properties{{"highway", street.road_class}, {"width_m", street.width_m}};
+  if (const char* surface = surface_tag(street.surface)) properties["surface"] = surface;
+  return {{"type", "Feature"},
+          {"properties", std::move(properties)},
+          {"geometry", {{"type", "LineString"}, {"coordinates", std::move(coordinates)}}}};
 }
 
 }  // namespace
@@ -87,31 +88,17 @@ std::vector<Polyline> clipped(const Polyline& line, double width_m, double heigh
 }
 
 int write_road_truth(const std::string& path, const std::vector<Street>& streets, const Placement& placement) {
-  require_gdal();
-  const GdalMessages messages;
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GeoJSON");
-  require(driver != nullptr, path, messages);
-  const DatasetPtr dataset(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  require(dataset != nullptr, path, messages);
-  OGRSpatialReference reference = wgs84_reference();
-  CPLStringList options;
-  options.SetNameValue("COORDINATE_PRECISION", "8");
-  OGRLayer* layer = dataset->CreateLayer("roads", &reference, wkbLineString, options.List());
-  require(layer != nullptr, path, messages);
-  OGRFieldDefn road_class("highway", OFTString);
-  OGRFieldDefn width("width_m", OFTReal);
-  OGRFieldDefn surface("surface", OFTString);
-  for (OGRFieldDefn* field : {&road_class, &width, &surface}) {
-    require(layer->CreateField(field) == OGRERR_NONE, path, messages);
-  }
+  std::ofstream out(path);
+  out << R"({"type":"FeatureCollection","name":"roads","features":[)";
   int count = 0;
   for (const Street& street : streets) {
     for (const Polyline& line :
          clipped(street.line, placement.cols * placement.gsd_m, placement.rows * placement.gsd_m)) {
-      add(*layer, street, line, placement, path, messages);
-      ++count;
+      out << (count++ == 0 ? "\n" : ",\n") << feature_of(street, line, placement).dump();
     }
   }
+  out << "\n]}\n";
+  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path));
   return count;
 }
 

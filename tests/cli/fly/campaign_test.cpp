@@ -65,6 +65,7 @@ TEST_F(Campaigns, TheDefaultFilterFollowsAVehicleOverGoodFeatureMaps) {
   campaign.filters = {"default"};
   campaign.localizer = library_localizers(map, 500, 1, {}, {});
   const auto results = run(campaign, map.zone);
+  ASSERT_EQ(results[0].runs.size(), static_cast<std::size_t>(campaign.flights.number));
   for (const fly::Run& flight : results[0].runs) EXPECT_LT(flight.records.back().error_m, 25.0);
 }
 

@@ -47,7 +47,7 @@ TEST(NetworkDescription, NamesAMissingField) {
     if (name == "fnv1a64") continue;
     json less = all;
     less.erase(name);
-    EXPECT_NE(refusal(less).find("\"" + name + "\" is missing"), std::string::npos) << name;
+    EXPECT_NE(refusal(less).find("lacks the field '" + name + "'"), std::string::npos) << name;
   }
 }
 
@@ -57,14 +57,14 @@ TEST(NetworkDescription, RefusesWhatNoNetworkCanMean) {
     changed[name] = value;
     return refusal(changed);
   };
-  EXPECT_NE(with("gsd_m", 0).find("outside"), std::string::npos);
+  EXPECT_NE(with("gsd_m", 0).find("within"), std::string::npos);
   EXPECT_NE(with("gsd_m", "1").find("number"), std::string::npos);
   EXPECT_NE(with("stride", 1.5).find("whole"), std::string::npos);
   EXPECT_NE(with("stride", 3).find("multiple"), std::string::npos);
   EXPECT_NE(with("tile_px", 100).find("multiples"), std::string::npos);
   EXPECT_NE(with("overlap_px", 208).find("half"), std::string::npos);
   EXPECT_NE(with("mean", {1, 2}).find("three"), std::string::npos);
-  EXPECT_NE(with("std", {0, 1, 1}).find("outside"), std::string::npos);
+  EXPECT_NE(with("std", {0, 1, 1}).find("std[0] is 0; it must lie within"), std::string::npos);
   EXPECT_NE(with("channels", "grey").find("bgr"), std::string::npos);
   EXPECT_NE(with("calibration", 1).find("object"), std::string::npos);
 }
@@ -78,6 +78,15 @@ TEST(NetworkDescription, LocalContrastIsOptionalAndItsWindowOdd) {
   EXPECT_NE(refusal(local).find("odd"), std::string::npos);
   local["local_contrast"] = true;
   EXPECT_NE(refusal(local).find("object"), std::string::npos);
+}
+
+TEST(NetworkDescription, RefusesFieldsThatItDoesNotKnow) {
+  json changed = example();
+  changed["local_contrst"] = {{"window_px", 129}, {"floor", 4}};
+  EXPECT_NE(refusal(changed).find("unknown field 'local_contrst'"), std::string::npos);
+  changed = example();
+  changed["calibration"]["offset"] = 1;
+  EXPECT_NE(refusal(changed).find("calibration has the unknown field 'offset'"), std::string::npos);
 }
 
 TEST(NetworkDescription, GivesNoNameTwice) {

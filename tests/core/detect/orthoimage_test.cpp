@@ -54,6 +54,22 @@ TEST(OrthoimageCutOut, BeyondTheImageryNothingIsObserved) {
   EXPECT_EQ(cv::countNonZero(cut.observed), 64);
 }
 
+TEST(OrthoimageCutOut, FarBeyondTheImageryNothingIsObserved) {
+  const Orthoimage ortho = coordinates(40, 40);
+  const GroundImage cut = cut_out(ortho, {{5000.0, -1e9}, Angle()}, {8.0, 4.0}, 0.5);
+  EXPECT_EQ(cut.pixels.size(), cv::Size(16, 8));
+  EXPECT_EQ(cut.observed.size(), cv::Size(16, 8));
+  EXPECT_EQ(cv::countNonZero(cut.observed), 0);
+}
+
+TEST(OrthoimageCutOut, TakesWiderImageryThanOpenCvWarps) {
+  const Orthoimage ortho = coordinates(33'000, 40);
+  const double east_m = 1000.0 + 32'900 * 0.5;
+  const GroundImage cut = cut_out(ortho, {{east_m, 1990.0}, Angle()}, {5.0, 4.0}, 0.5);
+  EXPECT_EQ(cut.pixels.at<cv::Vec3b>(0, 0), cv::Vec3b((32'900 - 5) % 256, 16, 0));
+  EXPECT_EQ(cv::countNonZero(cut.observed), 80);
+}
+
 TEST(Corners, FollowTheHeading) {
   const auto placed = corners({2.0, 4.0}, {{10.0, 20.0}, Angle::degrees(90)});
   EXPECT_NEAR(placed[0].east_m, 12.0, 1e-9);  // front left

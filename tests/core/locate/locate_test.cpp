@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/grid/combine.hpp"
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
 #include "core/locate/match_poses.hpp"
@@ -316,6 +317,35 @@ TEST_F(Locate, TheEllipseHoldsTheErrors) {
   ASSERT_GT(fixes, 4);
   EXPECT_LT(nees / fixes, 6.0);
   EXPECT_GT(nees / fixes, 0.02);
+}
+
+TEST_F(Locate, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  const auto seen_from = [&](double ahead_m) {
+    return observed_at(map_, moved(truth, {ahead_m, 0.0, {}}), 100, 100, 2.0, {0.2, 0.2}, random_);
+  };
+  const FeatureMap own = seen_from(0.0);
+  const FeatureMap ahead = seen_from(120.0);
+  const FeatureMap far_ahead = seen_from(240.0);
+  const auto together = [&](double late_m) {
+    const std::vector<PlacedFeatures> parts{
+        {own, {}}, {ahead, {120.0 - late_m, 0.0, {}}}, {far_ahead, {240.0 - late_m, 0.0, {}}}};
+    return combined(parts, 1e6);
+  };
+  const auto answer = [&](double late_m, const std::optional<FeatureMap>& own_frame) {
+    return locate(view_, together(late_m), {}, {.own_frame = own_frame});
+  };
+  const Fix right = answer(0.0, own);
+  EXPECT_EQ(right.status, FixStatus::kFix) << right.explanation;
+  EXPECT_LT(error_m(right.modes.at(0).pose, truth), 4.0);
+  const Fix misled = answer(60.0, {});
+  ASSERT_EQ(misled.status, FixStatus::kFix);
+  ASSERT_GT(error_m(misled.modes.at(0).pose, truth), 50.0);
+  const Fix refused = answer(60.0, own);
+  EXPECT_EQ(refused.status, FixStatus::kNoFix);
+  EXPECT_EQ(refused.reason, "frames-contradict");
+  EXPECT_LE(refused.probability, 0.5);
+  EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
 }
 
 TEST_F(Locate, MatchScoresPosesExactlyAndInBins) {

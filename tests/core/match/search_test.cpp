@@ -42,7 +42,7 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
     ASSERT_FALSE(found.modes.empty());
     EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 1.0);
     EXPECT_LT(angular_distance(found.modes[0].pose.heading, truth.heading).degrees(), 1.0);
-    EXPECT_GT(found.modes[0].rho, 0.9);
+    EXPECT_GT(found.modes[0].pearson, 0.9);
   }
 }
 
@@ -203,22 +203,31 @@ TEST(Search, StaysWithinItsRegionAndHeadingRange) {
     EXPECT_LE(angular_distance(mode.pose.heading, region.heading).degrees(), 13.0);
   }
   region.heading = truth.heading + Angle::degrees(90.0);
-  for (const SearchMode& mode : search(reader_of(map), 2.0, window, region, {}).modes) EXPECT_LT(mode.rho, 0.7);
+  const SearchResult turned = search(reader_of(map), 2.0, window, region, {});
+  ASSERT_FALSE(turned.modes.empty());
+  EXPECT_LT(turned.modes[0].pearson, 0.7);
 }
 
-TEST(Search, ManyThreadsGiveWhatOneGives) {
-  const RoadGrid map = street_map(7, town(1200, 1200));
+TEST(Search, ManyThreadsGiveToTheLastBitWhatOneGives) {
+  const RoadGrid map = street_map(7, {4.0, {75'000, -1'000'000}, 1500, 1400});
   std::mt19937_64 random(8);
   PoseRegion region;
   region.box = map.geometry.box();
-  const FeatureMap window = cut_out(map, pose_within(region.box, 250.0, random), 128, 128, 2.0);
+  const FeatureMap seen = observed_at(map, pose_within(region.box, 400.0, random), 110, 110, 4.0, {0.4, 0.4}, random);
   SearchOptions options;
-  const SearchResult one = search(reader_of(map), 2.0, window, region, options);
+  const SearchResult one = search(reader_of(map), 4.0, seen, region, options);
   options.threads = 4;
-  const SearchResult four = search(reader_of(map), 2.0, window, region, options);
-  ASSERT_EQ(one.modes.size(), four.modes.size());
-  EXPECT_EQ(one.modes[0].score, four.modes[0].score);
+  const SearchResult four = search(reader_of(map), 4.0, seen, region, options);
   EXPECT_EQ(one.background.poses, four.background.poses);
+  EXPECT_EQ(one.background.sd, four.background.sd);
+  EXPECT_EQ(one.background.rivals, four.background.rivals);
+  ASSERT_EQ(one.modes.size(), four.modes.size());
+  for (std::size_t i = 0; i < one.modes.size(); ++i) {
+    EXPECT_EQ(one.modes[i].pose.position, four.modes[i].pose.position) << "mode " << i;
+    EXPECT_EQ(one.modes[i].pose.heading, four.modes[i].pose.heading) << "mode " << i;
+    EXPECT_EQ(one.modes[i].score, four.modes[i].score) << "mode " << i;
+    EXPECT_EQ(one.modes[i].covariance, four.modes[i].covariance) << "mode " << i;
+  }
 }
 
 TEST(Search, TellsHowFarItIsOverHeadingsAndSizes) {

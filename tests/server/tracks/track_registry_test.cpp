@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/support/street_map.hpp"
@@ -283,6 +284,22 @@ TEST_F(TrackRegistryTest, TakesStepsOfSeveralThreadsInOrder) {
   }
   senders.clear();
   EXPECT_EQ(different, 0);
+}
+
+TEST_F(TrackRegistryTest, LetsNoMoreStepsWaitForThoseBeforeThemThanItMay) {
+  TrackLimits limits;
+  limits.order_wait = std::chrono::minutes(10);
+  limits.steps_waiting = 2;
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  take(*tracks, id, 0);
+  std::vector<std::jthread> early;
+  for (int i = 0; i < 2; ++i) early.emplace_back([&] { tracks->await_predecessor(id, 2); });
+  const auto is_busy = [&] { return code_of([&] { tracks->await_predecessor(id, 1); }) == "server-busy"; };
+  EXPECT_TRUE(testing::eventually(is_busy));
+  take(*tracks, id, 1);
+  early.clear();
+  EXPECT_FALSE(is_busy());
 }
 
 }  // namespace

@@ -120,8 +120,8 @@ TEST(World, OfOpenCountryComesWithTheTruthAboutItsRoads) {
     EXPECT_EQ(bytes_of(folder / "a" / name), bytes_of(folder / "b" / name)) << name;
   }
   const std::string truth = bytes_of(folder / "a" / "roads.geojson");
-  EXPECT_THAT(truth, ::testing::HasSubstr(R"("highway": "track", "width_m": )"));
-  EXPECT_THAT(truth, ::testing::HasSubstr(R"("surface": ")"));
+  EXPECT_THAT(truth, ::testing::HasSubstr(R"("highway":"track","width_m":)"));
+  EXPECT_THAT(truth, ::testing::HasSubstr(R"("surface":")"));
   EXPECT_THAT(bytes_of(folder / "a" / "world.json"), ::testing::HasSubstr(R"("land": "country")"));
 }
 
@@ -190,7 +190,7 @@ TEST(World, CanBeDrawnAroundRealRoads) {
   EXPECT_EQ(report.placement.zone.epsg(), 32632);
   EXPECT_EQ(report.road_lines, 2);
   EXPECT_NEAR(report.road_km, 0.66, 0.02);
-  EXPECT_THAT(bytes_of(folder / "world" / "roads.geojson"), ::testing::HasSubstr(R"("highway": "primary")"));
+  EXPECT_THAT(bytes_of(folder / "world" / "roads.geojson"), ::testing::HasSubstr(R"("highway":"primary")"));
 
   settings.centre = LatLon{57.80, 11.965};
   EXPECT_EQ(failure(settings, folder / "elsewhere"), "world-without-roads");

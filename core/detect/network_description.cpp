@@ -14,10 +14,6 @@ namespace {
 const JsonFile kFile{"network description", "model-description", "model-description",
                      "models/README.md lists its fields"};
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw InvalidInput(kFile.field_code, fmt::format("{}: {}; {}", kFile.name, what, kFile.remedy));
-}
-
 int integer_in(const JsonField& root, const char* name, double min, double max) {
   return static_cast<int>(root.at(name).whole_number(min, max));
 }
@@ -35,12 +31,12 @@ LocalContrast local_contrast_of(const JsonField& field) {
   return local;
 }
 
-void check_tiles(const NetworkDescription& network) {
-  if (network.multiple % network.stride != 0) refuse("multiple must be a multiple of stride");
+void check_tiles(const NetworkDescription& network, const JsonField& root) {
+  if (network.multiple % network.stride != 0) root.at("multiple").refuse("must be a multiple of stride");
   if (network.tile_px % network.multiple != 0 || network.overlap_px % network.multiple != 0) {
-    refuse("tile_px and overlap_px must be multiples of multiple");
+    root.at("tile_px").refuse("and overlap_px must be multiples of multiple");
   }
-  if (2 * network.overlap_px > network.tile_px) refuse("overlap_px must be at most half of tile_px");
+  if (2 * network.overlap_px > network.tile_px) root.at("overlap_px").refuse("must be at most half of tile_px");
 }
 
 }  // namespace
@@ -67,14 +63,17 @@ NetworkDescription parse_network_description(std::string_view text) {
   network.calibration_scale = calibration.at("scale").number(0.01, 100.0);
   network.calibration_bias = calibration.at("bias").number(-50.0, 50.0);
   if (root.has("fnv1a64")) network.fnv1a64 = root.at("fnv1a64").text();
-  check_tiles(network);
+  check_tiles(network, root);
   return network;
 }
 
 NetworkDescription read_network_description(const std::filesystem::path& model) {
   const auto path = std::filesystem::path(model).replace_extension(".json");
   const auto text = read_file(path);
-  if (!text) refuse(fmt::format("{} cannot be read; it must lie beside {}", path.string(), model.filename().string()));
+  if (!text) {
+    throw InvalidInput("model-description", fmt::format("{} cannot be read; it must lie beside {}", path.string(),
+                                                        model.filename().string()));
+  }
   return parse_network_description(*text);
 }
 

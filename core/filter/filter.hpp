@@ -109,6 +109,8 @@ class Filter {
   void widen(double sigma_m);
   /// Changes the drift of each particle by a normal draw of this sigma per axis, and draws new ones with as much.
   void widen_drift(double sigma_m_s);
+  /// Changes the drift of a share of the particles, drawn at random, by a normal draw of this sigma per axis.
+  void try_drifts(double share, double sigma_m_s);
   /// How much worse late measurements fit than earlier ones, in [0, 1].
   double doubt() const;
 

@@ -46,7 +46,10 @@ struct Refusal {
 std::optional<Refusal> refusal_of(const FeatureMap& features) {
   const double ground_m2 = features.cell_m * features.cell_m * static_cast<double>(features.cells.observed_count());
   if (ground_m2 == 0.0) {
-    return Refusal{"footprint-unobserved", "no cell of the feature map was observed: the frame showed no ground"};
+    return Refusal{
+        "footprint-unobserved",
+        "no cell of the feature map was observed, or only a corner far from the UAV: the frame shows no ground to "
+        "match"};
   }
   if (ground_m2 < kMinGroundM2) {
     return Refusal{

@@ -36,24 +36,38 @@ void require_usable(const FeatureMap& features) {
   }
 }
 
-/// The map is read as far around a pose as the feature map lies from its nadir. Of a small one far off that would be
-/// gigabytes.
-void require_nadir_near(const FeatureMap& features, double cell_m) {
-  const double cols = features.cells.cols();
-  const double rows = features.cells.rows();
-  const double off = std::hypot(features.nadir.col - cols / 2.0, features.nadir.row - rows / 2.0);
-  const double max_off = kMaxSidesOff * std::max(cols, rows);
-  const double max_reach = kMaxCellsAcross * cell_m / features.cell_m;
-  if (off <= max_off && off + 0.5 * std::hypot(cols, rows) <= max_reach) return;
-  throw InvalidInput("nadir-out-of-range",
-                     fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
-                                 "{} cells: check nadir_col and nadir_row, at most {:.0f} times the longer side "
-                                 "of what was observed is allowed, and {} cells of the map to the farthest corner",
-                                 off, cols, rows, kMaxSidesOff, kMaxCellsAcross));
+double off_nadir(const FeatureMap& features) {
+  return std::hypot(features.nadir.col - features.cells.cols() / 2.0, features.nadir.row - features.cells.rows() / 2.0);
 }
 
-/// Without the rows and columns around that hold nothing observed: how large a canvas is says nothing. As it was where
-/// nothing was observed at all.
+bool is_near_nadir(const FeatureMap& features) {
+  return off_nadir(features) <= kMaxSidesOff * std::max(features.cells.cols(), features.cells.rows());
+}
+
+[[noreturn]] void refuse_nadir(const FeatureMap& features) {
+  throw InvalidInput(
+      "nadir-out-of-range",
+      fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
+                  "{} cells: check nadir_col and nadir_row, at most {:.0f} times the longer side is "
+                  "allowed, and {} cells of the map to the farthest corner",
+                  off_nadir(features), features.cells.cols(), features.cells.rows(), kMaxSidesOff, kMaxCellsAcross));
+}
+
+/// The map is read as far around a pose as the feature map lies from its nadir. Of a small one far off that would be
+/// gigabytes.
+void require_within_reach(const FeatureMap& features, double cell_m) {
+  const double reach = off_nadir(features) + 0.5 * std::hypot(features.cells.cols(), features.cells.rows());
+  if (reach > kMaxCellsAcross * cell_m / features.cell_m) refuse_nadir(features);
+}
+
+FeatureMap nothing_observed_of(FeatureMap features) {
+  features.cells = CellArray(1, 1);
+  features.nadir = {0.5, 0.5};
+  return features;
+}
+
+/// Without the rows and columns around that hold nothing observed: how large a canvas is says nothing. A sliver that is
+/// left too far from the nadir is as good as nothing.
 FeatureMap cropped_to_observed(const FeatureMap& features) {
   const CellArray& cells = features.cells;
   int first_col = cells.cols();
@@ -69,18 +83,19 @@ FeatureMap cropped_to_observed(const FeatureMap& features) {
       last_row = row;
     }
   }
-  if (last_row < 0) return features;
+  if (last_row < 0) return nothing_observed_of(features);
   FeatureMap result = features;
   result.cells = CellArray(last_col - first_col + 1, last_row - first_row + 1);
   paste(cells, result.cells, -first_col, -first_row);
   result.nadir = {features.nadir.col - first_col, features.nadir.row - first_row};
-  return result;
+  return is_near_nadir(result) ? result : nothing_observed_of(result);
 }
 
 }  // namespace
 
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& given) {
   require_usable(given);
+  if (!is_near_nadir(given)) refuse_nadir(given);
   const FeatureMap features = cropped_to_observed(given);
   double cell_m = map.cell_m;
   while (2.0 * cell_m <= 1.01 * features.cell_m) cell_m *= 2.0;
@@ -90,7 +105,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& given) {
                        fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",
                                    cells_across, kMaxCellsAcross));
   }
-  require_nadir_near(features, cell_m);
+  require_within_reach(features, cell_m);
   return resampled(features, cell_m);
 }
 

@@ -9,7 +9,7 @@
 namespace roadfix {
 
 /// What was observed of the feature map, in cells of the map or of one of its overviews: the coarsest that still hold
-/// what it shows.
+/// what it shows. One cell that was not observed, below the UAV, where nothing was, or only a sliver far off.
 /// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 

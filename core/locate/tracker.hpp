@@ -111,7 +111,9 @@ struct TrackerState {
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
   /// before a kidnapping is not laid with what is seen after it.
   RecentFrames recent;
-  std::optional<std::int64_t> looked_time_us;  ///< time of the last search around the claimed place
+  /// Time of the last search around the place that bore it out; nullopt = none since a search found the place, a
+  /// measurement spoke against it or such a search did not bear it out, and nothing is claimed then.
+  std::optional<std::int64_t> looked_time_us;
   bool drifts = false;  ///< such a search found the vehicle beside it: a wind is learned though none was told
   LastView last_view;
   std::optional<BodyVelocity> velocity;  ///< that the last odometry told

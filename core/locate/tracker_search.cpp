@@ -101,6 +101,7 @@ void Tracker::Step::confirm(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
   state_.looked_time_us.reset();  // the next frame tells whether the odometry carries the place on rightly
+  doubt_odometry();
 }
 
 /// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that

@@ -28,12 +28,11 @@ constexpr double kWidenedM = 4.0;
 constexpr double kManoeuvreShare = 0.5;
 constexpr double kLeastManoeuvreMS = 1.0;
 
-// 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told.
-constexpr double kFoundWindMS = 5.0;
-
-double speed_of(const std::optional<BodyVelocity>& velocity) {
-  return velocity ? std::hypot(velocity->forward_m_s, velocity->right_m_s) : 0.0;
-}
+// 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told: so much
+// of the speed, and at least so many m/s.
+constexpr double kFoundWindShare = 0.3;
+constexpr double kLeastFoundWindMS = 5.0;
+constexpr double kTriedShare = 0.1;  // of the particles, before it is found wrong
 
 }  // namespace
 
@@ -98,6 +97,12 @@ std::optional<double> Tracker::Step::since_accepted_s() const {
   return 1e-6 * static_cast<double>(input_.time_us - *state_.accepted_time_us);
 }
 
+/// That the last odometry told; where none is to be expected, that of the vehicle.
+double Tracker::Step::speed_m_s() const {
+  if (state_.velocity) return std::hypot(state_.velocity->forward_m_s, state_.velocity->right_m_s);
+  return settings_.vehicle.planar ? std::abs(settings_.vehicle.planar->speed_m_s.mean) : 0.0;
+}
+
 void Tracker::Step::move() {
   if (seconds() > static_cast<double>(settings_.longest_gap.count())) {
     filter_.start_uniformly(tracker_.region_.poses);
@@ -124,14 +129,21 @@ bool Tracker::Step::predict(const Motion& motion) {
 Wind Tracker::Step::wind() const {
   const Wind& told = settings_.vehicle.wind;
   if (!state_.drifts) return told;
-  const Wind found = Wind::of(kFoundWindMS, std::nullopt);
+  const Wind found = Wind::of(std::max(kLeastFoundWindMS, kFoundWindShare * speed_m_s()), std::nullopt);
   return {std::max(told.sigma_m_s, found.sigma_m_s), std::max(told.walk, found.walk)};
+}
+
+/// Some particles try other velocities. Should the odometry be worse than it says, frames tell them from the others
+/// before the belief is left behind.
+void Tracker::Step::doubt_odometry() {
+  if (!settings_.recovers || coasts() || !wind().is_none()) return;
+  filter_.try_drifts(kTriedShare, kFoundWindShare * speed_m_s());
 }
 
 AcceptanceRegion Tracker::Step::region() const {
   AcceptanceRegion region = tracker_.region_;
   region.drift_sigma_m_s = wind().sigma_m_s;
-  if (coasts()) region.drift_sigma_m_s = std::max(region.drift_sigma_m_s, speed_of(state_.velocity));
+  if (coasts()) region.drift_sigma_m_s = std::max(region.drift_sigma_m_s, speed_m_s());
   return region;
 }
 
@@ -165,7 +177,7 @@ bool Tracker::Step::coasts() const { return !input_.odometry && !settings_.vehic
 /// On with the velocity that odometry told, if any did.
 bool Tracker::Step::coast(bool begins) {
   ConstantVelocityMotion motion{seconds()};
-  motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_of(state_.velocity));
+  motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_m_s());
   if (begins) motion.joins = state_.velocity.value_or(BodyVelocity{});
   return predict(motion);
 }
@@ -194,7 +206,7 @@ void Tracker::Step::measure() {
   const ParticleMatches matches = match_particles(tracker_.map_, *features_, filter_.particles(),
                                                   settings_.vehicle.scale_range, limits_.threads, limits_.stop);
   const auto frame_cells = static_cast<std::int64_t>(features_->cells.observed_count());
-  if (is_unseen_by_map(matches.sums, frame_cells)) {
+  if (frame_cells == 0 || is_unseen_by_map(matches.sums, frame_cells)) {
     estimate_.measurement = Measurement::kUseless;
   } else {
     weigh(matches, frame_cells);
@@ -224,6 +236,7 @@ void Tracker::Step::weigh(const ParticleMatches& matches, std::int64_t frame_cel
   } else {
     estimate_.measurement = Measurement::kRejected;
     state_.claim.reject();
+    state_.looked_time_us.reset();
     if (settings_.recovers) filter_.widen(kWidenedM);
   }
   state_.claim.weigh(std::log(correction.mean_likelihood));
@@ -262,10 +275,12 @@ bool Tracker::Step::has_converged(const Cluster& best) const {
          filter_.doubt() <= kMaxDoubt && since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
 }
 
-/// Equation (7) is no ratio to chance, and bears out what it does not reject.
+/// Equation (7) is no ratio to chance, and bears out what it does not reject. A look that is due and did not come yet,
+/// or found the vehicle beside the place, leaves no time of a look.
 bool Tracker::Step::is_borne_out() const {
   if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return true;
-  return state_.claim.outweighs_chance() && (state_.claim.confirmed || !settings_.recovers);
+  if (!state_.claim.outweighs_chance()) return false;
+  return !settings_.recovers || (state_.claim.confirmed && state_.looked_time_us);
 }
 
 }  // namespace roadfix

@@ -24,12 +24,14 @@ class Tracker::Step {
   void require_in_order() const;
   double seconds() const;
   std::optional<double> since_accepted_s() const;
+  double speed_m_s() const;
 
   void move();
   bool predict_motion();
   bool coasts() const;
   bool coast(bool begins);
   Wind wind() const;
+  void doubt_odometry();
   AcceptanceRegion region() const;
   template <MotionModel Motion>
   bool predict(const Motion& motion);
@@ -53,7 +55,10 @@ class Tracker::Step {
 
   // tracker_look.cpp
   void look_around_if_due();
+  bool is_look_older_than(std::int64_t us, double flown_m) const;
+  double flown_since_look_m() const;
   void look_around();
+  void move_beside(const Fix& fix, const FeatureMap& seen, double log_scale);
 
   void fill_estimate();
   bool has_converged(const Cluster& best) const;

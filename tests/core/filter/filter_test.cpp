@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/filter/clusters.hpp"
 #include "core/filter/particle_bytes.hpp"
@@ -237,6 +239,19 @@ TEST(Filter, WidensTheDriftOfItsParticlesAndDrawsNewOnesWithAsMuch) {
   EXPECT_NEAR(sigma_of(p.drift_north_m_s), 5.0, 0.18) << "to what they had";
   filter.start_uniformly(kSquare);
   EXPECT_NEAR(sigma_of(p.drift_north_m_s), 4.0, 0.14);
+}
+
+TEST(Filter, TriesDriftsOfAShareOfItsParticlesAndLeavesTheOthers) {
+  Filter filter({}, {kSquare}, 5);  // 10,000 particles
+  const Particles& p = filter.particles();
+  filter.start_uniformly(kSquare);
+  filter.try_drifts(0.1, 3.0);
+  std::vector<double> tried;
+  std::ranges::copy_if(p.drift_east_m_s, std::back_inserter(tried), [](double drift) { return drift != 0.0; });
+  EXPECT_NEAR(static_cast<double>(tried.size()), 1'000.0, 4.0 * std::sqrt(900.0));
+  EXPECT_NEAR(sigma_of(tried), 3.0, 4.0 * 3.0 / std::sqrt(2.0 * 1'000.0));
+  filter.start_uniformly(kSquare);
+  EXPECT_EQ(sigma_of(p.drift_east_m_s), 0.0) << "new ones have none";
 }
 
 TEST(FilterState, OfTheVersionBeforeHasEveryScaleAsItWasTold) {

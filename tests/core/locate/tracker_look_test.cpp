@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/locate/tracker.hpp"
@@ -44,7 +45,7 @@ class TrackOfAVehicleThatDrifts : public Track {
   }
 };
 
-// Of 16 seeds 13 to 14 are followed, by the least change of a figure another one; the others are never claimed.
+// Of 16 seeds 14 are followed; the others are never claimed.
 TEST_F(TrackOfAVehicleThatDrifts, LearnsTheDriftThoughNoneWasTold) {
   int claims = 0;
   int followed = 0;
@@ -52,7 +53,7 @@ TEST_F(TrackOfAVehicleThatDrifts, LearnsTheDriftThoughNoneWasTold) {
     const Outcome outcome = flown(settings(), {5.0, -3.0}, seed);
     claims += outcome.claims;
     EXPECT_EQ(outcome.false_claims, 0) << "seed " << seed;
-    followed += outcome.drifts && outcome.largest_error_m < 15.0 ? 1 : 0;
+    followed += outcome.largest_error_m < 10.0 ? 1 : 0;
   }
   EXPECT_GE(followed, 3);
   EXPECT_GE(claims, 100) << "of 160 steps";
@@ -64,6 +65,40 @@ TEST_F(TrackOfAVehicleThatDrifts, LearnsALargerOneThanWasTold) {
   const Outcome outcome = flown(told, {7.0, 4.0}, 4);
   EXPECT_TRUE(outcome.drifts);
   EXPECT_LT(outcome.largest_error_m, 15.0);
+}
+
+TEST_F(Track, FollowsAVehicleWhoseOdometryTellsAThirdTooLittleOrTooMuch) {
+  const Tracker tracker(view_, settings());
+  for (const double factor : {0.67, 1.33}) {
+    Flight flight(map_, start_, 3);
+    state_ = {};
+    int claims = 0;
+    for (int i = 0; i < 30; ++i) {
+      StepInput step = flight.step();
+      if (step.odometry) step.odometry->forward_m *= factor;
+      const TrackEstimate estimate = advance(tracker, step);
+      claims += estimate.converged ? 1 : 0;
+      EXPECT_FALSE(estimate.converged && error_m(estimate, flight.pose()) > 15.0) << factor << ", step " << i;
+    }
+    EXPECT_GE(claims, 20) << factor;
+  }
+}
+
+TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
+  Calibration doubts = default_calibration();
+  doubts.highest = 0.45;
+  TrackSettings unsure = settings();
+  unsure.calibration = std::make_shared<const Calibration>(doubts);
+  Flight flight(map_, start_, 5);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged);
+  std::vector<int> claims;
+  fly(Tracker(view_, unsure), flight, 9, [&](int i, const TrackEstimate& estimate) {
+    EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
+    if (estimate.converged) claims.push_back(i);
+  });
+  ASSERT_FALSE(claims.empty());
+  EXPECT_EQ(claims.size(), static_cast<std::size_t>(claims.back()) + 1) << "without a gap from the first";
+  EXPECT_LE(claims.size(), 5U) << "at 20 m a step, 90 m after the last look that did";
 }
 
 TEST_F(TrackOfAVehicleThatDrifts, TakesOdometryThatIsAsItSaysAtItsWord) {

@@ -154,7 +154,7 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
 
 TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
   // It drifts away faster than the odometry says.
-  for (const double slip_m : {15.0, 25.0}) {
+  for (const double slip_m : {25.0, 40.0}) {
     const Tracker tracker(view_, settings());
     Flight flight(map_, start_, 5);
     state_ = {};

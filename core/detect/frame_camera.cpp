@@ -100,7 +100,9 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
 double nadir_sigma_m(const FrameCamera& camera) {
   // The ground on the optical axis is agl tan(angle) from the nadir.
   const double steepness = std::max(down(camera), cos(kFlattestView));
-  return camera.agl_m * std::max(camera.roll_sigma, camera.pitch_sigma).radians() / (steepness * steepness);
+  const double lean = std::sqrt(1.0 - steepness * steepness) / steepness;
+  const double turned = std::max(camera.roll_sigma, camera.pitch_sigma).radians() / (steepness * steepness);
+  return camera.agl_m * std::hypot(turned, kHeightSigma * lean);
 }
 
 }  // namespace roadfix

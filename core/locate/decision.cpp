@@ -119,7 +119,7 @@ double share_beside_outside(const SearchResult& found) {
 std::string fits_outside(const SearchResult& found) {
   return fmt::format(
       "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
-      "prior, or give a wider one",
+      "prior and its headings, or give a wider one",
       distance_m(found.modes.front().pose.position, found.outside->pose.position));
 }
 

@@ -41,8 +41,8 @@ struct SearchOptions {
   double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;
   /// Of the map: within it the ground around the region is searched as well, half a footprint beyond and 4 km^2 in all
-  /// at least, to tell what chance gives and whether another place fits better. nullopt = no farther than it takes to
-  /// tell anything of chance.
+  /// at least, and headings a little beside, to tell what chance gives and whether another place fits better. nullopt =
+  /// no farther than it takes to tell anything of chance.
   std::optional<GridBox> surroundings;
   std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
   std::stop_token stop;
@@ -99,7 +99,7 @@ struct ScoreBackground {
 
 struct SearchResult {
   std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
-  /// The best place around the region, at its headings, where surroundings were given.
+  /// The best place around the region or up to 5 degrees beside its headings, where surroundings were given.
   std::optional<SearchMode> outside;
   ScoreBackground background;
   double cell_m = 0.0;               ///< finest cell

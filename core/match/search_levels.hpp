@@ -14,6 +14,10 @@ namespace roadfix {
 inline constexpr std::size_t kSurvivors = 96;  ///< followed from each finer level
 inline constexpr int kDistinctBins = 3;        ///< of the scan's headings, between places of their own
 
+/// So far beside the headings of a region a place that fits better is looked for, as around it: the flanks of such a
+/// peak reach into the region.
+inline const Angle kHeadingsBeyond = Angle::degrees(5.0);
+
 class SearchLevels {
  public:
   /// All outlive the levels.

@@ -95,12 +95,16 @@ void append_new(const Level& finest, const std::vector<SearchMode>& more, std::v
   }
 }
 
+bool is_within(const PoseRegion& region, const GridPose& pose) {
+  return region.contains(pose.position) && region.contains(pose.heading);
+}
+
 /// The first of the modes that is around the region, and not the best one in it seen from across the border.
 std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegion& scanned,
                                       const std::vector<SearchMode>& modes, const SearchMode& best) {
   const auto found = std::ranges::find_if(modes, [&](const SearchMode& mode) {
-    const GridPoint at = mode.pose.position;
-    return scanned.contains(at) && !levels.region().contains(at) && !on_one_peak(levels.finest(), mode, best);
+    return scanned.contains(mode.pose.position) && !is_within(levels.region(), mode.pose) &&
+           !on_one_peak(levels.finest(), mode, best);
   });
   return found == modes.end() ? std::nullopt : std::optional(*found);
 }
@@ -145,9 +149,8 @@ void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOpt
   SearchMode& best = result.modes.front();
   best.shared_road_m2 = shared_road_m2(finest, best);
   if (!options.surroundings) return;
-  std::erase_if(around, [&](const LatticePose& pose) {
-    return !levels.region().contains(finest.pose_of(pose).heading);  // what lies at other headings is no rival
-  });
+  const PoseRegion nearly = levels.region().grown(0.0, kHeadingsBeyond);  // what lies at other headings is no rival
+  std::erase_if(around, [&](const LatticePose& pose) { return !nearly.contains(finest.pose_of(pose).heading); });
   result.outside = best_around(levels, scanned, modes_of(finest, around, kOutside, deadline, result), best);
 }
 

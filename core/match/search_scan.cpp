@@ -29,6 +29,7 @@ SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
 PoseRegion SearchScan::at_more_headings() const {
   PoseRegion result = levels_.region();
   const Angle told = Angle::degrees(180.0 * std::min(1.0, kKm2AtAllHeadings / result.area_km2()));
+  if (options_.surroundings) result.heading_half_width += kHeadingsBeyond;
   result.heading_half_width = std::max(result.heading_half_width, told);
   return result;
 }

@@ -44,24 +44,34 @@ TEST(GroundOf, PitchLooksForwardAndRollLooksLeft) {
   EXPECT_NEAR(ground_at(camera, {640, 240})->x, 100 * std::tan((45 - 10) * M_PI / 180), 1e-9);
 }
 
-// Oracle: how far the ground on the optical axis moves when the camera turns by a hundredth of the angle.
-TEST(NadirSigma, IsWhatASmallErrorOfPitchOrRollMovesTheGroundInViewBy) {
+// Oracle: how far the ground on the optical axis moves when the camera turns by a hundredth of the angle, and when it
+// is a hundredth of the error higher.
+TEST(NadirSigma, IsWhatSmallErrorsOfAttitudeAndHeightMoveTheGroundInViewBy) {
   const cv::Point2d middle(320, 240);
-  const Angle little = Angle::degrees(0.01);
   for (const double pitch_deg : {0.0, 30.0, -45.0}) {
     FrameCamera camera = level();
     camera.pitch = Angle::degrees(pitch_deg);
+    const auto moved_m = [&](const FrameCamera& other) {
+      return 100.0 * std::abs(ground_at(other, middle)->y - ground_at(camera, middle)->y);
+    };
     FrameCamera turned = camera;
-    turned.pitch += little;
-    const double moved_m = std::abs(ground_at(turned, middle)->y - ground_at(camera, middle)->y);
+    turned.pitch += Angle::degrees(0.01);
+    FrameCamera higher = camera;
+    higher.agl_m *= 1.0 + 0.01 * kHeightSigma;
+    const double told_m = std::hypot(moved_m(turned), moved_m(higher));
     camera.roll_sigma = camera.pitch_sigma = kToldAttitudeSigma;
-    EXPECT_NEAR(nadir_sigma_m(camera), 100.0 * moved_m, 0.002 * 100.0 * moved_m) << pitch_deg;
+    EXPECT_NEAR(nadir_sigma_m(camera), told_m, 0.002 * told_m) << pitch_deg;
+    const double untold_m = std::hypot(5.0 * moved_m(turned), moved_m(higher));
     camera.roll_sigma = kUntoldAttitudeSigma;
-    EXPECT_NEAR(nadir_sigma_m(camera), 500.0 * moved_m, 0.002 * 500.0 * moved_m) << pitch_deg;
+    EXPECT_NEAR(nadir_sigma_m(camera), untold_m, 0.002 * untold_m) << pitch_deg;
   }
+}
+
+TEST(NadirSigma, IsThatOfARollAsOfAPitchAndFiniteAtTheHorizon) {
   FrameCamera rolled = level();
-  rolled.roll = Angle::degrees(60.0);
-  EXPECT_NEAR(nadir_sigma_m(rolled), 4.0 * nadir_sigma_m(level()), 1e-9);
+  FrameCamera pitched = level();
+  rolled.roll = pitched.pitch = Angle::degrees(60.0);
+  EXPECT_NEAR(nadir_sigma_m(rolled), nadir_sigma_m(pitched), 1e-9);
   rolled.roll = Angle::degrees(90.0);
   EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled)));
 }

@@ -39,6 +39,31 @@ TEST_F(BeyondPrior, TheTruthIsFoundSoThatAPlaceLikeItInsideIsNoFix) {
   EXPECT_LT(distance_m(view_.zone.project(right.modes[0].pose.position), truth_.position), 2.0);
 }
 
+// The window lies two sides ahead of the UAV, so that each degree moves it by 14 m.
+TEST_F(BeyondPrior, AHeadingJustBesideTheToldOnesGivesNoFixElsewhere) {
+  FeatureMap frame = seen(200);
+  const double ahead_m = 800.0;
+  frame.nadir.row += ahead_m / frame.cell_m;
+  const GridPose uav{
+      {truth_.position.east_m - ahead_m * sin(truth_.heading), truth_.position.north_m - ahead_m * cos(truth_.heading)},
+      truth_.heading};
+  const auto fix_beside = [&](double beside_deg) {
+    Prior prior;
+    const Angle half_width = Angle::degrees(5.0);
+    prior.heading =
+        HeadingRange{on_earth(uav, view_.zone).heading + half_width + Angle::degrees(beside_deg), half_width};
+    return locate(view_, frame, prior, {});
+  };
+  for (const double beside_deg : {-3.0, -1.0, -0.5}) {
+    const Fix right = fix_beside(beside_deg);
+    ASSERT_EQ(right.status, FixStatus::kFix) << right.reason;
+    EXPECT_LT(distance_m(view_.zone.project(right.modes[0].pose.position), uav.position), 4.0) << beside_deg;
+  }
+  for (const double beside_deg : {0.5, 1.0, 2.0, 3.0}) {
+    EXPECT_EQ(fix_beside(beside_deg).reason, "better-outside-prior") << beside_deg;
+  }
+}
+
 TEST_F(BeyondPrior, TheNarrowerAPriorThatHoldsTheTruthIsTheMoreProbableIsIt) {
   const FeatureMap frame = seen(70);
   std::vector<double> probabilities;

@@ -33,12 +33,12 @@ double nadir_sigma_m_of(const nlohmann::json& request) {
   return features_of(content, NoRoads(), 2.0, Limits{}, {}).map.nadir_sigma_m;
 }
 
-TEST(FeatureRequest, ExpectsAnErrorOfADegreeOfAnAttitudeThatIsTold) {
+TEST(FeatureRequest, ExpectsAnErrorOfADegreeOfAnAttitudeThatIsToldAndOfTheHeightWhereTheCameraLeans) {
   const double degree_m = 40 * std::numbers::pi / 180.0;
   nlohmann::json request{{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"roll_deg", 0}, {"pitch_deg", 0}};
   EXPECT_NEAR(nadir_sigma_m_of(request), degree_m, 1e-9);
   request["pitch_deg"] = 45;
-  EXPECT_NEAR(nadir_sigma_m_of(request), 2 * degree_m, 1e-9);
+  EXPECT_NEAR(nadir_sigma_m_of(request), std::hypot(2 * degree_m, 40 * kHeightSigma), 1e-9);
 }
 
 TEST(FeatureRequest, ExpectsThatACameraMayLeanAsFarAsItSaysNothingOfIt) {

@@ -7,6 +7,8 @@ import time
 from typing import NamedTuple, Optional
 
 CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
+PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m", "roll_deg", "pitch_deg",
+                                  "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m")
 
 
 class Line(NamedTuple):
@@ -99,6 +101,7 @@ def read_step(line, folder, frame_fields):
     if not _is_number(fields["time_us"]):
         raise ValueError("time_us is a number")
     if file is None:
+        fields = {name: value for name, value in fields.items() if name not in PICTURE_FIELDS}
         return Step(place, origin, fields, None)
     if not isinstance(file, str):
         raise ValueError("image is the name of a file")

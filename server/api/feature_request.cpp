@@ -142,6 +142,16 @@ bool shows_ground(const Content& content) {
   return content.has_picture || fields.has("cells") || fields.has("cols") || fields.has("rows");
 }
 
+void require_nothing_seen(const Fields& fields) {
+  for (const std::string& name : feature_fields()) {
+    if (!fields.has(name)) continue;
+    throw InvalidField("missing-parameter", "image",
+                       fmt::format("'{}' describes a picture or a feature map, and there is none: send it, or leave "
+                                   "'{}' out of a step that sees nothing",
+                                   name, name));
+  }
+}
+
 std::optional<double> told_nadir_sigma_m(const Fields& fields) {
   return fields.optional_number("nadir_sigma_m", {0.0, 1000.0});
 }

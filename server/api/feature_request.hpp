@@ -38,6 +38,10 @@ const std::vector<std::string>& picture_members();
 /// Whether the ground was seen, rather than nothing. A picture of no bytes was, and is refused when it is read.
 bool shows_ground(const Content& content);
 
+/// Throws InvalidField ("missing-parameter") for a field that describes what was seen, where nothing was sent: a
+/// picture that was forgotten is not to pass for a flight without one.
+void require_nothing_seen(const Fields& fields);
+
 struct Features {
   FeatureMap map;
   std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame

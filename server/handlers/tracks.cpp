@@ -90,6 +90,7 @@ PostedStep read_step(const Service& service, const http::Request& request) {
   StoredTrack track = service.tracks.find(id_of(request));
   api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
+  if (!api::shows_ground(content)) api::require_nothing_seen(content.fields);
   StepInput input = api::parse_step(content.fields);
   return {std::move(track), std::move(content), format, std::move(input)};
 }

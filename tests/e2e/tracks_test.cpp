@@ -70,6 +70,9 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
       << "a picture that was lost on its way";
   EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 9'000'000}, {"cell_m", 2}, {"image", ""}}),
             "400 missing-parameter image");
+  EXPECT_EQ(refused({{"sequence", 4}, {"time_us", 9'000'000}, {"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 300}}),
+            "400 missing-parameter image")
+      << "a picture that was forgotten";
   json bad{{"sequence", 4}, {"time_us", 9'000'000}, {"forward_m", 3}, {"right_m", 0}, {"turn_deg", 0}};
   bad["covariance"] = {1, 2, 0, 2, 1, 0, 0, 0, 1};
   EXPECT_EQ(refused(bad), "422 covariance-not-positive");

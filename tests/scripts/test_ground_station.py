@@ -16,7 +16,7 @@ from fake_service import PROGRAM, ROOT, FakeService
 
 from positions import told_age_s
 from service import Service, Silent
-from steps import NewestLine, all_lines, read_step
+from steps import PICTURE_FIELDS, NewestLine, all_lines, read_step
 from track import Track
 
 
@@ -53,6 +53,20 @@ class Lines(unittest.TestCase):
             self.assertEqual((fields["kind"], fields["fov_deg"], fields["agl_m"]), ("frame", 78, 90))
             self.assertLess(abs(fields["time_us"] / 1e6 - time.time()), 60.0)
             self.assertNotIn("kind", read_step(next(all_lines([text])), folder, {"cell_m": 2}).fields)
+
+    def test_without_a_picture_say_nothing_of_its_camera(self):
+        text = '{"north_m": 1, "east_m": 2, "yaw_deg": 3, "time_us": 5, "alt_m": 7, "agl_m": 90, "roll_deg": 1}'
+        step = read_step(next(all_lines([text])), ".", {"fov_deg": 78})
+        self.assertEqual(step.fields, {"time_us": 5, "alt_m": 7})
+
+    def test_may_describe_a_picture_by_all_that_the_service_knows_of_one(self):
+        schema = json.loads((Path(ROOT, "schema/openapi.json")).read_text())
+        parameters = schema["paths"]["/v1/tracks/{id}/steps"]["post"]["parameters"]
+        names = [schema["components"]["parameters"][p["$ref"].split("/")[-1]]["name"] if "$ref" in p else p["name"]
+                 for p in parameters]
+        of_the_step = {"sequence", "time_us", "forward_m", "right_m", "turn_deg", "covariance",
+                       "format", "alt_m", "satellites", "system", "component"}
+        self.assertEqual(set(names) - of_the_step, set(PICTURE_FIELDS))
 
     def test_that_cannot_be_read_say_so(self):
         for text, message in (("[1]", "JSON object"), ('{"north_m": 1, "east_m": 2}', "needs yaw_deg"),

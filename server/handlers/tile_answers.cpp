@@ -51,6 +51,7 @@ nlohmann::json tilejson(const http::Request& request, const ServedMap& map, cons
       {"name", name},
       {"version", "1.0.0"},
       {"scheme", "xyz"},
+      {"attribution", credits_of(map.reader->info())},
       {"tiles", {fmt::format("{}/tiles/{{z}}/{{x}}/{{y}}.png?version={}{}", folder, map.edition(), query)}}};
   const MapView& view = map.view;
   if (!view.extent.empty()) answer["bounds"] = api::bbox_json(not_wrapped(geo_box_around(view.zone, view.extent)));

@@ -27,22 +27,11 @@ http::Response get_tile(const Service& service, const http::Request& request) {
   });
 }
 
-std::string attribution(const MapInfo& info) {
-  std::string text;
-  for (const SourceStatus& source : info.sources) {
-    const std::string& name = source.record.attribution;
-    if (source.complete && !name.empty() && text.find(name) == std::string::npos)
-      text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
-
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const MapInfo& info = map->reader->info();
   const std::string style = api::Fields(request.query).word("style", kTileStyles);
   json answer = tilejson(request, *map, map->name, style == kTileStyles[0] ? "" : "&style=" + style);
-  answer.update({{"attribution", attribution(info)}, {"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
+  answer.update({{"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
   const MapView& view = map->view;
   if (!view.extent.empty()) {
     const int native = api::native_zoom(view);

@@ -54,6 +54,10 @@ GByte alpha_pixel(Cell cell) { return is_observed(cell) ? 255 : 0; }
 
 }  // namespace
 
+std::string description_of(const MapInfo& info) {
+  return "Probability of road, by Roadfix, from version " + info.version + " of its map";
+}
+
 MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)
     : map_(map), geometry_(geometry) {
   nRasterXSize = geometry.cols;
@@ -61,6 +65,9 @@ MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, Pixel
   reference_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   reference_.importFromEPSG(map.info().settings.zone.epsg());
   if (kind == PixelKind::kProbability) {
+    SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", description_of(map.info()).c_str());
+    const std::string credits = credits_of(map.info());
+    if (!credits.empty()) SetMetadataItem("TIFFTAG_COPYRIGHT", credits.c_str());
     SetBand(1, new MapBand<float, probability_pixel>(*this, 1, GDT_Float32, GCI_Undefined, "probability of road"));
   } else {
     SetBand(1, new MapBand<GByte, grey_pixel>(*this, 1, GDT_Byte, GCI_GrayIndex, "probability of road x 254"));

@@ -3,7 +3,7 @@
 
 #include <gdal_priv.h>
 
-#include <stop_token>
+#include <string>
 
 #include "tiles/store/map_reader.hpp"
 
@@ -13,6 +13,9 @@ enum class PixelKind {
   kProbability,  ///< one Float32 band, 0..1, nodata -1
   kPicture,      ///< two Byte bands: grey 0..254, alpha 0 or 255
 };
+
+/// What an exported file says of itself.
+std::string description_of(const MapInfo& info);
 
 class MapDataset final : public GDALDataset {
  public:

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <fstream>
 #include <ios>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/export/map_dataset.hpp"
+#include "tiles/export/mbtiles.hpp"
 
 namespace roadfix {
 namespace {
@@ -21,21 +21,35 @@ namespace fs = std::filesystem;
 struct Driver {
   const char* name;
   PixelKind pixels;
-  std::array<const char*, 6> options;  ///< of the driver, ends with null
+  CPLStringList options;  ///< of the driver
 };
 
-Driver driver_of(ExportFormat format) {
+Driver driver_of(ExportFormat format, const MapInfo& info) {
+  CPLStringList options;
   switch (format) {
     case ExportFormat::kCog:
-      return {"COG", PixelKind::kProbability, {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"}};
+      for (const char* option : {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"}) {
+        options.AddString(option);
+      }
+      return {"COG", PixelKind::kProbability, options};
     case ExportFormat::kGeoTiff:
-      return {"GTiff",
-              PixelKind::kProbability,
-              {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256", "BIGTIFF=IF_SAFER"}};
+      for (const char* option :
+           {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256", "BIGTIFF=IF_SAFER"}) {
+        options.AddString(option);
+      }
+      return {"GTiff", PixelKind::kProbability, options};
     case ExportFormat::kPng:
-      return {"PNG", PixelKind::kPicture, {"WORLDFILE=YES"}};
+      options.SetNameValue("WORLDFILE", "YES");
+      options.SetNameValue("DESCRIPTION", description_of(info).c_str());
+      if (const std::string credits = credits_of(info); !credits.empty()) {
+        options.SetNameValue("COPYRIGHT", credits.c_str());
+      }
+      return {"PNG", PixelKind::kPicture, options};
     case ExportFormat::kMbTiles:
-      return {"MBTiles", PixelKind::kPicture, {"TILE_FORMAT=PNG", "NAME=road probability"}};
+      options.SetNameValue("TILE_FORMAT", "PNG");
+      options.SetNameValue("NAME", "road probability");
+      options.SetNameValue("DESCRIPTION", description_of(info).c_str());
+      return {"MBTiles", PixelKind::kPicture, options};
   }
   throw InvalidInput("format-unknown", "no such export format");
 }
@@ -61,12 +75,14 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
 struct Monitor {
   const OnProgress& progress;
   const std::stop_token& stop;
+  double share_before = 0.0;  ///< of the whole work
+  double share = 1.0;
 };
 
 int on_progress(double share, const char*, void* monitor) {
-  const auto& [progress, stop] = *static_cast<const Monitor*>(monitor);
-  if (progress) progress(static_cast<std::int64_t>(share * 1000.0), 1000);
-  return stop.stop_requested() ? FALSE : TRUE;
+  const Monitor& now = *static_cast<const Monitor*>(monitor);
+  if (now.progress) now.progress(static_cast<std::int64_t>((now.share_before + share * now.share) * 1000.0), 1000);
+  return now.stop.stop_requested() ? FALSE : TRUE;
 }
 
 /// What a copy leaves beside its target when it fails, and side files of a driver.
@@ -98,6 +114,19 @@ void require_whole_picture(const fs::path& picture, const fs::path& world, const
                   fmt::format("{}: its end cannot be written. Check that the disk has room", picture.string()));
 }
 
+/// False where GDAL failed or was stopped.
+bool written_by(GDALDriver& driver, MapDataset& source, const Driver& target, const fs::path& path, Monitor monitor) {
+  constexpr double kCopyShare = 0.7;  // of the time, where zooms follow
+  const bool has_zooms = target.name == std::string_view("MBTiles");
+  if (has_zooms) monitor.share = kCopyShare;
+  const std::unique_ptr<GDALDataset> written(driver.CreateCopy(
+      path.c_str(), &source, FALSE, const_cast<char**>(target.options.List()), on_progress, &monitor));
+  if (written == nullptr || !has_zooms) return written != nullptr;
+  monitor.share_before = kCopyShare;
+  monitor.share = 1.0 - kCopyShare;
+  return add_zooms(*written, on_progress, &monitor);
+}
+
 void copy(MapDataset& source, const Driver& target, const fs::path& path, const Monitor& monitor) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
   if (driver == nullptr) {
@@ -106,11 +135,7 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
   CPLErrorReset();
   // The error is reported by exception, not printed by GDAL.
   CPLPushErrorHandler(CPLQuietErrorHandler);
-  std::unique_ptr<GDALDataset> written(driver->CreateCopy(path.c_str(), &source, FALSE,
-                                                          const_cast<char**>(target.options.data()), on_progress,
-                                                          const_cast<Monitor*>(&monitor)));
-  const bool copied = written != nullptr;
-  written.reset();  // closing writes what is left, and may fail
+  const bool copied = written_by(*driver, source, target, path, monitor);
   CPLPopErrorHandler();
   source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("interrupted", "the export was stopped; nothing was written");
@@ -128,7 +153,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
                 std::stop_token stop) {
   constexpr std::int64_t kLargestPicture = std::int64_t{1} << 29;
   GDALAllRegister();
-  const Driver driver = driver_of(options.format);
+  const Driver driver = driver_of(options.format, map.info());
   const GridGeometry geometry = geometry_of(map, options);
   if (options.format == ExportFormat::kPng && std::int64_t{geometry.cols} * geometry.rows > kLargestPicture) {
     throw LimitExceeded("picture-too-large",
@@ -143,6 +168,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     copy(source, driver, unfinished, {progress, stop});
     const fs::path world = fs::path(unfinished).replace_extension(".wld");
     const fs::path reference = unfinished.string() + ".aux.xml";
+    if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, credits_of(map.info()));
     if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);

@@ -1,5 +1,6 @@
 #include "tiles/store/map_records.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "core/units/floor_div.hpp"
@@ -22,6 +23,21 @@ std::vector<TileIndex> tiles_covering(const GridGeometry& geometry) {
     for (int col = first_col; col <= last_col; ++col) tiles.push_back({col, row});
   }
   return tiles;
+}
+
+std::string credits_of(const MapInfo& info) {
+  std::vector<std::string> credits;
+  for (const SourceStatus& source : info.sources) {
+    const std::string& attribution = source.record.attribution;
+    const std::string& licence = source.record.licence;
+    if (!source.complete || (attribution.empty() && licence.empty())) continue;
+    const std::string credit =
+        attribution.empty() || licence.empty() ? attribution + licence : attribution + " (" + licence + ")";
+    if (std::ranges::find(credits, credit) == credits.end()) credits.push_back(credit);
+  }
+  std::string text;
+  for (const std::string& credit : credits) text += (text.empty() ? "" : "; ") + credit;
+  return text;
 }
 
 }  // namespace roadfix

@@ -66,4 +66,8 @@ struct MapInfo {
   std::vector<SourceStatus> sources = {};
 };
 
+/// What the licences of the complete sources ask to be shown beside the map, "attribution (licence)", each once and
+/// separated by "; "; empty where none was told.
+std::string credits_of(const MapInfo& info);
+
 }  // namespace roadfix

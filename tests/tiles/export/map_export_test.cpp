@@ -5,9 +5,11 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <memory>
+#include <string>
 
 #include "core/units/error.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -150,13 +152,50 @@ TEST_F(MapExport, WhatOtherProgramsLeftBesideAReplacedFileIsRemoved) {
   EXPECT_NE(Picture(target).data->GetSpatialRef(), nullptr);
 }
 
-TEST_F(MapExport, MbTilesCoverTheMap) {
+TEST_F(MapExport, MbTilesCoverTheMapAtAllZooms) {
   const auto target = folder / "out.mbtiles";
   export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
   const Picture picture(target);
   EXPECT_STREQ(picture.data->GetSpatialRef()->GetAuthorityCode(nullptr), "3857");
   EXPECT_EQ(picture.data->GetRasterCount(), 4);
   EXPECT_EQ(files(), 2U);
+  GDALRasterBand& band = *picture.data->GetRasterBand(1);
+  ASSERT_GE(band.GetOverviewCount(), 1);
+  GDALRasterBand& smallest = *band.GetOverview(band.GetOverviewCount() - 1);
+  EXPECT_LE(std::max(smallest.GetXSize(), smallest.GetYSize()), 256);
+  const auto zoom = [&](const char* name) { return std::stoi(picture.data->GetMetadataItem(name)); };
+  EXPECT_EQ(zoom("minzoom"), zoom("maxzoom") - band.GetOverviewCount());
+}
+
+TEST_F(MapExport, SaysWhoseTheContentIs) {
+  EXPECT_EQ(credits_of(MapReader(path).info()), "someone (CC BY 4.0)");
+  for (const auto& [name, attribution, licence] : {std::array{"b", "OSM contributors", "ODbL 1.0"},
+                                                   {"c", "OSM contributors", "ODbL 1.0"},
+                                                   {"d", "OSM", ""},
+                                                   {"e", "", "CC0"}}) {
+    MapWriter writer(path, settings_37n());
+    SourceRecord record = testing::TestSource{name, 1, {}}.record();
+    record.attribution = attribution;
+    record.licence = licence;
+    for (const TileIndex block : writer.begin_source(record, some_blocks(1), false)) {
+      testing::put_block(writer, name, block, testing::random_cells(1, block));
+    }
+    writer.finish_source(name);
+  }
+  const MapReader map(path);
+  const std::string credits = "someone (CC BY 4.0); OSM contributors (ODbL 1.0); OSM; CC0";
+  EXPECT_EQ(credits_of(map.info()), credits);
+  const auto item_of = [&](const char* name, ExportFormat format, const char* item) -> std::string {
+    export_map(map, folder / name, {.format = format});
+    const Picture picture(folder / name);
+    const char* value = picture.data->GetMetadataItem(item);
+    return value == nullptr ? "none" : value;
+  };
+  EXPECT_EQ(item_of("out.tif", ExportFormat::kCog, "TIFFTAG_COPYRIGHT"), credits);
+  EXPECT_EQ(item_of("plain.tif", ExportFormat::kGeoTiff, "TIFFTAG_COPYRIGHT"), credits);
+  EXPECT_EQ(item_of("out.png", ExportFormat::kPng, "Copyright"), credits);
+  EXPECT_EQ(item_of("out.mbtiles", ExportFormat::kMbTiles, "attribution"), credits);
+  EXPECT_THAT(item_of("out.mbtiles", ExportFormat::kMbTiles, "description"), ::testing::HasSubstr(map.info().version));
 }
 
 TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {

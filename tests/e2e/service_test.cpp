@@ -51,6 +51,7 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
   const auto tilejson = client_.Get("/v1/maps/town/tilejson.json");
   EXPECT_EQ(tilejson->get_header_value("Cache-Control"), "no-cache") << "it tells the tiles of the map as it is now";
   const json description = testing::json_of(tilejson);
+  EXPECT_EQ(description["attribution"], "CC0");
   EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png?version="));
   const api::MercatorPixel pixel = api::mercator_pixel(town->place, 16);
   const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
@@ -70,6 +71,7 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
 
 TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
   const json description = testing::json_of(client_.Get("/v1/maps/town/localizability/tilejson.json?footprint_m=500"));
+  EXPECT_EQ(description["attribution"], "CC0");
   EXPECT_THAT(description["tiles"][0].get<std::string>(),
               ::testing::AllOf(HasSubstr("/v1/maps/town/localizability/tiles/{z}/{x}/{y}.png?version="),
                                ::testing::EndsWith("&footprint_m=500")));

@@ -18,7 +18,7 @@ inline void write_map_file(const std::filesystem::path& path, const RoadGrid& gr
                             .location = "town.geojson",
                             .fingerprint = "town",
                             .date = {},
-                            .licence = {},
+                            .licence = "CC0",
                             .attribution = {},
                             .method = "drawn",
                             .registration_sigma_m = registration_sigma_m};

@@ -275,8 +275,8 @@ bool Tracker::Step::has_converged(const Cluster& best) const {
          filter_.doubt() <= kMaxDoubt && since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
 }
 
-/// Equation (7) is no ratio to chance, and bears out what it does not reject. A look that is due and did not come yet,
-/// or found the vehicle beside the place, leaves no time of a look.
+/// Equation (7) is no ratio to chance, and bears out what it does not reject. Where no look
+/// has borne the place out of late there is no time of one.
 bool Tracker::Step::is_borne_out() const {
   if (settings_.measurement_model.kind == LikelihoodKind::kEquation7) return true;
   if (!state_.claim.outweighs_chance()) return false;

@@ -62,7 +62,8 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size frame);
 /// Relative, 1 sigma: barometers drift, and the ground is not as flat as it is told to be.
 inline constexpr double kHeightSigma = 0.05;
 /// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres: the larger sigma
-/// of roll and pitch times the height, more in oblique views, and the height's error times the distance to what is seen.
+/// of roll and pitch times the height, more in oblique views, and the height's error times the distance to what is
+/// seen.
 double nadir_sigma_m(const FrameCamera& camera);
 
 }  // namespace roadfix

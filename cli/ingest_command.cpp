@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
 #include "tiles/pipeline/ingest.hpp"
+#include "tiles/pipeline/source_shift.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -41,6 +43,29 @@ void note_twins(MapWriter& writer, const std::string& source, const std::string&
                "it is the same content, take it out: roadfix remove {} {}\n",
                source, twin, map, source);
   }
+}
+
+std::string directions_of(const SourceShift& shift) {
+  const auto part = [](double metres, const char* positive, const char* negative) {
+    return fmt::format("{:.0f} m to the {}", std::abs(metres), metres > 0.0 ? positive : negative);
+  };
+  if (shift.north_m == 0.0) return part(shift.east_m, "east", "west");
+  const std::string north = part(shift.north_m, "north", "south");
+  return shift.east_m == 0.0 ? north : part(shift.east_m, "east", "west") + " and " + north;
+}
+
+/// A map of two sources that lie beside each other has each street twice.
+void note_shift(MapWriter& writer, const SourceRecord& record) {
+  constexpr std::int64_t kTiles = 64;
+  const auto shift =
+      shift_of(writer.testimonies(record.name, kTiles), writer.settings().cell_m, record.registration_sigma_m);
+  if (!shift) return;
+  fmt::print(
+      stderr,
+      "note: '{}' would fit the other sources of the map better about {} from where it lies (correlation of the roads "
+      "{:.2f} instead of {:.2f}): check the georeference of both (--crs); until then places are wrong by as much, "
+      "and fewer are found\n",
+      record.name, directions_of(*shift), shift->correlation, shift->correlation_in_place);
 }
 
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
@@ -79,7 +104,10 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
                summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent, no numbers or in one colour"
                                           : "its --extent holds the centre of no cell");
   }
-  if (report.blocks_before < report.blocks) note_twins(*writer, record.name, arguments.map);
+  if (report.blocks_before < report.blocks) {
+    note_twins(*writer, record.name, arguments.map);
+    note_shift(*writer, record);
+  }
   print_report(json, report, cell_mp, arguments.json);
 }
 

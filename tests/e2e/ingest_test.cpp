@@ -272,6 +272,32 @@ TEST_F(IngestCommand, ACopyUnderAnotherNameIsNoticed) {
   EXPECT_THAT(again.err, ::testing::HasSubstr("'copy' says exactly what the source 'first' says"));
 }
 
+TEST_F(IngestCommand, ASourceThatLiesBesideTheOthersIsNoticed) {
+  const auto streets = [&](const std::string& name, double east_deg) {
+    std::string features;
+    double at = 0.0;
+    for (int i = 0; i < 16; ++i) {
+      at += 0.0008 + 0.0003 * (i * i % 5);
+      const double lon = 38.25 + at + east_deg;
+      const double lat = 37.75 + at;
+      features += fmt::format(
+          R"({}{{"type": "Feature", "properties": {{"highway": "residential"}}, "geometry": {{"type": "MultiLineString",
+          "coordinates": [[[{}, 37.75], [{}, 37.78]], [[{}, {}], [{}, {}]]]}}}})",
+          i == 0 ? "" : ",", lon, lon, 38.25 + east_deg, lat, 38.28 + east_deg, lat);
+    }
+    std::string path = folder / (name + ".geojson");
+    std::ofstream(path) << R"({"type": "FeatureCollection", "features": [)" << features << "]}";
+    return path;
+  };
+  EXPECT_EQ(ingest({streets("first", 0.0), "--map", map("m.gpkg")}).code, 0);
+  EXPECT_THAT(ingest({streets("again", 0.00003), "--map", map("m.gpkg")}).err, ::testing::Not(HasSubstr("would fit")))
+      << "2.6 m";
+  const ChildResult beside = ingest({streets("beside", 0.0003), "--map", map("m.gpkg")});
+  EXPECT_EQ(beside.code, 0) << beside.err;
+  EXPECT_THAT(beside.err, HasSubstr("'beside' would fit the other sources of the map better about"));
+  EXPECT_THAT(beside.err, HasSubstr("m to the west"));
+}
+
 TEST_F(IngestCommand, ADryRunPrintsThePlanAndWritesNothing) {
   const ChildResult result = ingest({picture(600, 0.5), "--detector", "tree", "--dry-run", "--map", map("a.gpkg")});
   EXPECT_EQ(result.code, 0) << result.err;

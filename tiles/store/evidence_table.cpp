@@ -1,10 +1,12 @@
 #include "tiles/store/evidence_table.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <set>
 #include <span>
 
 #include "core/units/error.hpp"
+#include "tiles/store/fusion.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
 
@@ -50,6 +52,38 @@ std::vector<std::string> EvidenceTable::twins_of(const std::string& source) {
       "own.tile_row AND o.tile_data = own.tile_data)) ORDER BY name");
   for (twins.with(source); twins.step();) names.push_back(twins.text(0));
   return names;
+}
+
+Testimonies EvidenceTable::testimonies(const std::string& source, std::int64_t count) {
+  Testimonies result;
+  Statement shared(map_,
+                   "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1), tiles AS (SELECT "
+                   "e.tile_row, e.tile_column, row_number() OVER (ORDER BY e.tile_row, e.tile_column) - 1 AS place, "
+                   "count(*) OVER () AS all_of_them FROM roadfix_evidence e WHERE e.source_id IN own AND EXISTS "
+                   "(SELECT 1 FROM roadfix_evidence o JOIN roadfix_sources s ON s.id = o.source_id WHERE o.tile_row = "
+                   "e.tile_row AND o.tile_column = e.tile_column AND s.in_force = 1 AND o.source_id NOT IN own)) "
+                   "SELECT tile_row, tile_column FROM tiles WHERE place * ?2 / all_of_them < (place + 1) * ?2 / "
+                   "all_of_them");
+  Statement evidence(map_,
+                     "SELECT e.tile_data, s.name = ?1, s.registration_sigma_m FROM roadfix_evidence e JOIN "
+                     "roadfix_sources s ON s.id = e.source_id WHERE s.in_force = 1 AND e.tile_row = ?2 AND "
+                     "e.tile_column = ?3");
+  for (shared.with(source, count); shared.step();) {
+    Testimonies::Tile tile;
+    std::vector<CellArray> others;
+    for (evidence.with(source, shared.integer(0), shared.integer(1)); evidence.step();) {
+      CellArray cells = decode_tile(evidence.blob(0), TileDepth::kEvidence);
+      if (evidence.integer(1) == 1) {
+        tile.own = std::move(cells);
+      } else {
+        others.push_back(std::move(cells));
+        result.others_sigma_m = std::max(result.others_sigma_m, evidence.real(2));
+      }
+    }
+    tile.others = fused(others);
+    result.tiles.push_back(std::move(tile));
+  }
+  return result;
 }
 
 std::vector<std::string> EvidenceTable::drop_damaged() {

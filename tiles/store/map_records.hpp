@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geodesy/utm.hpp"
+#include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
 
 namespace roadfix {
@@ -44,6 +45,16 @@ struct SourceRecord {
   double registration_sigma_m = 0.0;
 
   friend bool operator==(const SourceRecord&, const SourceRecord&) = default;
+};
+
+/// What one source says of some tiles, and what the others in force say of them together.
+struct Testimonies {
+  struct Tile {
+    CellArray own;
+    CellArray others;
+  };
+  std::vector<Tile> tiles;
+  double others_sigma_m = 0.0;  ///< the largest registration error of these others
 };
 
 /// A name occurs twice while a source is being replaced: the complete one is in force until the other is complete.

@@ -179,6 +179,10 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
 
 std::vector<std::string> MapWriter::twins_of(const std::string& source) { return state_->evidence.twins_of(source); }
 
+Testimonies MapWriter::testimonies(const std::string& source, std::int64_t count) {
+  return state_->evidence.testimonies(source, count);
+}
+
 void MapWriter::remove_if_new_and_empty() {
   State& s = *state_;
   if (!s.made_here || Statement(s.map, "SELECT 1 FROM roadfix_blocks WHERE done = 1").step()) return;

@@ -54,6 +54,9 @@ class MapWriter {
   /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
   std::vector<std::string> twins_of(const std::string& source);
 
+  /// Of up to `count` tiles, spread evenly over those that the source shares with others in force.
+  Testimonies testimonies(const std::string& source, std::int64_t count);
+
   /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
   /// leaves no map. Nothing but the destructor may be called afterwards.
   void remove_if_new_and_empty();

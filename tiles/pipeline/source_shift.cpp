@@ -1,0 +1,112 @@
+#include "tiles/pipeline/source_shift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/grid/cell.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr int kStep = 2;       // cells
+constexpr int kMaxShift = 25;  // steps
+constexpr int kShifts = 2 * kMaxShift + 1;
+constexpr int kSide = kTileCells / kStep;
+
+/// Of a tile, in squares of kStep cells: their observed share, the mean of their probabilities, unobserved cells
+/// counting 0, and of the squares of these means.
+struct Planes {
+  cv::Mat1f seen;
+  cv::Mat1f road;
+  cv::Mat1f road2;
+
+  explicit Planes(const CellArray& cells) {
+    cv::Mat1f observed(cells.rows(), cells.cols());
+    cv::Mat1f probable(cells.rows(), cells.cols());
+    for (int row = 0; row < cells.rows(); ++row) {
+      for (int col = 0; col < cells.cols(); ++col) {
+        const Cell cell = cells.at(col, row);
+        observed(row, col) = is_observed(cell) ? 1.0F : 0.0F;
+        probable(row, col) = is_observed(cell) ? static_cast<float>(probability(cell)) : 0.0F;
+      }
+    }
+    cv::resize(observed, seen, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
+    cv::resize(probable, road, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
+    road2 = road.mul(road);
+  }
+};
+
+/// The sums of a correlation for every shift of the source: rows to the south, columns to the east.
+class ShiftSums {
+ public:
+  void add(const Testimonies::Tile& tile) {
+    const Planes own(tile.own);
+    const Planes others(tile.others);
+    const cv::Rect middle(kMaxShift, kMaxShift, kSide - 2 * kMaxShift, kSide - 2 * kMaxShift);
+    const auto sum = [&](const cv::Mat1f& a, const cv::Mat1f& b, cv::Mat1d& into) {
+      cv::Mat1f products;
+      cv::matchTemplate(b, a(middle), products, cv::TM_CCORR);
+      cv::accumulate(products, into);
+    };
+    sum(own.seen, others.seen, n_);
+    sum(own.road, others.seen, a_);
+    sum(own.seen, others.road, b_);
+    sum(own.road2, others.seen, aa_);
+    sum(own.seen, others.road2, bb_);
+    sum(own.road, others.road, ab_);
+  }
+
+  /// Pearson's; 0 where either side has no roads.
+  double correlation(int row, int col) const {
+    const double n = n_(row, col);
+    if (n < kMinSquares) return 0.0;
+    const double mean_a = a_(row, col) / n;
+    const double mean_b = b_(row, col) / n;
+    const double variances = (aa_(row, col) / n - mean_a * mean_a) * (bb_(row, col) / n - mean_b * mean_b);
+    constexpr double kNone = 1e-8;
+    return variances > kNone ? (ab_(row, col) / n - mean_a * mean_b) / std::sqrt(variances) : 0.0;
+  }
+
+ private:
+  static constexpr double kMinSquares = 2000.0;
+  cv::Mat1d n_ = cv::Mat1d(kShifts, kShifts, 0.0);
+  cv::Mat1d a_ = n_.clone();
+  cv::Mat1d b_ = n_.clone();
+  cv::Mat1d aa_ = n_.clone();
+  cv::Mat1d bb_ = n_.clone();
+  cv::Mat1d ab_ = n_.clone();
+};
+
+}  // namespace
+
+std::optional<SourceShift> shift_of(const Testimonies& testimonies, double cell_m, double own_sigma_m) {
+  constexpr double kMinCorrelation = 0.15;
+  constexpr double kMinGain = 1.3;
+  constexpr double kMinSteps = 1.5;
+  constexpr double kSigmas = 2.0;
+  ShiftSums sums;
+  for (const Testimonies::Tile& tile : testimonies.tiles) sums.add(tile);
+  SourceShift best;
+  best.correlation = best.correlation_in_place = sums.correlation(kMaxShift, kMaxShift);
+  const double step_m = kStep * cell_m;
+  for (int row = 0; row < kShifts; ++row) {
+    for (int col = 0; col < kShifts; ++col) {
+      const double correlation = sums.correlation(row, col);
+      if (correlation <= best.correlation) continue;
+      best.correlation = correlation;
+      best.east_m = step_m * (col - kMaxShift);
+      best.north_m = step_m * (kMaxShift - row);
+    }
+  }
+  const double explained_m =
+      std::max(kMinSteps * step_m, kSigmas * std::hypot(own_sigma_m, testimonies.others_sigma_m));
+  const double rim_m = step_m * kMaxShift;
+  const bool at_rim = std::max(std::abs(best.east_m), std::abs(best.north_m)) == rim_m;
+  const bool elsewhere = !at_rim && std::hypot(best.east_m, best.north_m) > explained_m &&
+                         best.correlation >= kMinCorrelation &&
+                         best.correlation >= kMinGain * best.correlation_in_place;
+  return elsewhere ? std::optional(best) : std::nullopt;
+}
+
+}  // namespace roadfix

@@ -199,20 +199,14 @@ void Filter::widen_drift(double sigma_m_s) {
 }
 
 void Filter::try_drifts(double share, double sigma_m_s) {
-  ++state_.step;
-  Particles& p = state_.particles;
-  for (std::size_t k = 0; k < p.size(); ++k) {
-    RandomStream random(Draw::kDrift, {state_.seed, state_.step, k});
-    if (random.uniform() >= share) continue;
-    p.drift_east_m_s[k] += sigma_m_s * random.normal();
-    p.drift_north_m_s[k] += sigma_m_s * random.normal();
-  }
+  scatter(state_.particles.drift_east_m_s, state_.particles.drift_north_m_s, sigma_m_s, Draw::kDrift, share);
 }
 
-void Filter::scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose) {
+void Filter::scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose, double share) {
   ++state_.step;
   for (std::size_t k = 0; k < east.size(); ++k) {
     RandomStream random(purpose, {state_.seed, state_.step, k});
+    if (share < 1.0 && random.uniform() >= share) continue;
     east[k] += sigma * random.normal();
     north[k] += sigma * random.normal();
   }

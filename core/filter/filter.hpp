@@ -122,8 +122,8 @@ class Filter {
   bool keep_within_region();
   void resample();
   void roughen(std::span<const std::size_t> ancestors);
-  /// Adds noise to two columns of the particles.
-  void scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose);
+  /// Adds noise to two columns of a share of the particles, drawn at random.
+  void scatter(std::vector<double>& east, std::vector<double>& north, double sigma, Draw purpose, double share = 1.0);
   double share_to_inject() const;
   template <typename DrawState>
   void replace_some(std::size_t count, DrawState draw);

@@ -19,7 +19,7 @@ ParticleState uniform_draw(const AcceptanceRegion& region, const PoseRegion& pos
   for (int i = 0; i < kMaxTries; ++i) {
     state.east_m = random.uniform(within.min.east_m, within.max.east_m);
     state.north_m = random.uniform(within.min.north_m, within.max.north_m);
-    if (poses.contains({state.east_m, state.north_m})) break;
+    if (poses.contains(GridPoint{state.east_m, state.north_m})) break;
   }
   const double half_rad = poses.heading_half_width.radians();
   state.heading_rad = (poses.heading + Angle::radians(random.uniform(-half_rad, half_rad))).wrapped().radians();

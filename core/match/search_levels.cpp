@@ -110,8 +110,7 @@ int SearchLevels::proof_level() const {
 
 bool SearchLevels::within_region(const Level& level, const LatticePose& pose) const {
   const PoseRegion wide = region_.grown(0.71 * level.cell_m(), level.bins.step());
-  const GridPose at = level.pose_of(pose);
-  return wide.contains(at.position) && wide.contains(at.heading);
+  return wide.contains(level.pose_of(pose));
 }
 
 std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,

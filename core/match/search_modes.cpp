@@ -95,15 +95,11 @@ void append_new(const Level& finest, const std::vector<SearchMode>& more, std::v
   }
 }
 
-bool is_within(const PoseRegion& region, const GridPose& pose) {
-  return region.contains(pose.position) && region.contains(pose.heading);
-}
-
 /// The first of the modes that is around the region, and not the best one in it seen from across the border.
 std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegion& scanned,
                                       const std::vector<SearchMode>& modes, const SearchMode& best) {
   const auto found = std::ranges::find_if(modes, [&](const SearchMode& mode) {
-    return scanned.contains(mode.pose.position) && !is_within(levels.region(), mode.pose) &&
+    return scanned.contains(mode.pose.position) && !levels.region().contains(mode.pose) &&
            !on_one_peak(levels.finest(), mode, best);
   });
   return found == modes.end() ? std::nullopt : std::optional(*found);

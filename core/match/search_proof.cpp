@@ -19,10 +19,7 @@ BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, con
   bounded.eligible = cells_within(bounded.positions, region);
   bounded.threads = options.threads;
   for (const LatticePose& pose : candidates) {
-    const GridPose at = level.pose_of(pose);
-    if (region.contains(at.position) && region.contains(at.heading)) {
-      bounded.known = std::max(bounded.known, pose.score);
-    }
+    if (region.contains(level.pose_of(pose))) bounded.known = std::max(bounded.known, pose.score);
   }
   return bounded;
 }

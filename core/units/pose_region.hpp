@@ -15,6 +15,7 @@ struct PoseRegion {
 
   bool contains(GridPoint point) const;
   bool contains(Angle grid_heading) const;
+  bool contains(const GridPose& pose) const { return contains(pose.position) && contains(pose.heading); }
   /// The area of the box or of the circle, whichever is less.
   double area_km2() const;
   PoseRegion grown(double by_m, Angle by_heading) const;

@@ -16,7 +16,7 @@
 #include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
@@ -93,7 +93,7 @@ void run_detect(const DetectOptions& options) {
   if (cells.observed_count() == 0) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
   }
-  const std::vector<std::uint8_t> png = encode_feature_map(cells);
+  const std::vector<std::uint8_t> png = encode_feature_map(map);
   write_file(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
   if (picture.place) write_place(options.target, *picture.place, options.cell_m);
   nlohmann::json answer{{"feature_map", options.target},
@@ -110,9 +110,13 @@ void run_detect(const DetectOptions& options) {
   if (options.json) {
     fmt::print("{}\n", json_text(answer));
   } else {
-    fmt::print("{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n{}\n",
-               options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(),
-               mean_probability(cells), time.count(), detector->describe());
+    fmt::print(
+        "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
+        "UAV above column {:.1f}, row {:.1f}{}\n{}\n",
+        options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(), mean_probability(cells),
+        time.count(), map.nadir.col, map.nadir.row,
+        map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
+        detector->describe());
   }
 }
 

@@ -50,7 +50,11 @@ Another parse_also(const std::string& text) {
 /// `detector` is null for feature maps.
 FeatureMap features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
                        double map_cell_m) {
-  if (detector == nullptr) return FeatureMap::centred(feature_map_in(path), options.cell_m);
+  if (detector == nullptr) {
+    FeatureMap map = feature_map_in(path, options.cell_m);
+    if (!options.nadir.empty()) map.nadir = {options.nadir[0], options.nadir[1]};
+    return map;
+  }
   const GroundView view = ground_seen(options.frame, path, *detector);
   return detect_features(*detector, view, map_cell_m, options.seed);
 }
@@ -83,9 +87,21 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
       ->type_name("FILE,FORWARD,RIGHT,TURN")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  auto* cell = command.add_option("--cell,--cell-m", o.cell_m, "The input is a feature map: its cell size in metres")
-                   ->check(positive());
-  for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell);
+  auto* cell =
+      command
+          .add_option("--cell,--cell-m", o.cell_m,
+                      "The input is a feature map: its cell size in metres (those of detect tell it themselves)")
+          ->check(positive());
+  auto* nadir =
+      command
+          .add_option("--nadir", o.nadir,
+                      "The point below the UAV in a feature map, in cells from its upper left corner (default: "
+                      "as the feature map says, else its middle)")
+          ->type_name("COL,ROW")
+          ->delimiter(',')
+          ->expected(2)
+          ->check(CLI::Range(-1e6, 1e6));
+  for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell)->excludes(nadir);
   command.add_option("--seed", o.seed, "Seed of detectors that use random numbers")
       ->capture_default_str()
       ->check(seed());
@@ -93,12 +109,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
 }
 
 FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
-  if (options.cell_m <= 0.0 && !options.frame.given()) {
-    throw InvalidInput(
-        "input-kind-missing",
-        "say what the input is: --cell for a feature map; --gsd, --exif or --agl with --fov or --focal-px for a frame");
-  }
-  if (options.cell_m > 0.0) return all_features(options, nullptr, map_cell_m);
+  if (!options.frame.given()) return all_features(options, nullptr, map_cell_m);
   const auto detector = make_detector(options.detector);
   const auto start = std::chrono::steady_clock::now();
   FeatureInput input = all_features(options, detector.get(), map_cell_m);

@@ -17,7 +17,8 @@ namespace roadfix::cli {
 struct FeatureInputOptions {
   std::string path;
   std::vector<std::string> also;  ///< FILE,FORWARD,RIGHT,TURN: more of the same kind, and where they were taken
-  double cell_m = 0.0;            ///< of a feature map; 0 = the input is a frame
+  std::optional<double> cell_m;   ///< of feature maps that do not tell it themselves
+  std::vector<double> nadir;      ///< of feature maps, where told: column and row
   FrameOptions frame;
   std::uint64_t seed = 1;
   DetectorChoice detector;
@@ -32,8 +33,9 @@ struct FeatureInput {
 /// Adds the input file and its options; `options` must live as long as the command.
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
 
-/// Roads of a frame come in cells of `map_cell_m`; several frames are laid together. Throws InvalidInput when it is not
-/// clear what the input is.
+/// Roads of a frame come in cells of `map_cell_m`; several frames are laid together. Without options
+/// of a frame the input is a feature map. Throws InvalidInput "input-kind-missing" where it does not say so itself and
+/// no option does.
 FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m);
 
 }  // namespace roadfix::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli/number_checks.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
@@ -115,8 +116,16 @@ GroundView ground_seen(const FrameOptions& options, const std::string& path, con
   });
 }
 
-CellArray feature_map_in(const std::string& path) {
-  return decoded(path, [](const auto& bytes) { return decode_feature_map(bytes, kMaxPixels); });
+FeatureMap feature_map_in(const std::string& path, std::optional<double> cell_m) {
+  return decoded(path, [&](const auto& bytes) {
+    if (!cell_m && !is_feature_map(bytes)) {
+      throw InvalidInput(
+          "input-kind-missing",
+          "say what the input is: --cell for a feature map that does not tell its cell size itself; --gsd, "
+          "--exif or --agl with --fov or --focal-px for a frame");
+    }
+    return feature_map_of(decode_feature_map(bytes, kMaxPixels), cell_m);
+  });
 }
 
 }  // namespace roadfix::cli

@@ -39,8 +39,9 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& opt
 /// all about the file name it. options.given() must hold.
 GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
-/// The feature map in a file, see decode_feature_map; what that throws names the file here. Also throws InvalidInput
-/// "not-a-file" and NotFound "file-not-found".
-CellArray feature_map_in(const std::string& path);
+/// The feature map in a file, in cells of `cell_m` where it does not say so itself: see decode_feature_map and
+/// feature_map_of; what they throw names the file here. Also throws InvalidInput "not-a-file", "input-kind-missing"
+/// where neither tells the cell size, and NotFound "file-not-found".
+FeatureMap feature_map_in(const std::string& path, std::optional<double> cell_m);
 
 }  // namespace roadfix::cli

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fly/service_answer.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "server/http/client.hpp"
@@ -118,7 +119,7 @@ struct Picture {
 };
 
 Picture picture_of(const FeatureMap& features) {
-  const auto png = encode_feature_map(features.cells);
+  const auto png = encode_feature_map(features);
   return {{{"cell_m", features.cell_m},
            {"nadir_col", features.nadir.col},
            {"nadir_row", features.nadir.row},

@@ -55,23 +55,6 @@ std::optional<ImageHeader> jpeg_header(Bytes bytes) {
   return std::nullopt;
 }
 
-/// A frame that was sent as a feature map would be searched for as if its brightness were road.
-void refuse_coloured(const GroundImage& picture) {
-  constexpr int kStillGrey = 12;
-  constexpr double kStray = 0.01;
-  if (picture.pixels.channels() == 1) return;
-  std::vector<cv::Mat> channels;
-  cv::split(picture.pixels, channels);
-  const cv::Mat spread =
-      cv::max(cv::max(channels[0], channels[1]), channels[2]) - cv::min(cv::min(channels[0], channels[1]), channels[2]);
-  const int coloured = cv::countNonZero((spread > kStillGrey) & picture.observed);
-  if (coloured <= kStray * cv::countNonZero(picture.observed)) return;
-  throw InvalidInput("feature-map-coloured",
-                     fmt::format("a feature map is grey, but {} pixels of this picture are coloured: if it is a frame, "
-                                 "say so and give its metres per pixel or its camera",
-                                 coloured));
-}
-
 }  // namespace
 
 std::optional<ImageHeader> read_image_header(Bytes bytes) {
@@ -93,40 +76,6 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
     throw InvalidInput("image-damaged", "the image is damaged: it has two sizes");
   }
   return image;
-}
-
-CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
-  const GroundImage frame = frame_image(decode_image(bytes, max_pixels), 1.0);
-  refuse_coloured(frame);
-  const cv::Mat grey = brightness_of(frame);
-  CellArray cells(grey.cols, grey.rows);
-  for (int row = 0; row < grey.rows; ++row) {
-    for (int col = 0; col < grey.cols; ++col) {
-      if (frame.observed.at<uchar>(row, col) != 0) cells.at(col, row) = std::min(grey.at<uchar>(row, col), kRoad);
-    }
-  }
-  return cells;
-}
-
-std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
-  constexpr int kLongestSide = 1'000'000;  // of libpng
-  if (std::max(cells.cols(), cells.rows()) > kLongestSide) {
-    throw LimitExceeded(
-        "too-many-cells",
-        fmt::format("a PNG has at most {} columns and rows, not {} x {}: ask for larger cells, a smaller "
-                    "window or another format",
-                    kLongestSide, cells.cols(), cells.rows()));
-  }
-  cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4);
-  for (int row = 0; row < cells.rows(); ++row) {
-    for (int col = 0; col < cells.cols(); ++col) {
-      const Cell cell = cells.at(col, row);
-      picture.at<cv::Vec4b>(row, col) = is_observed(cell) ? cv::Vec4b(cell, cell, cell, 255) : cv::Vec4b(0, 0, 0, 0);
-    }
-  }
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png);
-  return png;
 }
 
 std::vector<std::uint8_t> encode_frame(const GroundImage& image) {

@@ -1,4 +1,4 @@
-// Pictures and feature maps as bytes from outside. Sizes are read from the header and checked before anything is
+// Pictures as bytes from outside. Sizes are read from the header and checked before anything is
 // decoded.
 #pragma once
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/detect/road_detector.hpp"
-#include "core/grid/cell_array.hpp"
 
 namespace roadfix {
 
@@ -30,15 +29,6 @@ std::optional<ImageHeader> read_image_header(Bytes bytes);
 /// frame_image() makes a picture of the ground of it. Throws InvalidInput ("image-format", "image-damaged") and
 /// LimitExceeded ("image-too-large").
 cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels);
-
-/// A feature map as a picture: grey k = probability k / 254 (255 counts as 254, so that 0/255 masks work); alpha below
-/// one half = unobserved. 16-bit grey is scaled linearly. Throws as decode_image, and InvalidInput
-/// ("feature-map-coloured").
-CellArray decode_feature_map(Bytes bytes, std::int64_t max_pixels);
-
-/// Grey and alpha PNG that decode_feature_map turns back into exactly these cells. At least one cell; LimitExceeded
-/// ("too-many-cells") for more in a row or column than a PNG holds.
-std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
 
 /// A picture of the ground as PNG, of which decode_image() and frame_image() make the same again (grey as BGR where not
 /// all of it was seen): what was not seen is transparent. At least one pixel.

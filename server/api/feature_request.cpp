@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
@@ -57,18 +58,22 @@ CellArray cells_of_json(const Fields& fields, const Limits& limits) {
   return cells;
 }
 
-FeatureMap given_map(const Content& content, const Limits& limits) {
+FeatureMapPicture given_picture(const Content& content, const Limits& limits) {
   const Fields& fields = content.fields;
-  const double cell_m = fields.number("cell_m", kFeatureCell);
-  if (fields.has("cells") && !content.image.empty()) {
+  if (fields.has("cells")) {
+    if (content.image.empty()) return {cells_of_json(fields, limits), {}};
     throw InvalidField("duplicate-parameter", "cells", "give either a picture or 'cells', not both");
   }
-  if (!fields.has("cells")) {
-    require_picture(content);
-    require_no(fields, {"cols", "rows"}, "goes with 'cells'; a picture has a size of its own");
-  }
-  FeatureMap map = FeatureMap::centred(
-      fields.has("cells") ? cells_of_json(fields, limits) : decode_feature_map(content.image, limits.cells), cell_m);
+  require_picture(content);
+  require_no(fields, {"cols", "rows"}, "goes with 'cells'; a picture has a size of its own");
+  return decode_feature_map(content.image, limits.cells);
+}
+
+FeatureMap given_map(const Content& content, const Limits& limits) {
+  const Fields& fields = content.fields;
+  std::optional<double> cell_m;
+  if (fields.has("cell_m") || !is_feature_map(content.image)) cell_m = fields.number("cell_m", kFeatureCell);
+  FeatureMap map = feature_map_of(given_picture(content, limits), cell_m);
   constexpr Range kPosition{-1e6, 1e6};
   map.nadir.col = fields.optional_number("nadir_col", kPosition).value_or(map.nadir.col);
   map.nadir.row = fields.optional_number("nadir_row", kPosition).value_or(map.nadir.row);

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/media.hpp"
 #include "server/api/time_limit.hpp"
@@ -30,7 +30,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
     answer["detector"] = service.detector.describe();
     response = json_response(answer);
   } else {
-    const auto png = encode_feature_map(features.map.cells);
+    const auto png = encode_feature_map(features.map);
     response = {200, "image/png", std::string(png.begin(), png.end())};
   }
   const auto& [col, row] = features.map.nadir;

@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
@@ -22,7 +22,7 @@ http::Response rendered(const api::Window& window, std::string_view format) {
   if (format == "json") return json_response(api::to_json(window));
   if (format == "tiff")
     return {200, "image/tiff", window_tiff(window.cells.cells, window.zone, api::geotransform(window))};
-  const auto png = encode_feature_map(window.cells.cells);
+  const auto png = encode_feature_map(window.cells);
   return {200, "image/png", std::string(png.begin(), png.end())};
 }
 

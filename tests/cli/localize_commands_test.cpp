@@ -5,7 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
+#include "core/grid/resample.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/street_map.hpp"
@@ -25,12 +26,18 @@ class LocalizeCommands : public ::testing::Test {
     save_what_is_seen(truth, 160, window);
   }
 
-  void save_what_is_seen(const GridPose& pose, int side, const std::filesystem::path& file) const {
+  FeatureMap what_is_seen(const GridPose& pose, int side) const {
     std::mt19937_64 random(42);
-    const FeatureMap seen = testing::observed_at(town, pose, side, side, 2.0, {0.1, 0.1}, random);
-    const std::vector<std::uint8_t> png = encode_feature_map(seen.cells);
+    return testing::observed_at(town, pose, side, side, 2.0, {0.1, 0.1}, random);
+  }
+
+  static void save(const std::vector<std::uint8_t>& png, const std::filesystem::path& file) {
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  }
+
+  void save_what_is_seen(const GridPose& pose, int side, const std::filesystem::path& file) const {
+    save(encode_feature_map(what_is_seen(pose, side).cells), file);
   }
 
   ProgramResult roadfix(const std::string& arguments) const { return run_program(folder.path(), arguments); }
@@ -70,6 +77,27 @@ TEST_F(LocalizeCommands, FixIsAsAccurateAsTheNadirIsKnown) {
   for (const char* senseless : {"-1", "1001", "nan"}) {
     EXPECT_EQ(roadfix("fix " + input + "--nadir-sigma " + std::string(senseless)).code, 2) << senseless;
   }
+}
+
+TEST_F(LocalizeCommands, FixPutsTheUavWhereTheFeatureMapOrTheUserSays) {
+  FeatureMap ahead = what_is_seen(truth, 160);  // of which only the part ahead is sent
+  CellArray cells(160, 75);
+  paste(ahead.cells, cells, 0, 0);
+  ahead.cells = cells;
+  save(encode_feature_map(ahead), window);
+  save(encode_feature_map(ahead.cells), folder / "foreign.png");
+  const std::string of_map = "fix --json " + map.string() + " ";
+  for (const std::string& arguments :
+       {window.string(), (folder / "foreign.png").string() + " --cell 2 --nadir 80,80"}) {
+    const ProgramResult result = roadfix(of_map + arguments);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto answer = nlohmann::json::parse(result.out);
+    ASSERT_EQ(answer["status"], "fix") << result.out;
+    EXPECT_NEAR(answer["pose"]["lat"].get<double>(), place.lat_deg, 2e-5) << arguments;
+    EXPECT_NEAR(answer["pose"]["lon"].get<double>(), place.lon_deg, 3e-5) << arguments;
+  }
+  EXPECT_THAT(roadfix(of_map + window.string() + " --cell 1").err, HasSubstr("[cell-size-contradictory]"));
+  EXPECT_THAT(roadfix(of_map + (folder / "foreign.png").string()).err, HasSubstr("[input-kind-missing]"));
 }
 
 TEST_F(LocalizeCommands, FixTakesAPrior) {

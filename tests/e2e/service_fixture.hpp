@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "tests/e2e/service_process.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/street_map.hpp"

@@ -1,4 +1,4 @@
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -26,54 +26,6 @@ std::vector<std::uint8_t> encoded(const char* extension, const cv::Mat& image) {
   return bytes;
 }
 
-TEST(FeatureMapPng, HasNoMoreColumnsThanLibpngReads) {
-  EXPECT_NO_THROW(encode_feature_map(CellArray(1'000'000, 1, kNoRoad)));
-  EXPECT_EQ(testing::code_of([] { encode_feature_map(CellArray(1'000'001, 1, kNoRoad)); }), "too-many-cells");
-}
-
-TEST(FeatureMapCodec, EveryCellValueComesBack) {
-  CellArray cells(16, 16);
-  for (int i = 0; i < 256; ++i) cells.at(i % 16, i / 16) = static_cast<Cell>(i);
-  EXPECT_EQ(decode_feature_map(encode_feature_map(cells), kMany), cells);
-}
-
-TEST(FeatureMapCodec, AMaskOf255IsRoad) {
-  const cv::Mat mask = (cv::Mat_<uchar>(1, 2) << 0, 255);
-  const CellArray cells = decode_feature_map(encoded(".png", mask), kMany);
-  EXPECT_EQ(cells.at(0, 0), kNoRoad);
-  EXPECT_EQ(cells.at(1, 0), kRoad);
-}
-
-TEST(FeatureMapCodec, SixteenBitsScaleLinearly) {
-  const cv::Mat deep = (cv::Mat_<ushort>(1, 3) << 0, 32768, 65535);
-  const CellArray cells = decode_feature_map(encoded(".png", deep), kMany);
-  EXPECT_NEAR(probability(cells.at(1, 0)), 0.5, 0.005);
-  EXPECT_EQ(cells.at(2, 0), kRoad);
-}
-
-TEST(FeatureMapCodec, RefusesAFrameThatWasTakenForAFeatureMap) {
-  cv::Mat frame(40, 40, CV_8UC3, cv::Scalar(90, 120, 100));
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", frame), kMany); }), "feature-map-coloured");
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".jpg", frame), kMany); }), "feature-map-coloured");
-}
-
-TEST(FeatureMapCodec, TakesGreyInAnyGuise) {
-  cv::Mat mask(40, 40, CV_8UC1, cv::Scalar(0));
-  cv::line(mask, {0, 7}, {39, 30}, cv::Scalar(255), 5);
-  cv::Mat colour;
-  cv::cvtColor(mask, colour, cv::COLOR_GRAY2BGR);
-  for (const cv::Mat& picture : {mask, colour}) {
-    for (const char* extension : {".png", ".jpg"}) {
-      EXPECT_EQ(code_of([&] { decode_feature_map(encoded(extension, picture), kMany); }), "no error") << extension;
-    }
-  }
-  cv::Mat unseen;
-  cv::cvtColor(colour, unseen, cv::COLOR_BGR2BGRA);
-  unseen(cv::Rect(0, 0, 40, 20))
-      .setTo(cv::Scalar(200, 10, 30, 0));  // editors leave any colour below what is transparent
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", unseen), kMany); }), "no error");
-}
-
 TEST(FrameCodec, PicturesComeBackAsTheyWereWithWhatWasNotSeen) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
     GroundImage frame{cv::Mat(40, 31, type), cv::Mat(40, 31, CV_8UC1, cv::Scalar(255)), 0.5};

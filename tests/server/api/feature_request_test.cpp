@@ -6,8 +6,8 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_camera.hpp"
-#include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
 #include "tests/support/code_of.hpp"
@@ -58,6 +58,22 @@ TEST(FeatureRequest, TakesThePlaceOfTheNadirInOtherPicturesForExact) {
 TEST(FeatureRequest, TakesWhatItIsToldOfTheNadir) {
   EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}, {"nadir_sigma_m", 12}}), 12.0);
   EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"nadir_sigma_m", 0}}), 0.0);
+}
+
+TEST(FeatureRequest, TakesCellSizeAndNadirFromAFeatureMapThatTellsThem) {
+  const FeatureMap map{CellArray(20, 10, kNoRoad), 1.5, {10.0, 33.5}, 4.0};
+  const auto read = [&](const nlohmann::json& request) {
+    Content content;
+    content.fields.add(request, feature_fields());
+    content.image = encode_feature_map(map);
+    return features_of(content, NoRoads(), 2.0, Limits{}, {}).map;
+  };
+  EXPECT_EQ(read(nlohmann::json::object()), map);
+  EXPECT_EQ(read({{"cell_m", 1.5}}), map);
+  FeatureMap moved = map;
+  moved.nadir.row = 5.0;
+  EXPECT_EQ(read({{"nadir_row", 5}}), moved) << "what is told counts before it";
+  EXPECT_EQ(testing::code_of([&] { read({{"cell_m", 2}}); }), "cell-size-contradictory");
 }
 
 std::string part(const std::string& name, const std::string& value) {

@@ -1,0 +1,144 @@
+#include "core/detect/feature_map_codec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/detect/frame_image.hpp"
+#include "core/detect/ground_scale.hpp"
+#include "core/png/png_text.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::string_view kKeyword = "Roadfix feature map";
+
+/// A frame that was sent as a feature map would be searched for as if its brightness were road.
+void refuse_coloured(const GroundImage& picture) {
+  constexpr int kStillGrey = 12;
+  constexpr double kStray = 0.01;
+  if (picture.pixels.channels() == 1) return;
+  std::vector<cv::Mat> channels;
+  cv::split(picture.pixels, channels);
+  const cv::Mat spread =
+      cv::max(cv::max(channels[0], channels[1]), channels[2]) - cv::min(cv::min(channels[0], channels[1]), channels[2]);
+  const int coloured = cv::countNonZero((spread > kStillGrey) & picture.observed);
+  if (coloured <= kStray * cv::countNonZero(picture.observed)) return;
+  throw InvalidInput("feature-map-coloured",
+                     fmt::format("a feature map is grey, but {} pixels of this picture are coloured: if it is a frame, "
+                                 "say so and give its metres per pixel or its camera",
+                                 coloured));
+}
+
+CellArray cells_of(const cv::Mat& image) {
+  const GroundImage frame = frame_image(image, 1.0);
+  refuse_coloured(frame);
+  const cv::Mat grey = brightness_of(frame);
+  CellArray cells(grey.cols, grey.rows);
+  for (int row = 0; row < grey.rows; ++row) {
+    for (int col = 0; col < grey.cols; ++col) {
+      if (frame.observed.at<uchar>(row, col) != 0) cells.at(col, row) = std::min(grey.at<uchar>(row, col), kRoad);
+    }
+  }
+  return cells;
+}
+
+std::string text_of(const FeatureMap& map) {
+  return nlohmann::json{{"cols", map.cells.cols()},
+                        {"rows", map.cells.rows()},
+                        {"cell_m", map.cell_m},
+                        {"nadir_cell", {map.nadir.col, map.nadir.row}},
+                        {"nadir_sigma_m", map.nadir_sigma_m}}
+      .dump();
+}
+
+[[noreturn]] void refuse_altered(const CellArray& cells) {
+  throw InvalidInput("feature-map-altered",
+                     fmt::format("this picture of {} x {} cells was cut, scaled or written anew since it was made, so "
+                                 "that what it says of its cell size and of the point below the UAV no longer holds: "
+                                 "detect the roads again, or remove its PNG text '{}' and tell both",
+                                 cells.cols(), cells.rows(), kKeyword));
+}
+
+bool is_sound(const FeatureMapScale& scale) {
+  constexpr double kMaxCellM = 1000.0;
+  constexpr double kMaxNadir = 1e6;
+  constexpr double kMaxSigmaM = 1000.0;
+  return scale.cell_m > 0.0 && scale.cell_m <= kMaxCellM && std::abs(scale.nadir.col) <= kMaxNadir &&
+         std::abs(scale.nadir.row) <= kMaxNadir && scale.nadir_sigma_m >= 0.0 && scale.nadir_sigma_m <= kMaxSigmaM;
+}
+
+FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
+  constexpr std::size_t kLongest = 1000;
+  if (text.size() > kLongest) refuse_altered(cells);
+  try {
+    const auto json = nlohmann::json::parse(text);
+    const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
+    const auto& nadir = json.at("nadir_cell");
+    const FeatureMapScale scale{
+        number(json.at("cell_m")), {number(nadir.at(0)), number(nadir.at(1))}, number(json.at("nadir_sigma_m"))};
+    if (json.at("cols") != cells.cols() || json.at("rows") != cells.rows() || !is_sound(scale)) refuse_altered(cells);
+    return scale;
+  } catch (const nlohmann::json::exception&) {
+    refuse_altered(cells);
+  }
+}
+
+}  // namespace
+
+FeatureMapPicture decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
+  FeatureMapPicture picture{cells_of(decode_image(bytes, max_pixels)), {}};
+  if (const auto text = text_in(bytes, kKeyword)) picture.scale = scale_of(*text, picture.cells);
+  return picture;
+}
+
+bool is_feature_map(Bytes bytes) { return text_in(bytes, kKeyword).has_value(); }
+
+FeatureMap feature_map_of(FeatureMapPicture picture, std::optional<double> told_cell_m) {
+  assert(told_cell_m || picture.scale);
+  if (!picture.scale) return FeatureMap::centred(std::move(picture.cells), *told_cell_m);
+  const FeatureMapScale& scale = *picture.scale;
+  constexpr double kSame = 1e-6;
+  if (told_cell_m && std::abs(*told_cell_m / scale.cell_m - 1.0) > kSame) {
+    throw InvalidInput("cell-size-contradictory",
+                       fmt::format("the picture says that its cells have {} m, not {} m: leave the cell size out",
+                                   scale.cell_m, *told_cell_m));
+  }
+  return {std::move(picture.cells), scale.cell_m, scale.nadir, scale.nadir_sigma_m};
+}
+
+std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map) {
+  return with_text(encode_feature_map(map.cells), kKeyword, text_of(map));
+}
+
+std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
+  constexpr int kLongestSide = 1'000'000;  // of libpng
+  if (std::max(cells.cols(), cells.rows()) > kLongestSide) {
+    throw LimitExceeded(
+        "too-many-cells",
+        fmt::format("a PNG has at most {} columns and rows, not {} x {}: ask for larger cells, a smaller "
+                    "window or another format",
+                    kLongestSide, cells.cols(), cells.rows()));
+  }
+  cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4);
+  for (int row = 0; row < cells.rows(); ++row) {
+    for (int col = 0; col < cells.cols(); ++col) {
+      const Cell cell = cells.at(col, row);
+      picture.at<cv::Vec4b>(row, col) = is_observed(cell) ? cv::Vec4b(cell, cell, cell, 255) : cv::Vec4b(0, 0, 0, 0);
+    }
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", picture, png);
+  return png;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,44 @@
+// Feature maps as pictures: cells as grey and alpha, and beside them what the cells cannot say of themselves.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/detect/image_codec.hpp"
+#include "core/grid/feature_map.hpp"
+
+namespace roadfix {
+
+/// What a feature map says beside its cells (FeatureMap has the meanings).
+struct FeatureMapScale {
+  double cell_m = 1.0;
+  GridGeometry::CellPosition nadir;
+  double nadir_sigma_m = 0.0;
+};
+
+struct FeatureMapPicture {
+  CellArray cells;
+  std::optional<FeatureMapScale> scale;  ///< of one that encode_feature_map() wrote
+};
+
+/// Grey k = probability k / 254 (255 counts as 254, so that 0/255 masks work); alpha below one half = unobserved.
+/// 16-bit grey is scaled linearly. Throws as decode_image, and InvalidInput: "feature-map-coloured";
+/// "feature-map-altered" where the picture has another size than its scale was written for, so that its nadir lies
+/// elsewhere.
+FeatureMapPicture decode_feature_map(Bytes bytes, std::int64_t max_pixels);
+
+/// Whether the bytes are a PNG that says of itself that it is a feature map.
+bool is_feature_map(Bytes bytes);
+
+/// As the picture says, or in cells of `told_cell_m` with the nadir in the middle; one of them tells the cell size.
+/// Throws InvalidInput "cell-size-contradictory" where both do and they differ.
+FeatureMap feature_map_of(FeatureMapPicture picture, std::optional<double> told_cell_m);
+
+/// Grey and alpha PNG that decode_feature_map turns back into exactly this. At least one cell; LimitExceeded
+/// ("too-many-cells") for more in a row or column than a PNG holds.
+std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map);
+/// The cells alone, as other programs write them.
+std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
+
+}  // namespace roadfix

@@ -43,10 +43,11 @@ class ShiftSums {
   void add(const Testimonies::Tile& tile) {
     const Planes own(tile.own);
     const Planes others(tile.others);
-    const cv::Rect middle(kMaxShift, kMaxShift, kSide - 2 * kMaxShift, kSide - 2 * kMaxShift);
-    const auto sum = [&](const cv::Mat1f& a, const cv::Mat1f& b, cv::Mat1d& into) {
+    const auto sum = [](const cv::Mat1f& a, const cv::Mat1f& b, cv::Mat1d& into) {
+      cv::Mat1f wide;  // nothing is known of the others beyond the tile
+      cv::copyMakeBorder(b, wide, kMaxShift, kMaxShift, kMaxShift, kMaxShift, cv::BORDER_CONSTANT, 0.0);
       cv::Mat1f products;
-      cv::matchTemplate(b, a(middle), products, cv::TM_CCORR);
+      cv::matchTemplate(wide, a, products, cv::TM_CCORR);
       cv::accumulate(products, into);
     };
     sum(own.seen, others.seen, n_);
@@ -57,10 +58,12 @@ class ShiftSums {
     sum(own.road, others.road, ab_);
   }
 
+  /// Squares that both observed.
+  double squares(int row, int col) const { return n_(row, col); }
+
   /// Pearson's; 0 where either side has no roads.
   double correlation(int row, int col) const {
     const double n = n_(row, col);
-    if (n < kMinSquares) return 0.0;
     const double mean_a = a_(row, col) / n;
     const double mean_b = b_(row, col) / n;
     const double variances = (aa_(row, col) / n - mean_a * mean_a) * (bb_(row, col) / n - mean_b * mean_b);
@@ -69,7 +72,6 @@ class ShiftSums {
   }
 
  private:
-  static constexpr double kMinSquares = 2000.0;
   cv::Mat1d n_ = cv::Mat1d(kShifts, kShifts, 0.0);
   cv::Mat1d a_ = n_.clone();
   cv::Mat1d b_ = n_.clone();
@@ -85,13 +87,18 @@ std::optional<SourceShift> shift_of(const Testimonies& testimonies, double cell_
   constexpr double kMinGain = 1.3;
   constexpr double kMinSteps = 1.5;
   constexpr double kSigmas = 2.0;
+  constexpr double kMinSquares = 4000.0;  // in place; fewer say nothing of how well the sources fit
+  constexpr double kMinShare = 0.5;       // of them elsewhere: a narrow overlap fits somewhere by chance
   ShiftSums sums;
   for (const Testimonies::Tile& tile : testimonies.tiles) sums.add(tile);
+  const double in_place = sums.squares(kMaxShift, kMaxShift);
+  if (in_place < kMinSquares) return std::nullopt;
   SourceShift best;
   best.correlation = best.correlation_in_place = sums.correlation(kMaxShift, kMaxShift);
   const double step_m = kStep * cell_m;
   for (int row = 0; row < kShifts; ++row) {
     for (int col = 0; col < kShifts; ++col) {
+      if (sums.squares(row, col) < kMinShare * in_place) continue;
       const double correlation = sums.correlation(row, col);
       if (correlation <= best.correlation) continue;
       best.correlation = correlation;

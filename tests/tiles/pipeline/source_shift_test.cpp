@@ -65,5 +65,30 @@ TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
   EXPECT_EQ(shift->north_m, 0.0);
 }
 
+/// The source observed the west of the town, the others the east, and both a strip of so many columns.
+Testimonies overlapping(int cols, int east, int south) {
+  constexpr int kWest = 300;  // columns of the source
+  Testimonies result = testimonies(east, south);
+  for (std::size_t i = 0; i < result.tiles.size(); ++i) {
+    const int first = static_cast<int>(i % 3) * kTileCells;
+    for (int row = 0; row < kTileCells; ++row) {
+      for (int col = 0; col < kTileCells; ++col) {
+        if (first + col >= kWest) result.tiles[i].own.at(col, row) = kUnobserved;
+        if (first + col < kWest - cols) result.tiles[i].others.at(col, row) = kUnobserved;
+      }
+    }
+  }
+  return result;
+}
+
+TEST(SourceShift, IsNoneOfANarrowOverlapThatFitsInPlace) {
+  for (int cols = 4; cols <= 124; cols += 12) EXPECT_FALSE(shift_of(overlapping(cols, 0, 0), kCellM, 0.0)) << cols;
+}
+
+TEST(SourceShift, IsNoneWhereTooLittleGroundIsSharedToTell) {
+  EXPECT_FALSE(shift_of(overlapping(16, 12, -8), kCellM, 0.0));
+  EXPECT_TRUE(shift_of(overlapping(100, 12, -8), kCellM, 0.0));
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -198,7 +198,8 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
   plan.odometry.turn = Angle::degrees(options.turn_noise_deg);
   plan.odometry.turn_drift = Angle::degrees(options.turn_drift_deg);
   plan.tells_odometry = !options.no_odometry;
-  plan.registration_m = options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m);
+  plan.registration_m =
+      options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m(map.extent.centre()));
   const int steps = ground.recordings.empty() ? plan.steps : frames_of_the_longest(ground.recordings);
   if (!options.outage.empty()) plan.outage = outage_of(options, steps);
   if (!options.kidnap.empty()) plan.kidnapping = kidnapping_of(options, steps);

@@ -13,7 +13,8 @@ PositionCovariance position_covariance(const std::array<double, 2>& variances, A
 }
 
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
-  const double registration2 = map.registration_sigma_m * map.registration_sigma_m;
+  const double registration_m = map.registration_sigma_m(at);
+  const double registration2 = registration_m * registration_m;
   const double east2 = covariance[0][0] + registration2;
   const double north2 = covariance[1][1] + registration2;
   const double east_north = covariance[0][1];

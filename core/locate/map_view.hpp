@@ -17,8 +17,10 @@ struct MapView {
   std::string version;  ///< changes whenever the cells of the map change
   UtmZone zone;
   double cell_m = 2.0;
-  GridBox extent;                     ///< box of the observed cells
-  double registration_sigma_m = 0.0;  ///< 1 sigma position error of the sources, per axis
+  GridBox extent;  ///< box of the observed cells
+  /// Position error (1 sigma per axis) of the least exact of the sources that observed the ground around a place;
+  /// beyond them all, of all. Safe to call from several threads.
+  std::function<double(GridPoint place)> registration_sigma_m;
   /// Cells of the geometry, unobserved where the map has none. `geometry.cell_m` is cell_m * 2^k.
   /// Safe to call from several threads.
   std::function<RoadGrid(const GridGeometry& geometry)> read;

@@ -66,7 +66,7 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
 }
 
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m) {
-  const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m, nadir_sigma_m);
+  const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m(cluster.mean.position), nadir_sigma_m);
   const Ellipse ellipse = ellipse_of(map, cluster.mean.position, cluster.covariance);
   return {on_earth(cluster.mean, map.zone),
           cluster.weight,

@@ -1,22 +1,39 @@
 #include "tiles/view/map_file_view.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <utility>
 
 namespace roadfix {
+namespace {
+
+constexpr double kAroundM = 500.0;
+
+std::function<double(GridPoint)> registration_around(std::shared_ptr<const MapReader> reader) {
+  double least_m = std::numeric_limits<double>::infinity();
+  double largest_m = 0.0;
+  for (const SourceStatus& source : reader->info().sources) {
+    if (!source.complete) continue;
+    least_m = std::min(least_m, source.record.registration_sigma_m);
+    largest_m = std::max(largest_m, source.record.registration_sigma_m);
+  }
+  if (least_m >= largest_m) return [largest_m](GridPoint) { return largest_m; };
+  return [largest_m, reader = std::move(reader)](GridPoint place) {
+    return reader->registration_sigma_m(grown({place, place}, kAroundM)).value_or(largest_m);
+  };
+}
+
+}  // namespace
 
 MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::size_t search_cache_bytes) {
   const MapInfo& info = reader->info();
-  double registration_sigma_m = 0.0;
-  for (const SourceStatus& source : info.sources) {
-    if (source.complete) registration_sigma_m = std::max(registration_sigma_m, source.record.registration_sigma_m);
-  }
   return {std::move(name),
           info.version,
           info.settings.zone,
           info.settings.cell_m,
           info.extent,
-          registration_sigma_m,
+          registration_around(reader),
           [reader = std::move(reader)](const GridGeometry& geometry) { return reader->read(geometry); },
           search_cache_bytes > 0 ? std::make_shared<SearchCache>(search_cache_bytes) : nullptr};
 }

@@ -14,7 +14,12 @@ const UtmZone kZone = UtmZone::containing({37.7, 38.3});
 const GridPoint kFarFromTheMeridian{180'000.0, 4'180'000.0};
 
 MapView map_registered_to(double sigma_m) {
-  return {.name = "map", .version = "1", .zone = kZone, .extent = {}, .registration_sigma_m = sigma_m, .read = {}};
+  return {.name = "map",
+          .version = "1",
+          .zone = kZone,
+          .extent = {},
+          .registration_sigma_m = [sigma_m](GridPoint) { return sigma_m; },
+          .read = {}};
 }
 
 /// Of a position that is `along_m` unsure in the direction `grid` and `across_m` across it.

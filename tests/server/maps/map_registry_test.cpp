@@ -64,7 +64,7 @@ TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame
   const TemporaryFolder folder;
   make_map(folder / "city.gpkg", 1);
   MapRegistry registry(folder.path(), kCache);
-  ASSERT_EQ(registry.find("city")->view.registration_sigma_m, 2.5);
+  ASSERT_EQ(registry.find("city")->view.registration_sigma_m({}), 2.5);
   {
     MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
     SourceRecord record = registry.find("city")->reader->info().sources.front().record;
@@ -73,7 +73,7 @@ TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame
     ASSERT_TRUE(writer.begin_source(record, blocks, false).empty()) << "nothing is to be done but to describe it";
   }
   registry.refresh();
-  EXPECT_EQ(registry.find("city")->view.registration_sigma_m, 12.0) << "else ellipses stay too small";
+  EXPECT_EQ(registry.find("city")->view.registration_sigma_m({}), 12.0) << "else ellipses stay too small";
 }
 
 TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {

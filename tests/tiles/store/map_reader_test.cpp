@@ -49,6 +49,26 @@ TEST_F(MapReaderTest, PastesAWindowOutOfSeveralTilesAndBeyondTheMap) {
   }
 }
 
+TEST_F(MapReaderTest, TellsTheLargestRegistrationErrorOfTheSourcesThatObservedABox) {
+  SourceRecord coarse = TestSource{"coarse", 2, {}}.record();
+  coarse.registration_sigma_m = 40.0;
+  const TileIndex beside{849, -8164};  // a tile to the east of the source's south-eastern one
+  for (const TileIndex block : writer.begin_source(coarse, std::vector{beside}, false)) {
+    testing::put_block(writer, coarse.name, block, random_cells(2, block));
+  }
+  const MapReader before(path);
+  const GridBox own = tile_geometry(source.blocks.front(), 2.0).box();
+  const GridBox south_east = tile_geometry({848, -8164}, 2.0).box();
+  EXPECT_EQ(before.registration_sigma_m(grown(south_east, 10.0)), 2.5) << "not complete yet";
+  writer.finish_source(coarse.name);
+  const MapReader reader(path);
+  EXPECT_EQ(reader.registration_sigma_m(grown(own, 10.0)), 2.5);
+  EXPECT_EQ(reader.registration_sigma_m(grown(south_east, -10.0)), 2.5);
+  EXPECT_EQ(reader.registration_sigma_m(grown(south_east, 10.0)), 40.0);
+  EXPECT_EQ(reader.registration_sigma_m(grown(tile_geometry(beside, 2.0).box(), -10.0)), 40.0);
+  EXPECT_EQ(reader.registration_sigma_m({{0.0, 0.0}, {10.0, 10.0}}), std::nullopt);
+}
+
 TEST_F(MapReaderTest, WindowsFarAwayAreUnobserved) {
   const MapReader reader(path);
   for (const LatticeIndex origin : {LatticeIndex{0, 0}, {-5000, -100}, {2'000'000'000, -2'000'000'000}}) {

@@ -199,9 +199,9 @@ void add_serve_command(CLI::App& app) {
   add_limits(*command, o);
   add_resources(*command, o);
   add_detector_options(*command, o.service.detector);
-  also_from_environment(*command);
   const auto config = std::make_shared<std::string>();
   command->add_option("--config", *config, "File with options, one \"name = value\" a line")->check(CLI::ExistingFile);
+  also_from_environment(*command);
   command->callback([command, config, options] {
     if (!config->empty()) also_from_file(*command, *config);
     if (options->service.maps.empty()) throw CLI::RequiredError("--maps");

@@ -61,12 +61,14 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   result.observed_share =
       static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());
   const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map.zone, cell_m);
+  result.reason = fix.reason;
+  result.explanation = fix.explanation;
   if (found) {
     result.status = fix.status;
-    result.reason = fix.reason;
     result.probability = fix.probability;
-  } else {
-    result.reason = fix.modes.empty() || !fix.complete ? fix.reason : "wrong-place";
+  } else if (!fix.modes.empty() && fix.complete) {
+    result.reason = "wrong-place";
+    result.explanation = "a frame of this place fits better elsewhere: its roads repeat, or are too few to tell it by";
   }
   std::ranges::copy_if(fix.modes, std::back_inserter(result.alike),
                        [&](const FixMode& mode) { return !is_at(mode, place, map.zone, cell_m); });

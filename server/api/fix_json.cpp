@@ -81,6 +81,7 @@ json to_json(const Localizability& place) {
               {"observed_share", place.observed_share},
               {"alike", json::array()}};
   if (!place.reason.empty()) answer["reason"] = place.reason;
+  if (!place.explanation.empty()) answer["explanation"] = place.explanation;
   for (const FixMode& mode : place.alike) answer["alike"].push_back(mode_json(mode));
   return answer;
 }

@@ -117,10 +117,12 @@ function enableChosen(form) {
 }
 
 function questionOf(form) {
-  const { picture, what, prior, ...numbers } = Object.fromEntries(form);
+  const { picture, what, prior, scale_percent: percent, ...numbers } = Object.fromEntries(form);
+  if (numbers.focal_px) delete numbers.fov_deg;
   const told = Object.entries(numbers).filter(([, value]) => value !== '');
   const query = new URLSearchParams([['kind', what === 'cells' ? 'feature_map' : 'frame'], ...told]);
   if (what === 'exif') query.set('exif', true);
+  if (percent) query.set('scale_range', percent / 100);
   if (prior === 'circle') {
     const { lat, lng } = view.getCenter().wrap();
     query.set('lat', lat);

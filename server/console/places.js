@@ -25,7 +25,7 @@ export class Places {
       const query = new URLSearchParams({ lat: at.lat, lon: at.lng, footprint_m: side });
       const place = await request(`${mapUrl}/localizability?${query}`, { signal });
       showStatus(this.output, place.status, [
-        place.explanation ?? place.reason,
+        place.explanation,
         `probability ${place.probability.toFixed(3)}, ${(100 * place.road_share).toFixed(0)} % road, ${(100 * place.observed_share).toFixed(0)} % of the ground is on the map`]);
       frame.setStyle({ color: COLOURS[place.status] });
       if (place.alike) drawModes(this.view, this.figures, place.alike, 'ambiguous');

@@ -47,6 +47,23 @@ TEST(Localizability, IsLowInACityOfEqualBlocksAndNamesPlacesAlike) {
   EXPECT_FALSE(place.alike.empty());
 }
 
+TEST(Localizability, SaysInWordsThatAFrameFitsBetterElsewhere) {
+  const MapView view = view_of(testing::grid_city(square(800), 90.0));
+  int elsewhere = 0;
+  for (int i = 0; i < 2; ++i) {
+    LocalizabilityQuery query = centre_of(view, 200.0);
+    const GridPoint centre = view.extent.centre();
+    query.position = view.zone.unproject({centre.east_m + 37.0 * i, centre.north_m});
+    const Localizability place = localizability(view, query);
+    ASSERT_NE(place.status, FixStatus::kFix);
+    if (place.reason != "wrong-place") continue;
+    ++elsewhere;
+    EXPECT_EQ(place.probability, 0.0);
+    EXPECT_NE(place.explanation.find("elsewhere"), std::string::npos) << place.explanation;
+  }
+  EXPECT_GT(elsewhere, 0);
+}
+
 TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
   RoadGrid bare{square(400), CellArray(400, 400, kNoRoad)};
   const MapView view = view_of(bare);
@@ -55,6 +72,7 @@ TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
   const MapView nothing = view_of(unseen);
   const Localizability place = localizability(nothing, centre_of(nothing, 200.0));
   EXPECT_EQ(place.reason, "footprint-unobserved");
+  EXPECT_FALSE(place.explanation.empty());
   EXPECT_EQ(place.observed_share, 0.0);
 }
 

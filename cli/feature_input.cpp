@@ -48,31 +48,33 @@ Another parse_also(const std::string& text) {
 }
 
 /// `detector` is null for feature maps.
-FeatureMap features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
-                       double map_cell_m) {
+FeatureInput features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
+                         double map_cell_m) {
   if (detector == nullptr) {
     FeatureMap map = feature_map_in(path, options.cell_m);
     if (!options.nadir.empty()) map.nadir = {options.nadir[0], options.nadir[1]};
-    return map;
+    return {.features = std::move(map)};
   }
-  const GroundView view = ground_seen(options.frame, path, *detector);
-  return detect_features(*detector, view, map_cell_m, options.seed);
+  const SeenFrame frame = ground_seen(options.frame, path, *detector);
+  return {.features = detect_features(*detector, frame.view, map_cell_m, options.seed),
+          .camera_in_file = frame.camera_in_file};
 }
 
 FeatureInput all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
-  FeatureMap features = features_in(options.path, options, detector, map_cell_m);
-  if (options.also.empty()) return {std::move(features), {}, {}};
+  FeatureInput first = features_in(options.path, options, detector, map_cell_m);
+  if (options.also.empty()) return first;
   if (options.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
                         fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
   }
-  std::vector<PlacedFeatures> parts{{std::move(features), {}}};
+  std::vector<PlacedFeatures> parts{{std::move(first.features), {}}};
   for (const std::string& text : options.also) {
     const Another another = parse_also(text);
-    parts.push_back({features_in(another.path, options, detector, map_cell_m), another.offset});
+    parts.push_back({features_in(another.path, options, detector, map_cell_m).features, another.offset});
   }
-  FeatureMap all = combined(parts, kMaxCells);
-  return {std::move(all), std::move(parts.front().features), {}};
+  first.features = combined(parts, kMaxCells);
+  first.own_frame = std::move(parts.front().features);
+  return first;
 }
 
 }  // namespace
@@ -109,6 +111,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
 }
 
 FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
+  require_frame_for(options.frame);
   if (!options.frame.given()) return all_features(options, nullptr, map_cell_m);
   const auto detector = make_detector(options.detector);
   const auto start = std::chrono::steady_clock::now();

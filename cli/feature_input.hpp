@@ -26,8 +26,9 @@ struct FeatureInputOptions {
 
 struct FeatureInput {
   FeatureMap features;
-  std::optional<FeatureMap> own_frame;  ///< where others are laid around it: the first by itself
-  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of the frames
+  std::optional<FeatureMap> own_frame = {};        ///< where others are laid around it: the first by itself
+  std::optional<FrameCamera> camera_in_file = {};  ///< of the first, where it was read from there
+  std::optional<std::chrono::duration<double, std::milli>> detect_time = {};  ///< of the frames
 };
 
 /// Adds the input file and its options; `options` must live as long as the command.

@@ -17,6 +17,7 @@
 #include "cli/threads_option.hpp"
 #include "core/locate/fix.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/frame_scale.hpp"
 #include "tiles/view/map_file_view.hpp"
 
 namespace roadfix::cli {
@@ -102,7 +103,9 @@ void run_fix(const FixArguments& options) {
   };
   const Fix fix = locate(view, input.features, prior_of(options), fix_options);
   if (options.as_json) {
-    fmt::print("{}\n", json_text(api::to_json(fix, input.detect_time), 2));
+    nlohmann::json answer = api::to_json(fix, input.detect_time);
+    if (input.camera_in_file) answer["camera"] = api::to_json(*input.camera_in_file);
+    fmt::print("{}\n", json_text(answer, 2));
   } else {
     print_text(fix);
   }

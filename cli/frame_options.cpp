@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "cli/number_checks.hpp"
 #include "core/detect/feature_map_codec.hpp"
@@ -102,17 +103,24 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
       ->expected(4, 8)
       ->needs(focal);
   command.add_flag("--fisheye", o.fisheye, "The lens is a fisheye (OpenCV's model; ROS: equidistant)")->needs(focal);
-  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen")->needs(gsd);
+  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen");
   return {gsd, agl, exif};
 }
 
-GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
+void require_frame_for(const FrameOptions& options) {
+  if (options.black_unseen && !options.given())
+    throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
+}
+
+SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
   const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_image(bytes, kMaxPixels); });
   std::optional<FrameCamera> camera;
   if (options.camera()) camera = options.camera_in_file ? camera_in(path, options) : camera_of(options);
   const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
   return said_of(path, [&] {
-    return ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
+    GroundView view =
+        ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
+    return SeenFrame{std::move(view), options.camera_in_file ? camera : std::nullopt};
   });
 }
 

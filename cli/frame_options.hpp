@@ -34,10 +34,18 @@ struct FrameOptions {
 /// live as long as the command. Returns those of which one says that there is a frame.
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& options);
 
+/// Throws CLI::RequiredError where an option says something of a frame and none that there is one.
+void require_frame_for(const FrameOptions& options);
+
+struct SeenFrame {
+  GroundView view;
+  std::optional<FrameCamera> camera_in_file;  ///< where that was asked for
+};
+
 /// The ground that the frame in a file shows, in pixels that the detector makes use of. Throws what decode_image,
 /// frame_image, rectify and camera_of(DronePicture) throw, InvalidInput "not-a-file" and NotFound "file-not-found";
 /// all about the file name it. options.given() must hold.
-GroundView ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
+SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
 /// The feature map in a file, in cells of `cell_m` where it does not say so itself: see decode_feature_map and
 /// feature_map_of; what they throw names the file here. Also throws InvalidInput "not-a-file", "input-kind-missing"

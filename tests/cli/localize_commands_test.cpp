@@ -7,6 +7,7 @@
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/grid/resample.hpp"
+#include "tests/support/drone_jpeg.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/street_map.hpp"
@@ -98,6 +99,23 @@ TEST_F(LocalizeCommands, FixPutsTheUavWhereTheFeatureMapOrTheUserSays) {
   }
   EXPECT_THAT(roadfix(of_map + window.string() + " --cell 1").err, HasSubstr("[cell-size-contradictory]"));
   EXPECT_THAT(roadfix(of_map + (folder / "foreign.png").string()).err, HasSubstr("[input-kind-missing]"));
+}
+
+TEST_F(LocalizeCommands, FixSaysWhichCameraItReadFromAPhoto) {
+  const auto photo = testing::drone_jpeg(
+      cv::Mat(90, 120, CV_8UC3, cv::Scalar(90, 120, 100)),
+      R"(drone-dji:RelativeAltitude="+118.00" drone-dji:CalibratedFocalLength="100" )"
+      R"(drone-dji:GimbalYawDegree="-90.00" drone-dji:GimbalRollDegree="+0.00" drone-dji:GimbalPitchDegree="-87.00")");
+  save(photo, folder / "photo.jpg");
+  const std::string of_photo = "fix --json --detector tree " + map.string() + " " + (folder / "photo.jpg").string();
+  const ProgramResult result = roadfix(of_photo + " --exif");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto camera = nlohmann::json::parse(result.out).at("camera");
+  EXPECT_EQ(camera.at("agl_m"), 118.0);
+  EXPECT_EQ(camera.at("focal_px"), 100.0);
+  EXPECT_NEAR(camera.at("pitch_deg").get<double>(), 3.0, 1e-9);
+  EXPECT_EQ(roadfix(of_photo + " --exif --black-unseen").code, 0);
+  EXPECT_EQ(roadfix(of_photo + " --cell 2 --black-unseen").code, 2) << "says something of a frame, and there is none";
 }
 
 TEST_F(LocalizeCommands, FixTakesAPrior) {

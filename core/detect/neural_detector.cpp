@@ -105,7 +105,7 @@ class NeuralRoadDetector::NetPool {
 NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options)
     : options_(options) {
   if (options.orientations != 1 && options.orientations != 4 && options.orientations != 8) {
-    throw InvalidInput("orientations", fmt::format("{} orientations: choose 1, 4 or 8.", options.orientations));
+    throw InvalidInput("orientations-unknown", fmt::format("{} orientations: choose 1, 4 or 8.", options.orientations));
   }
   const auto onnx = read_model(model);
   network_ = read_network_description(model);

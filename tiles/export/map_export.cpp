@@ -138,7 +138,7 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
   const bool copied = written_by(*driver, source, target, path, monitor);
   CPLPopErrorHandler();
   source.rethrow_failure();
-  if (monitor.stop.stop_requested()) throw Interrupted("interrupted", "the export was stopped; nothing was written");
+  if (monitor.stop.stop_requested()) throw Interrupted("export-stopped", "the export was stopped; nothing was written");
   if (!copied || CPLGetLastErrorType() >= CE_Failure) {
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "

@@ -117,8 +117,9 @@ void FusionQueue::drain(const OnProgress& progress, const std::stop_token& stop)
   if (progress) progress(done, total);
   while (done < total) {
     if (stop.stop_requested()) {
-      throw Interrupted("interrupted", fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
-                                                   map_.path().string(), done, total));
+      throw Interrupted("fusion-stopped",
+                        fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
+                                    map_.path().string(), done, total));
     }
     done += fuse_some();
     if (progress) progress(done, total);

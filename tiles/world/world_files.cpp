@@ -89,7 +89,7 @@ void write_report(const WorldReport& report, const WorldSettings& settings, cons
 
 void throw_if_stopped(const std::stop_token& stop) {
   if (!stop.stop_requested()) return;
-  throw Interrupted("interrupted",
+  throw Interrupted("world-stopped",
                     "stopped: the folder holds an unfinished world, without world.json. Start the same command again");
 }
 

@@ -19,7 +19,7 @@ void write_bench_manifest(const std::filesystem::path& folder);
 /// world.json.
 void write_report(const WorldReport& report, const WorldSettings& settings, const std::filesystem::path& folder);
 
-/// Throws Interrupted "interrupted".
+/// Throws Interrupted "world-stopped".
 void throw_if_stopped(const std::stop_token& stop);
 
 }  // namespace roadfix::world

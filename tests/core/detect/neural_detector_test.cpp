@@ -273,7 +273,7 @@ TEST_F(NeuralDetector, RefusesWhatItCannotRun) {
   json other = tiny_description();
   other["fnv1a64"] = "0000000000000000";
   EXPECT_EQ(refusal(other), "model-checksum");
-  EXPECT_EQ(refusal(model(tiny_description()), {3}), "orientations");
+  EXPECT_EQ(refusal(model(tiny_description()), {3}), "orientations-unknown");
   fs::remove(folder_ / "model.json");
   EXPECT_EQ(refusal(folder_ / "model.onnx"), "model-description");
 }

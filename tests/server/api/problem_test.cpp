@@ -15,14 +15,14 @@ http::Response of(const auto& error) { return problem(std::make_exception_ptr(er
 nlohmann::json body(const http::Response& response) { return nlohmann::json::parse(response.body); }
 
 TEST(Problem, GivesEachClassOfErrorsItsStatus) {
-  EXPECT_EQ(status_of(http::InvalidField("x", "lat", "m")), 400);
+  EXPECT_EQ(status_of(http::InvalidField("x-y", "lat", "m")), 400);
   EXPECT_EQ(status_of(InvalidInput("prior-outside-map", "m")), 422);
   EXPECT_EQ(status_of(NotFound("map-not-found", "m")), 404);
   EXPECT_EQ(status_of(LimitExceeded("search-area-too-large", "m")), 422);
   EXPECT_EQ(status_of(LimitExceeded("body-too-large", "m")), 413);
   EXPECT_EQ(status_of(Interrupted("time-limit", "m")), 503);
   EXPECT_EQ(status_of(CorruptData("tile-corrupt", "m")), 500);
-  EXPECT_EQ(status_of(IoFailure("disk", "m")), 500);
+  EXPECT_EQ(status_of(IoFailure("disk-full", "m")), 500);
   EXPECT_EQ(status_of(IoFailure("map-unreadable", "m")), 503);
   EXPECT_EQ(status_of(InvalidInput("unsupported-media-type", "m")), 415);
 }

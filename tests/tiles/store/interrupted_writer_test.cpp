@@ -63,7 +63,7 @@ TEST(InterruptedWriter, FusingCanBeStoppedAndRepeated) {
   const auto stop_midway = [&](std::int64_t done, std::int64_t) {
     if (done > 0) stop.request_stop();
   };
-  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "interrupted");
+  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "fusion-stopped");
   EXPECT_GT(MapReader(path).info().pending, 0);
   writer.finish_source("a");
   EXPECT_EQ(MapReader(path).info().pending, 0);
@@ -80,7 +80,7 @@ TEST(InterruptedWriter, RemovingASourceCanBeStoppedAndRepeated) {
   ingest(writer, {"b", 2, some_blocks(2, 1)});
   std::stop_source stopped;
   stopped.request_stop();
-  EXPECT_EQ(code_of([&] { writer.remove_source("b", {}, stopped.get_token()); }), "interrupted");
+  EXPECT_EQ(code_of([&] { writer.remove_source("b", {}, stopped.get_token()); }), "fusion-stopped");
   EXPECT_GT(MapReader(path).info().pending, 0);
   EXPECT_FALSE(writer.remove_source("b")) << "it has gone already";
   EXPECT_EQ(MapReader(path).info().pending, 0);

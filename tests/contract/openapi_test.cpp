@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <string>
 #include <utility>
@@ -105,6 +106,20 @@ TEST_F(OpenApi, DocumentsEveryRouteAndNoOther) {
   std::set<std::string> registered;
   for (const http::Route& route : router_.routes()) registered.insert(route.method + " " + route.path);
   EXPECT_EQ(documented, registered);
+}
+
+TEST_F(OpenApi, NamesOperationsByWhatTheyDo) {
+  // Generated clients make functions of these.
+  static const std::regex kVerbAndNoun("(get|list|match|find|begin|end|take|detect)([A-Z][a-z]+)+");
+  std::set<std::string> names;
+  for (const auto& [path, item] : document_.at("paths").items()) {
+    for (const auto& [method, operation] : item.items()) {
+      if (method == "parameters") continue;
+      const std::string name = operation.at("operationId");
+      EXPECT_TRUE(std::regex_match(name, kVerbAndNoun)) << name;
+      EXPECT_TRUE(names.insert(name).second) << name << " names two operations";
+    }
+  }
 }
 
 TEST_F(OpenApi, DocumentsEveryParameterAndNoOther) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/tree_detector.hpp"
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
@@ -240,6 +241,33 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     api::parse_step(fields);
     api::told_nadir_sigma_m(fields);
   });
+  const std::vector<std::uint8_t> frame = encode_feature_map(CellArray(32, 32, 100));
+  expect_ranges(schemas.at("DetectRequest"), {{"cell_m", 2}, {"seed", 1}}, [&](const json& body) {
+    api::Content content{{}, frame, true};
+    content.fields.add(body, api::frame_fields());
+    content.fields.add_text("gsd_m", "0.5");
+    api::detected(content, detector_, 2.0, limits_, {});
+  });
+}
+
+TEST_F(OpenApi, SaysTheSameOfAParameterAndOfTheMemberOfThatName) {
+  int both = 0;
+  for (const auto& [path, item] : document_.at("paths").items()) {
+    for (const auto& [method, operation] : item.items()) {
+      if (!operation.is_object() || !operation.contains("requestBody")) continue;
+      const json& body = resolved(operation["requestBody"]["content"]["application/json"]["schema"]);
+      for (const json& named : operation.value("parameters", json::array())) {
+        const json& parameter = resolved(named);
+        const std::string name = parameter.at("name");
+        if (!body.at("properties").contains(name)) continue;
+        json member = body["properties"][name];
+        member.erase("description");
+        EXPECT_EQ(parameter.at("schema"), member) << method << " " << path << ": " << name;
+        ++both;
+      }
+    }
+  }
+  EXPECT_GT(both, 60);
 }
 
 TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {

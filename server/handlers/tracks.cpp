@@ -55,12 +55,22 @@ json track_json(const Service& service, const StoredTrack& track) {
           {"stale", silent_s >= kStaleAfterS}};
 }
 
+/// What is null counts as not given, and is not told back as if it were.
+json without_nulls(const json& asked) {
+  if (!asked.is_object()) return asked;
+  json given = json::object();
+  for (const auto& [name, value] : asked.items()) {
+    if (!value.is_null()) given[name] = value;
+  }
+  return given;
+}
+
 http::Response post_track(const Service& service, const http::Request& request) {
   if (request.media_type() != "application/json") {
     throw InvalidInput("unsupported-media-type",
                        "a track is begun with a JSON object (Content-Type: application/json)");
   }
-  const json asked = api::parse_json(request.body, {service.limits.json_depth, 1000});
+  const json asked = without_nulls(api::parse_json(request.body, {service.limits.json_depth, 1000}));
   const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
   http::Response response = json_response(track_json(service, track));
   response.status = 201;

@@ -119,6 +119,17 @@ TEST_F(Tracks, KnowARepeatedStepHoweverItIsPacked) {
   EXPECT_EQ(testing::refusal(posted(R"({"sequence": 1, "time_us": 2000001})", "application/json")), "409 step-differs");
 }
 
+TEST_F(Tracks, DoNotTellBackWhatWasNotGiven) {
+  const auto running = service();
+  httplib::Client client = client_of(*running);
+  json body = asked();
+  body.update({{"wind_sigma_m_s", nullptr}, {"bbox", nullptr}});
+  const json begun = testing::json_of(client.Post("/v1/tracks", body.dump(), "application/json"));
+  EXPECT_EQ(begun["request"], asked());
+  const std::string path = "/v1/tracks/" + begun["id"].get<std::string>();
+  EXPECT_EQ(testing::json_of(client.Get(path.c_str()))["request"], asked());
+}
+
 TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   const auto running = service({"--max-client-tracks", "1"});
   httplib::Client client = client_of(*running);

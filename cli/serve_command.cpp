@@ -143,6 +143,15 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   add("--watch", o.watch_s, "Seconds between scans of the map folder", kMaxSeconds);
 }
 
+/// Whatever they come from. Otherwise every body of the size that is allowed would be told to come again.
+void require_room_for_one_body(const ServeOptions& options) {
+  if (options.all_bodies_mib >= options.body_mib) return;
+  throw CLI::ValidationError(
+      "--body-memory", fmt::format("{} MiB hold no body of the {} MiB that --max-body allows: give {} or more, or a "
+                                   "smaller --max-body",
+                                   options.all_bodies_mib, options.body_mib, options.body_mib));
+}
+
 void run_serve(const ServeOptions& options) {
   const std::stop_token stop = stop_on_signals();
   allow_all_open_files();
@@ -205,6 +214,7 @@ void add_serve_command(CLI::App& app) {
   command->callback([command, config, options] {
     if (!config->empty()) also_from_file(*command, *config);
     if (options->service.maps.empty()) throw CLI::RequiredError("--maps");
+    require_room_for_one_body(*options);
     run_serve(*options);
   });
 }

@@ -354,6 +354,15 @@ TEST(ServiceLife, SaysWhichSettingCannotBeUsed) {
   EXPECT_THAT(refused({"--cors-origin", "https://ops.example.org/"}),
               AllOf(StartsWith("1"), HasSubstr("bad-cors-origin")));
   EXPECT_THAT(refused({"--proxy", "nginx"}), AllOf(StartsWith("1"), HasSubstr("bad-proxy")));
+  const auto no_room =
+      AllOf(StartsWith("2"), HasSubstr("--body-memory: 32 MiB hold no body of the 64 MiB that --max-body"
+                                       " allows: give 64 or more"));
+  EXPECT_THAT(refused({"--body-memory", "32"}), no_room);
+  std::ofstream(folder / "small.conf") << "body-memory = 32\n";
+  EXPECT_THAT(refused({"--config", (folder / "small.conf").string()}), no_room);
+  ::setenv("ROADFIX_MAX_BODY", "513", 1);
+  EXPECT_THAT(refused({}), AllOf(StartsWith("2"), HasSubstr("512 MiB hold no body of the 513 MiB")));
+  ::unsetenv("ROADFIX_MAX_BODY");
 }
 
 TEST(ServiceLife, ListsTracksOfOneClientBehindAProxyToNoOther) {

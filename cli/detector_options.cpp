@@ -4,24 +4,32 @@
 #include <string>
 #include <vector>
 
+#include "cli/number_checks.hpp"
+
 namespace roadfix::cli {
 
 namespace {
 
-/// Everything that method and paper leave to the user of the growing tree.
+constexpr double kMaxTrees = 1e6;   ///< per km2: one on each square metre
+constexpr double kMaxNodes = 1e6;   ///< of a tree, or of a cell
+constexpr double kMaxAreaPx = 1e9;  ///< more than any picture has
+constexpr double kMaxGsdM = 100.0;
+
+/// Everything that method and paper leave to the user of the growing tree. What has no limit here has one of the tree.
 void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
   constexpr const char* kGroup = "Growing tree (--detector tree)";
   const auto add = [&](const char* name, auto& value, const char* what) {
-    command.add_option(name, value, what)->group(kGroup);
+    return command.add_option(name, value, what)->group(kGroup);
   };
   using Map = TreeDetectorOptions::Map;
   command.add_option("--tree-map", o.map, "probabilistic (default) or binary: the paper's, by --tree-min-nodes")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Map>{{"probabilistic", Map::kProbabilistic}, {"binary", Map::kBinary}}))
       ->group(kGroup);
-  add("--tree-gsd", o.gsd_m, "Metres per pixel of the brightness; default: 0.5");
-  add("--tree-roots", o.trees_per_km2, "Trees per km2; default: 3000");
-  add("--tree-min-nodes", o.min_nodes, "Nodes that make a cell of the binary map road; default: 3");
+  add("--tree-gsd", o.gsd_m, "Metres per pixel of the brightness; default: 0.5")->check(positive(kMaxGsdM));
+  add("--tree-roots", o.trees_per_km2, "Trees per km2; default: 3000")->check(positive(kMaxTrees));
+  add("--tree-min-nodes", o.min_nodes, "Nodes that make a cell of the binary map road; default: 3")
+      ->check(positive(kMaxNodes));
   add("--tree-alpha", o.tree.alpha, "Equation (1): weight of the new edge; default: 0.5");
   add("--tree-beta", o.tree.beta, "Equation (1): exponent of the cosine, above 0.7; default: 0.8");
   add("--tree-gamma", o.tree.gamma, "Equation (2): weight of the new direction; default: 0.5");
@@ -34,9 +42,9 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
           "Half the angle of the fan in degrees; default: 40")
       ->group(kGroup);
   add("--tree-root-fan", o.tree.root_fan, "Edges proposed from the root, all around; default: 16");
-  add("--tree-nodes", o.tree.max_nodes, "End of a tree: number of nodes; default: 200");
+  add("--tree-nodes", o.tree.max_nodes, "End of a tree: number of nodes; default: 200")->check(positive(kMaxNodes));
   add("--tree-explored", o.tree.max_explored_share, "End of a tree: explored share of the picture");
-  add("--tree-area", o.tree.max_area_px, "End of a tree: its estimated area in pixels");
+  add("--tree-area", o.tree.max_area_px, "End of a tree: its estimated area in pixels")->check(positive(kMaxAreaPx));
   add("--tree-min-score", o.tree.min_score, "End of a branch: score of a new node");
 }
 

@@ -122,6 +122,13 @@ TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
             "min_score=0.01");
   EXPECT_THAT(detect("--gsd 0.5 --tree-beta 0.7").err, HasSubstr("[tree-parameter]"));
   EXPECT_EQ(detect("--gsd 0.5 --tree-map sharp").code, 2);
+  for (const char* name : {"--tree-gsd", "--tree-roots", "--tree-min-nodes", "--tree-nodes", "--tree-area"}) {
+    for (const char* number : {"1e12", "0", "-3"}) {
+      const ProgramResult refused = detect("--gsd 0.5 " + std::string(name) + " " + number);
+      EXPECT_EQ(refused.code, 2) << name;
+      EXPECT_THAT(refused.err, HasSubstr(std::string(name) + ": must be a number above 0 and at most 1"));
+    }
+  }
 }
 
 TEST_F(DetectCommand, NamesTheFileThatIsNoPicture) {

@@ -17,6 +17,7 @@
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
+#include "core/units/shell_word.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/source_shift.hpp"
 
@@ -41,7 +42,7 @@ void note_twins(MapWriter& writer, const std::string& source, const std::string&
     fmt::print(stderr,
                "note: '{}' says exactly what the source '{}' says, and counts beside it where other sources differ. If "
                "it is the same content, take it out: roadfix remove {} {}\n",
-               source, twin, map, source);
+               source, twin, shell_word(map), shell_word(source));
   }
 }
 

@@ -264,12 +264,14 @@ TEST_F(IngestCommand, AnImageThatShowsNothingIsSaidToShowNothing) {
 
 TEST_F(IngestCommand, ACopyUnderAnotherNameIsNoticed) {
   const std::string image = picture(600, 0.5);
-  const std::string copy = folder / "copy.tif";
+  const std::string copy = folder / "the copy's.tif";
   std::filesystem::copy_file(image, copy);
-  EXPECT_EQ(ingest({image, "--name", "first", "--detector", "tree", "--map", map("a.gpkg")}).code, 0);
-  const ChildResult again = ingest({copy, "--detector", "tree", "--map", map("a.gpkg")});
+  const std::string target = map("my town.gpkg");
+  EXPECT_EQ(ingest({image, "--name", "first", "--detector", "tree", "--map", target}).code, 0);
+  const ChildResult again = ingest({copy, "--detector", "tree", "--map", target});
   EXPECT_EQ(again.code, 0) << again.err;
-  EXPECT_THAT(again.err, ::testing::HasSubstr("'copy' says exactly what the source 'first' says"));
+  EXPECT_THAT(again.err, HasSubstr("'the copy's' says exactly what the source 'first' says"));
+  EXPECT_THAT(again.err, HasSubstr("take it out: roadfix remove '" + target + R"(' 'the copy'\''s')"));
 }
 
 TEST_F(IngestCommand, ASourceThatLiesBesideTheOthersIsNoticed) {

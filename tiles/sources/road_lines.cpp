@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "core/units/shell_word.hpp"
 #include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
@@ -97,7 +98,7 @@ RoadNetwork join(RoadParts& parts, const RoadRules& rules) {
         parts.any_classified
             ? fmt::format("layer '{}' of {}: no attribute '{}', by which other layers tell roads apart, so none of its "
                           "lines is drawn. --layer {} draws them",
-                          name, path, rules.class_attribute(), name)
+                          name, path, rules.class_attribute(), shell_word(name))
             : fmt::format("layer '{}' of {}: no attribute '{}', so every line is drawn as a road; it has {}. "
                           "--class-attribute and --width-attribute tell roads apart",
                           name, path, rules.class_attribute(), attributes));
@@ -143,10 +144,10 @@ void note_widths(const RoadRules& rules, RoadNetwork& network) {
     const auto middle = widths.begin() + std::ssize(widths) / 2;
     std::ranges::nth_element(widths, middle);
     const bool feet = rules.unit_of(attribute) == WidthUnit::kFoot;
-    network.notes.push_back(
-        fmt::format("widths of {} roads from the attribute '{}', plain numbers taken for {}: median {:.3g} m{}",
-                    widths.size(), attribute, feet ? "feet" : "metres", *middle,
-                    feet ? "" : fmt::format(". If they are feet, give --width-attribute {}:ft", attribute)));
+    network.notes.push_back(fmt::format(
+        "widths of {} roads from the attribute '{}', plain numbers taken for {}: median {:.3g} m{}", widths.size(),
+        attribute, feet ? "feet" : "metres", *middle,
+        feet ? "" : fmt::format(". If they are feet, give --width-attribute {}", shell_word(attribute + ":ft"))));
   }
 }
 

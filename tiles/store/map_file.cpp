@@ -8,6 +8,7 @@
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
+#include "core/units/shell_word.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
@@ -56,7 +57,7 @@ void require_ours(Connection& map) {
   if (!has_table(map, "roadfix_meta")) {
     throw InvalidInput("map-not-ours", fmt::format("{}: a GeoPackage, but not a map made by roadfix. To make a map out "
                                                    "of it, name it as a source: roadfix ingest {} --map MAP.gpkg",
-                                                   file, file));
+                                                   file, shell_word(file)));
   }
   const auto version = parsed<int>(meta_value(map, "schema_version"));
   if (!version || *version < 1) {

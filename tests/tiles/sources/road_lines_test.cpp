@@ -70,7 +70,8 @@ TEST_F(RoadLines, RiversBesideClassifiedRoadsAreNotDrawnAndSaidSo) {
     EXPECT_EQ(network.lines.front().half_width_m, 5.0);
     EXPECT_EQ(network.left_out, 1);
     EXPECT_EQ(network.covered.size(), 1U) << "where a river is known, a road need not be";
-    EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("layer 'roads'"), HasSubstr("none of its lines is drawn"))));
+    EXPECT_THAT(network.notes, ElementsAre(AllOf(HasSubstr("layer 'roads'"), HasSubstr("none of its lines is drawn"),
+                                                 HasSubstr("--layer roads draws them"))));
   }
 }
 

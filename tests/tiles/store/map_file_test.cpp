@@ -82,6 +82,14 @@ TEST_F(MapFile, ADatabaseThatIsNoGeoPackageIsNotOurs) {
 TEST_F(MapFile, AGeoPackageOfAnotherProgramIsNotOurs) {
   execute("DROP TABLE roadfix_meta");
   EXPECT_EQ(opened(), "map-not-ours");
+  const fs::path elsewhere = folder / "my roads.gpkg";
+  fs::rename(path, elsewhere);
+  try {
+    MapReader reader(elsewhere);
+    FAIL() << "a map";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("roadfix ingest '" + elsewhere.string() + "' --map MAP.gpkg"));
+  }
 }
 
 TEST_F(MapFile, OneFromANewerVersionSaysSo) {

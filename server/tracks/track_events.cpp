@@ -1,4 +1,5 @@
 // What those who listen to a track are told.
+#include <algorithm>
 #include <utility>
 
 #include "server/tracks/track_registry.hpp"
@@ -7,12 +8,12 @@ namespace roadfix::server {
 
 TrackRegistry::Listener::Listener(TrackRegistry& registry, std::string id, std::int64_t after)
     : registry_(registry), id_(std::move(id)), after_(after) {
-  ++registry_.streams_;
+  registry_.listeners_.insert(this);
 }
 
 TrackRegistry::Listener::~Listener() {
   const std::lock_guard lock(registry_.mutex_);
-  --registry_.streams_;
+  registry_.listeners_.erase(this);
 }
 
 std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
@@ -21,18 +22,24 @@ std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
   std::unique_lock lock(registry_.mutex_);
   const std::uint64_t seen = registry_.changes_;
   lock.unlock();
-  News news{registry_.store().steps_after(id_, after_, kBatch), {}};
-  if (!news.steps.empty()) {
-    after_ = news.steps.back().sequence;
-    return news;
-  }
+  // In this order: of a track that has ended here, what the store no longer has is left below.
   const auto track = registry_.store().find(id_);
-  news.ended = track ? registry_.ended(*track) : TrackEnd::kFinished;
-  if (news.ended) return news;
+  const std::optional<TrackEnd> ended = track ? registry_.ended(*track) : TrackEnd::kFinished;
+  Steps steps = registry_.store().steps_after(id_, after_, kBatch);
   lock.lock();
+  if (steps.empty() && left_) {
+    const auto is_told = [&](const StoredStep& step) { return step.sequence <= after_; };
+    const auto begin = std::ranges::partition_point(*left_, is_told);
+    steps.assign(begin, begin + std::min<std::ptrdiff_t>(kBatch, left_->end() - begin));
+  }
+  if (!steps.empty()) {
+    after_ = steps.back().sequence;
+    return News{std::move(steps), {}};
+  }
+  if (ended) return News{{}, ended};
   registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
   if (registry_.stopping_) return std::nullopt;
-  return news;
+  return News{};
 }
 
 }  // namespace roadfix::server

@@ -126,7 +126,7 @@ std::optional<std::size_t> TrackRegistry::flying() const {
 
 int TrackRegistry::streams() const {
   const std::lock_guard lock(mutex_);
-  return streams_;
+  return static_cast<int>(listeners_.size());
 }
 
 std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) const {
@@ -213,7 +213,14 @@ std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
 
 void TrackRegistry::end(const std::string& id, TrackEnd how) {
   const std::lock_guard lock(mutex_);
-  store().end(id, how);
+  std::optional<std::int64_t> told;  // to those who listen to it, at least
+  for (const Listener* listener : listeners_) {
+    if (listener->id_ == id) told = std::min(told.value_or(listener->after_), listener->after_);
+  }
+  const auto left = std::make_shared<const Listener::Steps>(store().end(id, how, told));
+  for (Listener* listener : listeners_) {
+    if (listener->id_ == id && !listener->left_) listener->left_ = left;  // it may be ended twice at once
+  }
   live_.erase(id);
   heard_.erase(id);
   ++changes_;
@@ -284,9 +291,10 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
 std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string& id, std::int64_t after) {
   find(id);
   const std::lock_guard lock(mutex_);
-  if (streams_ >= limits_.streams) {
-    throw http::Busy(fmt::format("{} event streams are open, the most allowed (serve --max-streams)", streams_),
-                     std::chrono::seconds(5));
+  if (std::ssize(listeners_) >= limits_.streams) {
+    throw http::Busy(
+        fmt::format("{} event streams are open, the most allowed (serve --max-streams)", listeners_.size()),
+        std::chrono::seconds(5));
   }
   return std::make_shared<Listener>(*this, id, after);
 }

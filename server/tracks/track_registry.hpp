@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -114,7 +115,7 @@ class TrackRegistry {
   };
   std::map<std::string, Heard> heard_;  ///< last steps or beginnings, of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
-  int streams_ = 0;
+  std::set<Listener*> listeners_;
   int steps_waiting_ = 0;
   bool stopping_ = false;
 };
@@ -135,9 +136,13 @@ class TrackRegistry::Listener {
   std::optional<News> next();
 
  private:
+  friend class TrackRegistry;
+  using Steps = std::vector<StoredStep>;
+
   TrackRegistry& registry_;
   const std::string id_;
-  std::int64_t after_;
+  std::int64_t after_;                      ///< sequence number of what was handed out last; by the registry's mutex
+  std::shared_ptr<const Steps> left_ = {};  ///< by the track that ended: what may not have been handed out yet
 };
 
 }  // namespace roadfix::server

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
-constexpr int kVersion = 3;  // of what the blobs hold, too: particles have had a scale since 3
+constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
+constexpr int kVersion = 3;              // of what the blobs hold, too: particles have had a scale since 3
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 IoFailure not_writable(const std::filesystem::path& path) {
@@ -262,9 +263,18 @@ std::vector<StoredStep> TrackStore::steps_after(const std::string& id, std::int6
   });
 }
 
-void TrackStore::end(const std::string& id, TrackEnd how) {
-  impl_->with([&] {
+std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence) {
+  return impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
+    std::vector<StoredStep> last;
+    if (sequence) {
+      sqlite::Statement rows(impl_->connection(),
+                             "SELECT sequence, digest, answer FROM steps WHERE track = ?1 AND sequence > ?2 ORDER BY "
+                             "sequence DESC LIMIT ?3");
+      rows.with(id, *sequence, kStepsHandedOut);
+      while (rows.step()) last.push_back(step_of(rows));
+      std::ranges::reverse(last);
+    }
     sqlite::Statement(impl_->connection(),
                       "UPDATE tracks SET ended = ?2, counters = '', particles = NULL, frames = NULL WHERE id = ?1")
         .with(id, end_column(how))
@@ -277,6 +287,7 @@ void TrackStore::end(const std::string& id, TrackEnd how) {
         .run();
     transaction.commit();
     impl_->has_written();
+    return last;
   });
 }
 

@@ -220,6 +220,7 @@ TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   whole.join();
   tail.join();
   EXPECT_THAT(all, HasSubstr("id: 0\nevent: step\ndata: {"));
+  EXPECT_THAT(all, HasSubstr("id: 1\nevent: step\ndata: " + second + "\n\n"));
   EXPECT_THAT(rest, HasSubstr("id: 1\nevent: step\ndata: " + second + "\n\n"));
   EXPECT_THAT(rest, Not(HasSubstr("id: 0\n")));
   EXPECT_THAT(rest, HasSubstr("event: end\ndata: {\"reason\":\"finished\"}\n"));

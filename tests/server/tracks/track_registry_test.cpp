@@ -6,6 +6,7 @@
 #include <atomic>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <thread>
@@ -252,6 +253,30 @@ TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
   tracks->finish(id);
   EXPECT_EQ(stream->next()->ended, TrackEnd::kFinished);
   tracks->stop();
+}
+
+TEST_F(TrackRegistryTest, HandsOutStepsThatWereAnsweredBeforeTheEnd) {
+  const auto tracks = registry();
+  const std::string id = begin(*tracks);
+  const auto behind = tracks->stream(id, -1);
+  const auto ahead = tracks->stream(id, -1);
+  tracks->step(id, step_of(0), 0, {});
+  EXPECT_EQ(ahead->next()->steps.size(), 1U);
+  for (int i = 1; i < 100; ++i) tracks->step(id, step_of(i), i, {});
+  tracks->finish(id);
+  const auto rest_of = [](TrackRegistry::Listener& stream) {
+    std::vector<std::int64_t> told;
+    for (auto news = stream.next(); !news->ended; news = stream.next()) {
+      for (const StoredStep& step : news->steps) told.push_back(step.sequence);
+    }
+    return told;
+  };
+  std::vector<std::int64_t> all(100);
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_EQ(rest_of(*behind), all);
+  all.erase(all.begin());
+  EXPECT_EQ(rest_of(*ahead), all);
+  EXPECT_EQ(ahead->next()->ended, TrackEnd::kFinished);
 }
 
 TEST_F(TrackRegistryTest, ShowsParticlesWhileAStepIsUnderWay) {

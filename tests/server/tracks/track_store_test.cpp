@@ -69,6 +69,22 @@ TEST(TrackStore, GoesOnWithTracksThatWereStoredWithoutFrames) {
   }
 }
 
+TEST(TrackStore, ReturnsTheLastStepsOfATrackThatEnds) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  for (const char* id : {"a", "b"}) {
+    store.add(track(id));
+    for (const std::int64_t sequence : {3, 4, 9}) {
+      ASSERT_TRUE(store.add_step(id, 2, state(100), {sequence, 0, "answer " + std::to_string(sequence)}));
+    }
+  }
+  const std::vector<StoredStep> last = store.end("a", TrackEnd::kFinished, 3);
+  ASSERT_EQ(last.size(), 2U);
+  EXPECT_EQ(last[0].answer, "answer 4");
+  EXPECT_EQ(last[1].sequence, 9);
+  EXPECT_TRUE(store.end("b", TrackEnd::kFinished).empty()) << "nobody asked for them";
+}
+
 TEST(TrackStore, TakesNoStepOfATrackThatEnded) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <sstream>
 
+#include "core/match/search.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/json_file.hpp"
@@ -96,11 +97,13 @@ void parse_prior(const JsonField& field, QuerySet& set) {
     field.one_of({"map"});
     return;
   }
-  field.allow_only({"radius_m", "beyond_m", "heading_range_deg"});
+  field.allow_only({"radius_m", "beyond_m", "heading_range_deg", "scale_range"});
   if (field.has("heading_range_deg")) {
     set.prior_heading_range = Angle::degrees(field.at("heading_range_deg").number(0.0, 180.0));
   }
-  if (set.prior_heading_range && !field.has("radius_m") && !field.has("beyond_m")) return;
+  if (field.has("scale_range")) set.prior_scale_range = field.at("scale_range").number(0.0, kMaxScaleRange);
+  const bool of_place = field.has("radius_m") || field.has("beyond_m");
+  if (!of_place && (set.prior_heading_range || field.has("scale_range"))) return;
   set.prior_radius_m = field.at("radius_m").number(1.0, 1e6);
   if (field.has("beyond_m")) set.prior_beyond_m = field.at("beyond_m").number(0.0, 1e6);
 }

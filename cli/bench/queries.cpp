@@ -113,6 +113,7 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
     query.view = rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m));
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, zone).heading, set,
                                map, random);
+    query.scale_range = set.prior_scale_range;
     queries.push_back(std::move(query));
   }
   return queries;
@@ -149,6 +150,7 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, from.zone).heading,
                                set, map, random);
+    query.scale_range = set.prior_scale_range;
     queries.push_back(std::move(query));
   }
   return queries;
@@ -201,6 +203,7 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Ro
     query.view = seen_in(frame, set, detector);
     query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                                frame.pose.heading, set, map, random);
+    query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
     query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, detector);
     queries.push_back(std::move(query));
@@ -228,6 +231,7 @@ std::string prior_words(const QuerySet& set) {
   if (set.prior_radius_m) words += fmt::format(", prior {} m", *set.prior_radius_m);
   if (set.prior_beyond_m) words += fmt::format(" wrong by {} m", *set.prior_beyond_m);
   if (set.prior_heading_range) words += fmt::format(", heading within {:.4g} deg", set.prior_heading_range->degrees());
+  if (set.prior_scale_range > 0.0) words += fmt::format(", size within {:.4g} %", 100.0 * set.prior_scale_range);
   return words;
 }
 

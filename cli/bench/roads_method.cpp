@@ -21,6 +21,7 @@ class RoadsMethod : public Method {
     const std::vector<PlacedFeatures> parts = parts_of(query);
     const FeatureMap features = together(parts);
     FixOptions options = options_.fix;
+    options.scale_range = query.scale_range;
     if (parts.size() > 1) options.own_frame = parts.front().features;
     const Fix fix = locate(map_, features, query.prior, options);
     Answer answer;

@@ -81,6 +81,9 @@ TEST(Manifest, ReadsThatAHeadingIsToldWithACircleOrAlone) {
   EXPECT_EQ(prior(R"({"heading_range_deg": 20})").prior_heading_range, Angle::degrees(20.0));
   EXPECT_FALSE(prior(R"({"heading_range_deg": 20})").prior_radius_m);
   EXPECT_FALSE(prior(R"({"radius_m": 500})").prior_heading_range);
+  EXPECT_EQ(prior(R"({"radius_m": 500, "scale_range": 0.15})").prior_scale_range, 0.15);
+  EXPECT_FALSE(prior(R"({"scale_range": 0.15})").prior_radius_m);
+  EXPECT_EQ(prior(R"({"radius_m": 500})").prior_scale_range, 0.0);
 }
 
 void expect_complaint(const std::string& text, const std::string& part) {
@@ -106,6 +109,7 @@ TEST(Manifest, ComplaintsNameTheField) {
                    "maps[1].name is 'town'");
   expect_complaint(with(R"({"radius_m": 500})", R"({"heading_range_deg": 181})"), "queries[2].prior.heading_range_deg");
   expect_complaint(with(R"({"radius_m": 500})", R"({"heading_range_deg": 9, "beyond_m": 5})"), "radius_m");
+  expect_complaint(with(R"({"radius_m": 500})", R"({"scale_range": 0.31})"), "queries[2].prior.scale_range");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
   expect_complaint(with("\"count\": 7", "\"count\": 7e999"), "number overflow");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");

@@ -60,6 +60,13 @@ TEST_F(Queries, TellAHeadingWithinARangeOfTheTrueOne) {
   EXPECT_GT(farthest_deg, 10.0) << "it is not the true one";
 }
 
+TEST_F(Queries, AskForTheSizesOfTheGroundThatTheirSetNames) {
+  for (const double range : {0.0, 0.15}) {
+    set_.prior_scale_range = range;
+    for (const Query& query : drawn()) EXPECT_EQ(query.scale_range, range);
+  }
+}
+
 TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
   set_.prior_radius_m = 100.0;
   set_.prior_beyond_m = 400.0;

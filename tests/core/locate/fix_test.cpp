@@ -1,3 +1,5 @@
+#include "core/locate/fix.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,10 +7,6 @@
 
 #include "core/grid/combine.hpp"
 #include "core/grid/resample.hpp"
-#include "core/locate/fix.hpp"
-#include "core/locate/match_poses.hpp"
-#include "core/units/draws.hpp"
-#include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/random_pose.hpp"
@@ -346,35 +344,6 @@ TEST_F(Locate, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
   EXPECT_EQ(refused.reason, "frames-contradict");
   EXPECT_LE(refused.probability, 0.5);
   EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
-}
-
-TEST_F(Locate, MatchScoresPosesExactlyAndInBins) {
-  const GridPose truth = pose_within(view_.extent, 300.0, random_);
-  const FeatureMap window = cut_out(map_, truth, 100, 100, 2.0);
-  GridPose off = truth;
-  off.position.east_m += 12.0;
-  GridPose turned = truth;
-  turned.heading += Angle::degrees(20.0);
-  const std::vector<GeoPose> poses{on_earth(truth, view_.zone),
-                                   on_earth(off, view_.zone),
-                                   on_earth(turned, view_.zone),
-                                   {{10.0, 10.0 + 11.0}, Angle()},
-                                   {{40.0, -140.0}, Angle()}};
-  for (const double step_deg : {0.0, 0.5}) {
-    MatchOptions options;
-    options.heading_step = Angle::degrees(step_deg);
-    options.threads = 2;
-    const std::vector<MatchScore> scores = match(view_, window, poses, options);
-    ASSERT_EQ(scores.size(), 5U);
-    EXPECT_GT(scores[0].rho.value(), step_deg > 0.0 ? 0.7 : 0.9);
-    EXPECT_LT(scores[1].rho.value(), scores[0].rho.value());
-    EXPECT_LT(scores[2].rho.value(), scores[0].rho.value());
-    EXPECT_NEAR(static_cast<double>(scores[0].observed_cells), 10000.0, 150.0);
-    for (const std::size_t elsewhere : {3U, 4U}) {
-      EXPECT_FALSE(scores[elsewhere].rho);
-      EXPECT_EQ(scores[elsewhere].observed_cells, 0);
-    }
-  }
 }
 
 }  // namespace

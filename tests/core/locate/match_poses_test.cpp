@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "core/grid/resample.hpp"
+#include "core/grid/sampling.hpp"
 #include "tests/support/map_view.hpp"
+#include "tests/support/match_sums.hpp"
+#include "tests/support/random_cells.hpp"
 #include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -47,6 +54,49 @@ TEST_F(MatchPoses, ScoreExactlyAndInBins) {
     for (const std::size_t elsewhere : {3U, 4U}) {
       EXPECT_FALSE(scores[elsewhere].rho);
       EXPECT_EQ(scores[elsewhere].observed_cells, 0);
+    }
+  }
+}
+
+/// Equation (5) with the feature map looked up below the middle of each cell of the map.
+MatchSums by_brute_force(const RoadGrid& map, const FeatureMap& features, const GridPose& pose) {
+  MatchSums sums;
+  for (int row = 0; row < map.cells.rows(); ++row) {
+    for (int col = 0; col < map.cells.cols(); ++col) {
+      const BodyOffset at = offset_from(pose, {map.geometry.cell_center(col, row), {}});
+      const Cell seen = bilinear(features.cells, {features.nadir.col + at.right_m / features.cell_m,
+                                                  features.nadir.row - at.forward_m / features.cell_m});
+      const Cell mapped = map.cells.at(col, row);
+      if (is_observed(seen) && is_observed(mapped)) testing::add_cell(sums, probability(mapped), probability(seen));
+    }
+  }
+  return sums;
+}
+
+TEST(ExactMatch, IsEquation5WhereverInACellThePoseLies) {
+  constexpr double kCellM = 2.0;
+  constexpr double kTolerance = 0.003;  // positions are rounded to 1/128 of a cell, cells to 1/254
+  // Noise, which differs from itself half a cell farther on: roads are wider than what a wrong sign would shift them.
+  std::mt19937_64 random(23);
+  const RoadGrid map{{kCellM, {300'000, -3'200'000}, 100, 90}, testing::random_cells(random, 100, 90, 0.1)};
+  const MapView view = view_of(map);
+  for (const double heading_deg : {0.0, 33.0, 90.0, 127.5, 214.0, 301.0}) {
+    for (const auto& [col, row] : {std::pair{0.07, 0.89}, {0.31, 0.22}, {0.75, 0.14}, {0.93, 0.71}}) {
+      const auto pose_at = [&](double of_a_col, double of_a_row) {
+        return GridPose{map.geometry.point_at({50.0 + of_a_col, 45.0 + of_a_row}), Angle::degrees(heading_deg)};
+      };
+      const GridPose pose = pose_at(col, row);
+      const FeatureMap features = cut_out(map, pose, 45, 30, kCellM);
+      const MatchSums expected = by_brute_force(map, features, pose);
+      const MatchScore score = match(view, features, std::vector{on_earth(pose, view.zone)}).at(0);
+      const auto where = ::testing::Message() << heading_deg << " degrees, " << col << ' ' << row << " of a cell";
+      EXPECT_NEAR(score.rho.value(), rho(expected).value(), kTolerance) << where;
+      EXPECT_NEAR(static_cast<double>(score.observed_cells), static_cast<double>(expected.n), 10.0)
+          << where << ": at its rim the feature map covers cells by half";
+      for (const GridPose& mirrored : {pose_at(1.0 - col, row), pose_at(col, 1.0 - row)}) {
+        EXPECT_GT(std::abs(rho(by_brute_force(map, features, mirrored)).value() - score.rho.value()), 10.0 * kTolerance)
+            << where << ": a wrong sign would not be noticed";
+      }
     }
   }
 }

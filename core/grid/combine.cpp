@@ -81,11 +81,25 @@ void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Log
   }
 }
 
+/// Feature maps that say their cell size themselves need not agree.
+void require_cells_of(double cell_m, std::span<const PlacedFeatures> parts) {
+  constexpr double kSame = 1e-6;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double other_m = parts[i].features.cell_m;
+    if (std::abs(other_m / cell_m - 1.0) <= kSame) continue;
+    throw InvalidInput("cell-size-contradictory",
+                       fmt::format("of {} frames the first has cells of {} m, number {} has cells of {} m: make all "
+                                   "feature maps in cells of one size",
+                                   parts.size(), cell_m, i + 1, other_m));
+  }
+}
+
 }  // namespace
 
 FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   assert(!parts.empty() && parts.size() < 256);
   const double cell_m = parts.front().features.cell_m;
+  require_cells_of(cell_m, parts);
   const Box box = box_of(parts);
   const double width = std::ceil(box.right - box.left - 1e-9);
   const double height = std::ceil(box.back - box.front - 1e-9);
@@ -101,10 +115,7 @@ FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   FeatureMap result{CellArray(cols, rows), cell_m, nadir, parts.front().features.nadir_sigma_m};
   LogOddsSums sums{std::vector<float>(result.cells.cells().size()),
                    std::vector<std::uint8_t>(result.cells.cells().size())};
-  for (const PlacedFeatures& part : parts) {
-    assert(part.features.cell_m == cell_m);
-    add(part, nadir, cols, rows, sums);
-  }
+  for (const PlacedFeatures& part : parts) add(part, nadir, cols, rows, sums);
   const auto cells = result.cells.cells();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (sums.count[i] == 0) continue;

@@ -7,6 +7,7 @@
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/ascii_map.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -96,6 +97,15 @@ TEST(Combined, RefusesFramesThatWouldNeedMoreCellsThanAllowed) {
   } catch (const LimitExceeded& error) {
     EXPECT_EQ(error.code(), "frames-too-far-apart");
   }
+}
+
+TEST(Combined, RefusesFramesInCellsOfAnotherSize) {
+  const auto code = [](double cell_m) {
+    const PlacedFeatures parts[] = {{map_of("#. .."), {}}, {map_of("#. ..", cell_m), {}}};
+    return testing::code_of([&] { combined(parts, kPlenty); });
+  };
+  EXPECT_EQ(code(2.1), "cell-size-contradictory");
+  EXPECT_EQ(code(2.0 + 1e-9), "no error") << "what came through a text";
 }
 
 }  // namespace

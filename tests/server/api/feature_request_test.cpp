@@ -9,22 +9,12 @@
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_camera.hpp"
 #include "core/units/error.hpp"
-#include "server/http/errors.hpp"
+#include "tests/server/api/request_fixture.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/drone_jpeg.hpp"
 
 namespace roadfix::api {
 namespace {
-
-class NoRoads : public RoadDetector {
- public:
-  CellArray detect(const GroundImage&, double, std::uint64_t, const std::stop_token&) const override {
-    return {4, 4, kNoRoad};
-  }
-  double preferred_gsd_m() const override { return 1.0; }
-  double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "none"; }
-};
 
 double nadir_sigma_m_of(const nlohmann::json& request) {
   Content content;
@@ -89,17 +79,6 @@ Content content_of(const std::string& type, const std::string& body) {
 Content json_content(const nlohmann::json& body) { return content_of("application/json", body.dump()); }
 Content form_content(const std::string& parts) {
   return content_of("multipart/form-data; boundary=b", parts + "--b--\r\n");
-}
-
-/// The field that is complained about.
-template <typename Read>
-std::string refused(Read read) {
-  try {
-    read();
-    return "nothing";
-  } catch (const http::InvalidField& error) {
-    return error.code() + " " + error.field();
-  }
 }
 
 TEST(FeatureRequest, RefusesASecondPictureWhicheverComesFirst) {

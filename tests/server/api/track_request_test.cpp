@@ -1,0 +1,183 @@
+#include "server/api/track_request.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/server/api/request_fixture.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+
+TrackSettings settings_of(json request, const Limits& limits = {}) {
+  request["map"] = "town";
+  return parse_track(fields_of(std::move(request), track_members()), limits).settings;
+}
+std::string refused_track(const json& request, const Limits& limits = {}) {
+  return refused([&] { settings_of(request, limits); });
+}
+
+TEST(TrackRequest, NeedsAMapAndNothingElse) {
+  const auto parsed = [](const json& request) { return parse_track(fields_of(request, track_members()), {}); };
+  EXPECT_EQ(refused([&] { parsed(json::object()); }), "missing-parameter map");
+  EXPECT_EQ(refused([&] { parsed({{"map", 7}}); }), "bad-parameter map");
+  const auto [map, settings] = parsed({{"map", "town"}});
+  EXPECT_EQ(map, "town");
+  EXPECT_FALSE(settings.prior.circle || settings.prior.box || settings.prior.heading);
+  EXPECT_EQ(settings.start, TrackStart::kSearch);
+  EXPECT_TRUE(settings.recovers);
+  EXPECT_EQ(settings.filter.max_particles, 10'000);
+  EXPECT_TRUE(settings.filter.adapts_count);
+  EXPECT_EQ(settings.measure_every, 1);
+  EXPECT_EQ(settings.seed, 1U);
+  EXPECT_FALSE(settings.vehicle.planar);
+  EXPECT_EQ(settings.vehicle.odometry_share, 0.05);
+  EXPECT_TRUE(settings.vehicle.wind.is_none());
+  EXPECT_EQ(settings.vehicle.scale_range, 0.0);
+  EXPECT_FALSE(settings.vehicle.nadir_sigma_m);
+}
+
+TEST(TrackRequest, TakesThePapersFilterOrAnotherStartWhereItIsAskedTo) {
+  const TrackSettings paper = settings_of({{"filter", "paper"}, {"particles", 500}});
+  EXPECT_EQ(paper.start, TrackStart::kUniform);
+  EXPECT_FALSE(paper.recovers);
+  EXPECT_EQ(paper.measurement_model.kind, LikelihoodKind::kEquation7);
+  EXPECT_EQ(paper.filter.min_particles, 500) << "it always uses this many";
+  EXPECT_EQ(paper.filter.max_particles, 500);
+  EXPECT_FALSE(paper.filter.adapts_count);
+  EXPECT_EQ(settings_of({{"filter", "paper"}, {"start", "search"}}).start, TrackStart::kSearch);
+
+  const TrackSettings uniform = settings_of({{"filter", "adaptive"}, {"start", "uniform"}});
+  EXPECT_EQ(uniform.start, TrackStart::kUniform);
+  EXPECT_TRUE(uniform.recovers);
+  EXPECT_TRUE(uniform.filter.adapts_count);
+  EXPECT_EQ(refused_track({{"filter", "best"}}), "bad-parameter filter");
+  EXPECT_EQ(refused_track({{"start", "here"}}), "bad-parameter start");
+}
+
+TEST(TrackRequest, HasAtMostAsManyParticlesAsItAsksForAndTheLimitAllows) {
+  Limits limits;
+  limits.particles = 5'000;
+  EXPECT_EQ(settings_of({}, limits).filter.max_particles, 5'000) << "where it does not say how many";
+  EXPECT_EQ(settings_of({{"particles", 2'000}}, limits).filter.max_particles, 2'000);
+  EXPECT_EQ(settings_of({{"particles", 300}}, limits).filter.min_particles, 300) << "never more than the most";
+  EXPECT_EQ(refused_track({{"particles", 5'001}}, limits), "parameter-out-of-range particles");
+  EXPECT_EQ(refused_track({{"particles", 99}}, limits), "parameter-out-of-range particles");
+  EXPECT_EQ(refused_track({{"particles", 150.5}}, limits), "bad-parameter particles");
+}
+
+TEST(TrackRequest, TellsHowAVehicleMovesThatNoOdometryTellsOf) {
+  const VehicleNoise::Planar told =
+      settings_of({{"speed_m_s", -12}, {"speed_sigma_m_s", 0}, {"turn_rate_deg_s", 90}, {"turn_rate_sigma_deg_s", 18}})
+          .vehicle.planar.value();
+  EXPECT_EQ(told.speed_m_s.mean, -12.0);
+  EXPECT_EQ(told.speed_m_s.sigma, 0.0);
+  EXPECT_NEAR(told.turn_rate_rad_s.mean, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(told.turn_rate_rad_s.sigma, std::numbers::pi / 10, 1e-12);
+
+  const VehicleNoise::Planar speed_alone = settings_of({{"speed_m_s", 20}}).vehicle.planar.value();
+  EXPECT_EQ(speed_alone.speed_m_s.mean, 20.0);
+  EXPECT_EQ(speed_alone.speed_m_s.sigma, 2.0);
+  EXPECT_EQ(speed_alone.turn_rate_rad_s.mean, 0.0);
+  EXPECT_NEAR(speed_alone.turn_rate_rad_s.sigma, Angle::degrees(5.0).radians(), 1e-12);
+}
+
+TEST(TrackRequest, IsRefusedWhereItTellsMoreOfASpeedThanTheSpeed) {
+  for (const char* name : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {
+    EXPECT_EQ(refused_track({{name, 1}}), "missing-parameter speed_m_s") << name;
+  }
+}
+
+TEST(TrackRequest, TellsAWindByEitherOfItsFiguresOrBoth) {
+  const auto wind = [](const json& request) { return settings_of(request).vehicle.wind; };
+  EXPECT_DOUBLE_EQ(wind({{"wind_sigma_m_s", 5}}).walk, 0.1);
+  EXPECT_DOUBLE_EQ(wind({{"wind_walk", 0.2}}).sigma_m_s, 10.0);
+  const Wind both = wind({{"wind_sigma_m_s", 5}, {"wind_walk", 0}});
+  EXPECT_EQ(both.sigma_m_s, 5.0);
+  EXPECT_EQ(both.walk, 0.0) << "that is told, rather than left out";
+}
+
+TEST(TrackRequest, TellsWhatHoldsForAllOfTheTrack) {
+  Limits limits;
+  limits.search_km2 = 12.5;
+  const TrackSettings settings = settings_of(
+      {{"seed", 7}, {"measure_every", 3}, {"odometry_share", 0.2}, {"scale_range", 0.1}, {"nadir_sigma_m", 12}},
+      limits);
+  EXPECT_EQ(settings.seed, 7U);
+  EXPECT_EQ(settings.measure_every, 3);
+  EXPECT_EQ(settings.vehicle.odometry_share, 0.2);
+  EXPECT_EQ(settings.vehicle.scale_range, 0.1);
+  EXPECT_EQ(settings.vehicle.nadir_sigma_m, 12.0);
+  EXPECT_EQ(settings.max_search_km2, 12.5) << "which is the operator's to say";
+}
+
+TEST(TrackRequest, TellsWhereTheVehicleMayBeAsAFixDoes) {
+  const Prior prior = settings_of({{"lat", 57.7},
+                                   {"lon", 11.9},
+                                   {"radius_m", 300},
+                                   {"bbox", {11, 57, 12, 58}},
+                                   {"heading_deg", 270},
+                                   {"heading_range_deg", 20}})
+                          .prior;
+  EXPECT_EQ(prior.circle.value().radius_m, 300.0);
+  EXPECT_EQ(prior.box.value().north_east.lat_deg, 58.0);
+  EXPECT_NEAR(prior.heading.value().centre.degrees(), 270.0, 1e-9);
+  EXPECT_EQ(refused_track({{"lat", 57.7}, {"lon", 11.9}}), "missing-parameter radius_m");
+}
+
+StepInput step_of(json request) {
+  request.update({{"sequence", 4}, {"time_us", 5'000'000}});
+  return parse_step(fields_of(std::move(request), step_fields()));
+}
+std::string refused_step(const json& request) {
+  return refused([&] { step_of(request); });
+}
+
+TEST(StepRequest, HasANumberAndATimeAndNeedsNothingElse) {
+  const auto parsed = [](const json& request) { return parse_step(fields_of(request, step_fields())); };
+  const StepInput step = parsed({{"sequence", 9'007'199'254'740'992}, {"time_us", 0}});
+  EXPECT_EQ(step.sequence, 9'007'199'254'740'992);
+  EXPECT_EQ(step.time_us, 0);
+  EXPECT_FALSE(step.odometry || step.covariance || step.features);
+  EXPECT_EQ(refused([&] { parsed({{"time_us", 0}}); }), "missing-parameter sequence");
+  EXPECT_EQ(refused([&] { parsed({{"sequence", 0}}); }), "missing-parameter time_us");
+  EXPECT_EQ(refused([&] { parsed({{"sequence", -1}, {"time_us", 0}}); }), "parameter-out-of-range sequence");
+  EXPECT_EQ(refused([&] { parsed({{"sequence", 0}, {"time_us", 0.5}}); }), "bad-parameter time_us");
+}
+
+TEST(StepRequest, TellsOdometryWholeOrNotAtAll) {
+  const json odometry{{"forward_m", 12}, {"right_m", -3}, {"turn_deg", 90}};
+  EXPECT_EQ(step_of(odometry).odometry, (Odometry{12.0, -3.0, Angle::degrees(90.0)}));
+  const json stood_still{{"forward_m", 0}, {"right_m", 0}, {"turn_deg", 0}};
+  EXPECT_EQ(step_of(stood_still).odometry, Odometry()) << "which is not the same as saying nothing";
+  for (const auto& [name, value] : odometry.items()) {
+    json without = odometry;
+    without.erase(name);
+    EXPECT_EQ(refused_step(without), "missing-parameter " + name);
+    EXPECT_EQ(refused_step({{name, value}}).substr(0, 17), "missing-parameter") << name << " alone";
+    json far = odometry;
+    far[name] = 100'001;
+    EXPECT_EQ(refused_step(far), "parameter-out-of-range " + name);
+  }
+}
+
+TEST(StepRequest, TellsTheCovarianceOfItsOdometryRowByRow) {
+  const OdometryCovariance rows{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+  json request{{"forward_m", 0}, {"right_m", 0}, {"turn_deg", 0}, {"covariance", {1, 2, 3, 4, 5, 6, 7, 8, 9}}};
+  EXPECT_EQ(step_of(request).covariance, rows);
+  const Fields query(http::Parameters{{"sequence", "4"},
+                                      {"time_us", "5"},
+                                      {"forward_m", "0"},
+                                      {"right_m", "0"},
+                                      {"turn_deg", "0"},
+                                      {"covariance", "1,2,3,4,5,6,7,8,9"}});
+  EXPECT_EQ(parse_step(query).covariance, rows);
+  request["covariance"] = {1, 2, 3, 4, 5, 6, 7, 8};
+  EXPECT_EQ(refused_step(request), "bad-parameter covariance");
+  EXPECT_EQ(refused_step({{"covariance", {1, 0, 0, 0, 1, 0, 0, 0, 1}}}), "missing-parameter forward_m");
+}
+
+}  // namespace
+}  // namespace roadfix::api

@@ -6,27 +6,16 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/filter/clusters.hpp"
-#include "core/filter/particle_bytes.hpp"
-#include "core/units/error.hpp"
+#include "tests/core/filter/square.hpp"
 
 namespace roadfix {
 namespace {
 
-const PoseRegion kSquare{{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)};
-
-/// Log-likelihood of seeing the place with an error of `sigma_m` per axis.
-std::vector<double> seen_at(const Particles& p, GridPoint place, double sigma_m) {
-  std::vector<double> log_likelihoods;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const double off = distance_m({p.east_m[i], p.north_m[i]}, place) / sigma_m;
-    log_likelihoods.push_back(-0.5 * off * off);
-  }
-  return log_likelihoods;
-}
+using testing::kSquare;
+using testing::seen_at;
 
 struct Moments {
   GridPoint mean;
@@ -252,51 +241,6 @@ TEST(Filter, TriesDriftsOfAShareOfItsParticlesAndLeavesTheOthers) {
   EXPECT_NEAR(sigma_of(tried), 3.0, 4.0 * 3.0 / std::sqrt(2.0 * 1'000.0));
   filter.start_uniformly(kSquare);
   EXPECT_EQ(sigma_of(p.drift_east_m_s), 0.0) << "new ones have none";
-}
-
-TEST(FilterState, OfTheVersionBeforeHasEveryScaleAsItWasTold) {
-  Filter filter({}, {kSquare}, 5);
-  filter.start_uniformly(kSquare);
-  std::vector<std::byte> before = to_bytes(filter.state());
-  before.resize(before.size() - 8 * filter.particles().size());  // the scales are the last column
-  before[5] = std::byte{'1'};                                    // of "RFFS02"
-  EXPECT_EQ(filter_state_of(before), filter.state());
-}
-
-TEST(FilterState, ComesBackFromItsBytesAndGoesOnTheSame) {
-  Filter filter({}, {kSquare, 0.0, 0.2}, 5);
-  filter.start_uniformly(kSquare);
-  const auto step = [](Filter& f) {
-    f.predict(PlanarMotion{{20.0, 2.0}, {0.0, 0.05}, 1.0, 0.1});
-    f.correct(seen_at(f.particles(), {500.0, 300.0}, 30.0));
-  };
-  step(filter);
-  Filter copy({}, {kSquare, 0.0, 0.2}, filter_state_of(to_bytes(filter.state())));
-  EXPECT_EQ(copy.state(), filter.state());
-  step(filter);
-  step(copy);
-  EXPECT_EQ(copy.state(), filter.state());
-}
-
-TEST(FilterState, RefusesBytesThatAreCutOrDamaged) {
-  Filter filter({}, {kSquare}, 5);
-  filter.start_uniformly(kSquare);
-  const std::vector<std::byte> whole = to_bytes(filter.state());
-  for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{60}, whole.size() - 1}) {
-    EXPECT_THROW(filter_state_of(std::span(whole).first(size)), CorruptData) << size;
-  }
-  for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{47}, whole.size() - 1}) {
-    std::vector<std::byte> damaged = whole;
-    damaged[at] = std::byte{0x7f};
-    damaged[at - at % 8 + 6] = std::byte{0xf8};
-    EXPECT_THROW(filter_state_of(damaged), CorruptData) << at;
-  }
-  FilterState nowhere = filter.state();
-  std::ranges::fill(nowhere.particles.weight, 0.0);
-  EXPECT_THROW(filter_state_of(to_bytes(nowhere)), CorruptData);
-  FilterState unsupported = filter.state();
-  unsupported.slow_support = 0.0;
-  EXPECT_THROW(filter_state_of(to_bytes(unsupported)), CorruptData) << "its doubt would be 0 / 0";
 }
 
 }  // namespace

@@ -69,47 +69,6 @@ TEST(MapWriter, SeveralBlocksAreOneTransaction) {
   for (const TileIndex block : source.blocks) EXPECT_EQ(reader.tile(0, block), random_cells(1, block));
 }
 
-TEST(MapWriter, FindsSourcesThatSayTheSame) {
-  const TemporaryFolder folder;
-  MapWriter writer(folder / "m.gpkg", settings_37n());
-  ingest(writer, {"a", 1, some_blocks(2)});
-  EXPECT_TRUE(writer.twins_of("a").empty());
-  ingest(writer, {"another", 2, some_blocks(2)});
-  EXPECT_TRUE(writer.twins_of("another").empty());
-  ingest(writer, {"copy", 1, some_blocks(2)});
-  EXPECT_EQ(writer.twins_of("copy"), std::vector<std::string>{"a"});
-  ingest(writer, {"part", 2, some_blocks(1)});
-  EXPECT_EQ(writer.twins_of("part"), std::vector<std::string>{"another"});
-  EXPECT_TRUE(writer.twins_of("another").empty());
-  ingest(writer, {"more", 1, some_blocks(3)});
-  EXPECT_TRUE(writer.twins_of("more").empty());
-}
-
-TEST(MapWriter, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
-  const TemporaryFolder folder;
-  MapWriter writer(folder / "m.gpkg", settings_37n());
-  ingest(writer, {"a", 1, some_blocks(3)});
-  EXPECT_TRUE(writer.testimonies("a", 9).tiles.empty()) << "there is no other";
-  ingest(writer, {"b", 2, some_blocks(3, 1)});
-  ingest(writer, {"c", 3, some_blocks(1, 1)});
-  writer.begin_source(TestSource{"unfinished", 4, some_blocks(1)}.record(), some_blocks(1), false);
-  const Testimonies all = writer.testimonies("a", 9);
-  const std::vector<TileIndex> shared = some_blocks(2, 1);
-  ASSERT_EQ(all.tiles.size(), shared.size());
-  EXPECT_EQ(all.others_sigma_m, 2.5);
-  for (const TileIndex block : shared) {
-    std::vector<CellArray> others{random_cells(2, block)};
-    if (block == some_blocks(1, 1).front()) others.push_back(random_cells(3, block));
-    EXPECT_TRUE(std::ranges::any_of(all.tiles,
-                                    [&](const Testimonies::Tile& tile) {
-                                      return tile.own == random_cells(1, block) && tile.others == fused(others);
-                                    }))
-        << block.col << ' ' << block.row;
-  }
-  EXPECT_EQ(writer.testimonies("a", 2).tiles.size(), 2U);
-  EXPECT_TRUE(writer.testimonies("none", 2).tiles.empty());
-}
-
 TEST(MapWriter, OverviewsAreTheHalvedLevelBelow) {
   const TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", settings_37n());

@@ -1,0 +1,60 @@
+#include "tiles/sources/georeference.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/fingerprint.hpp"
+#include "tiles/sources/raster_file.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::code_of;
+using testing::write_raster;
+
+class Georeference : public ::testing::Test {
+ protected:
+  testing::TemporaryFolder folder;
+};
+
+double band_number(int band, int, int) { return 10.0 * band; }
+
+TEST_F(Georeference, WithoutGeoreferenceItSaysWhatToDo) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+}
+
+TEST_F(Georeference, AWorldFileNeedsAReferenceSystemFromTheUser) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+  std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  EXPECT_THAT(testing::message_of([&] { RasterFile(path, {}); }), ::testing::HasSubstr("--crs of ingest"))
+      << "other commands, which have no such option, read rasters too";
+  EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32637", .collar = {}}).crs()), "EPSG:32637");
+  EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
+}
+
+TEST_F(Georeference, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+  std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
+  std::ofstream(folder / "a.prj") << "nonsense";
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  const std::string nonsense = fingerprint({path}, "");
+  std::ofstream(folder / "a.prj")
+      << R"(PROJCS["WGS_1984_UTM_Zone_37N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,)"
+      << R"(298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],)"
+      << R"(PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],)"
+      << R"(PARAMETER["Central_Meridian",39.0],PARAMETER["Scale_Factor",0.9996],)"
+      << R"(PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])";
+  const OGRSpatialReference utm = utm_reference(*UtmZone::from_epsg(32637));
+  EXPECT_TRUE(RasterFile(path, {}).crs().IsSame(&utm));
+  EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32633", .collar = {}}).crs()), "EPSG:32633");
+  EXPECT_NE(fingerprint({path}, ""), nonsense);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,126 @@
+// Rasters that say themselves where roads are.
+#include <gmock/gmock.h>
+
+#include <string>
+#include <utility>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/road_features.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/collar.hpp"
+#include "tiles/sources/raster_sources.hpp"
+#include "tiles/sources/road_rules.hpp"
+#include "tiles/sources/road_values.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::kZone;
+using testing::RasterSpec;
+using testing::write_raster;
+
+TEST(RoadRasterNote, IsGivenForPicturesInColourAndNotForDrawingsInGrey) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](int bands, const testing::PixelFunction& value) {
+    return note_on_likely_picture(write_raster(folder / "a.tif", {.bands = bands}, value), {}, {});
+  };
+  const auto ground = [](int band, int col, int row) { return 60 + (col + row) % 64 + 30 * band; };
+  const auto drawing = [](int, int col, int) { return col < 31 ? 255.0 : 0.0; };
+  EXPECT_THAT(note(3, ground), ::testing::Optional(::testing::HasSubstr("without --as roads")));
+  EXPECT_EQ(note(3, drawing), std::nullopt);
+  EXPECT_EQ(note(1, ground), std::nullopt);
+}
+
+TEST(RoadRasterNote, IsGivenForColouredLinesAndForDarkOnesOnLightGround) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](const testing::RasterSpec& spec, double line, double ground) {
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [=](int, int col, int) { return col % 16 == 3 ? line : ground; });
+    return open_road_raster({path}, {}, kZone, 2.0)->summary().notes;
+  };
+  using ::testing::ElementsAre;
+  using ::testing::HasSubstr;
+  const testing::RasterSpec red_on_black{.palette = {{0, 0, 0, 255}, {255, 0, 0, 255}}};
+  EXPECT_THAT(note(red_on_black, 1.0, 0.0), ElementsAre(HasSubstr("if colours stand for roads")));
+  const testing::RasterSpec black_and_white{.palette = {{0, 0, 0, 255}, {255, 255, 255, 255}}};
+  EXPECT_THAT(note(black_and_white, 1.0, 0.0), ::testing::IsEmpty());
+  EXPECT_THAT(note(black_and_white, 0.0, 1.0), ElementsAre(HasSubstr("-scale 0 255 255 0")));
+  EXPECT_THAT(note({}, 0.0, 1.0), ElementsAre(AllOf(HasSubstr("94 % of it is road"), HasSubstr("-scale 0 1 1 0"))));
+  EXPECT_THAT(note({}, 1.0, 0.0), ::testing::IsEmpty());
+}
+
+class RoadRaster : public ::testing::Test {
+ protected:
+  CellArray cells(GDALDataType type, double road) {
+    const RasterSpec spec{.type = type, .transform = {{400000.0, 1.0, 0.0, 4200064.0, 0.0, -1.0}}};
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [road](int, int col, int) { return col < 31 ? road : 0.0; });
+    const auto source = open_road_raster({path}, {}, kZone, 2.0);
+    EXPECT_EQ(source->summary().kind, "roads");
+    return source->read({2.0, {200000, -2100032}, 32, 32}, 1);
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(RoadRaster, MasksOfAnyRangeCarryTheCertaintyOfDrawnRoads) {
+  const Certainty certainty;
+  for (const auto& [type, road] : {std::pair{GDT_Byte, 255.0}, {GDT_Byte, 1.0}, {GDT_UInt16, 65535.0}}) {
+    const CellArray result = cells(type, road);
+    EXPECT_EQ(result.at(14, 5), cell_from_probability(certainty.on_road));
+    EXPECT_EQ(result.at(20, 5), cell_from_probability(certainty.elsewhere));
+    EXPECT_NEAR(probability(result.at(15, 5)), certainty.probability(0.5), 0.005);
+  }
+}
+
+TEST_F(RoadRaster, MasksOfZeroAndOneKeepTheirRangeBesideOthersButNotBesideGradedShares) {
+  const auto west_of_both = [&](double min, double max) {
+    const auto raster = [&](const char* name, double west_m, double elsewhere, double road) {
+      return write_raster(folder / name, {.transform = {{west_m, 1.0, 0.0, 4200064.0, 0.0, -1.0}}},
+                          [=](int, int col, int) { return col < 31 ? road : elsewhere; });
+    };
+    const std::string small = raster("small.tif", 400000.0, 0.0, 1.0);
+    const std::string large = raster("large.tif", 400064.0, min, max);
+    const auto source = open_road_raster({small, large}, {}, kZone, 2.0);
+    const CellArray result = source->read({2.0, {200000, -2100032}, 64, 32}, 1);
+    return std::pair{result.at(14, 5), result.at(46, 5)};
+  };
+  const Cell road = cell_from_probability(Certainty{}.on_road);
+  EXPECT_EQ(west_of_both(0.0, 255.0), (std::pair{road, road}));
+  const auto [faint, graded] = west_of_both(40.0, 255.0);
+  EXPECT_LT(probability(faint), 0.05);
+  EXPECT_EQ(graded, road);
+}
+
+TEST_F(RoadRaster, ValuesThatAreNoSharesAreRefused) {
+  for (const auto& [type, value] : {std::pair{GDT_Float32, 100.0}, {GDT_Float32, -9999.0}, {GDT_Int16, -9999.0}}) {
+    EXPECT_EQ(testing::code_of([&, t = type, v = value] { cells(t, v); }), "road-values-out-of-range") << value;
+  }
+  EXPECT_NO_THROW(cells(GDT_Float32, 1.04)) << "resampling overshoots";
+}
+
+TEST_F(RoadRaster, ValuesThatHardlySayAnythingGetANote) {
+  const auto notes = [&](double road, double elsewhere, std::optional<double> nodata) {
+    RasterSpec spec;
+    spec.nodata = nodata;
+    const std::string path =
+        write_raster(folder / "b.tif", spec, [&](int, int col, int) { return col < 31 ? road : elsewhere; });
+    return open_road_raster({path}, {}, kZone, 2.0)->summary().notes;
+  };
+  EXPECT_THAT(notes(255.0, 0.0, std::nullopt), ::testing::IsEmpty());
+  EXPECT_THAT(notes(1.0, 0.0, std::nullopt), ::testing::IsEmpty());
+  EXPECT_THAT(notes(255.0, 0.0, 0.0), ::testing::ElementsAre(::testing::HasSubstr("-unsetnodata")));
+  EXPECT_THAT(notes(100.0, 0.0, std::nullopt),
+              ::testing::ElementsAre(::testing::HasSubstr("no road is surer than 39 %")));
+  EXPECT_THAT(notes(0.0, 0.0, std::nullopt), ::testing::IsEmpty()) << "a place without roads";
+}
+
+TEST_F(RoadRaster, FloatsAreProbabilitiesAsTheyAre) {
+  const CellArray result = cells(GDT_Float32, 0.6);
+  EXPECT_NEAR(probability(result.at(14, 5)), 0.6, 0.004);
+  EXPECT_NEAR(probability(result.at(15, 5)), 0.3, 0.004);
+  EXPECT_EQ(result.at(20, 5), kNoRoad);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
@@ -205,28 +204,6 @@ TEST_F(Track, LearnsAnErrorOfTheAltitudeThatItIsToldToExpect) {
   EXPECT_EQ(code_of([&] { Tracker(view_, impossible); }), "scale-range-out-of-range");
 }
 
-TEST_F(Track, LearnsTheWindWhereOdometryIsRelativeToTheAir) {
-  for (const auto& wind : {Wind::of(6.0, std::nullopt), Wind::of(std::nullopt, 0.1)}) {
-    TrackSettings blown = settings();
-    blown.vehicle.wind = wind;
-    const Tracker tracker(view_, blown);
-    Flight flight(map_, start_, 4);
-    state_ = {};
-    int claims = 0;
-    for (int i = 0; i < 30; ++i) {
-      const GridPose& pose = flight.pose();
-      flight.jump_to({{pose.position.east_m + 7.0, pose.position.north_m - 4.0}, pose.heading});
-      const TrackEstimate estimate = advance(tracker, flight.step());
-      claims += estimate.converged ? 1 : 0;
-      EXPECT_LT(error_m(estimate, flight.pose()), 12.0) << "step " << i;
-    }
-    EXPECT_GE(claims, 24);
-    const Particles& p = state_.filter.particles;
-    EXPECT_NEAR(std::accumulate(p.drift_east_m_s.begin(), p.drift_east_m_s.end(), 0.0) / static_cast<double>(p.size()),
-                7.0, 1.5);
-  }
-}
-
 TEST_F(Track, BeginsAnewAfterALongGap) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 8);
@@ -239,64 +216,6 @@ TEST_F(Track, BeginsAnewAfterALongGap) {
   next = flight.step();
   next.time_us += 601'000'000;
   EXPECT_EQ(advance(tracker, next).measurement, Measurement::kSearched);
-}
-
-TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
-  TrackSettings planar = settings();
-  planar.vehicle.planar = VehicleNoise::Planar{{20.0, 1.0}, {0.0, 0.05}};
-  const Tracker tracker(view_, planar);
-  Flight flight(map_, start_, 9);
-  fly(tracker, flight, 1);
-  TrackEstimate last;
-  for (int i = 0; i < 15; ++i) {
-    StepInput step = flight.step();
-    step.odometry.reset();
-    last = advance(tracker, step);
-  }
-  EXPECT_LT(error_m(last, flight.pose()), 15.0);
-}
-
-TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
-  int claims = 0;
-  for (const std::uint64_t seed : {21U, 22U, 23U, 24U}) {
-    const Tracker tracker(view_, settings());
-    Flight flight(map_, start_, seed);
-    state_ = {};
-    const bool claimed = fly(tracker, flight, 8).converged;
-    claims += claimed ? 1 : 0;
-    for (int second = 1; second <= 12; ++second) {
-      StepInput step = flight.step(false);  // 20 m/s, turning
-      step.odometry.reset();
-      const TrackEstimate estimate = advance(tracker, step);
-      if (second == 1) {
-        EXPECT_EQ(estimate.converged, claimed);
-      }
-      if (estimate.converged) {
-        EXPECT_LT(error_m(estimate, flight.pose()), 15.0) << "seed " << seed << ", second " << second;
-      }
-      EXPECT_FALSE(estimate.converged && second > 4) << "seed " << seed;
-    }
-  }
-  EXPECT_GT(claims, 2);
-}
-
-TEST_F(Track, FollowsFramesWithoutOdometryAndKeepsNoWindOfThem) {
-  for (const std::uint64_t seed : {31U, 32U, 33U}) {
-    const Tracker tracker(view_, settings());
-    Flight flight(map_, start_, seed);
-    state_ = {};
-    fly(tracker, flight, 8);
-    for (int i = 0; i < 10; ++i) {
-      StepInput step = flight.step();
-      step.odometry.reset();
-      EXPECT_LT(error_m(advance(tracker, step), flight.pose()), 15.0) << "seed " << seed << ", step " << i;
-    }
-    EXPECT_FALSE(state_.drifts);
-    for (int i = 0; i < 6; ++i) {
-      EXPECT_LT(error_m(advance(tracker, flight.step(false)), flight.pose()), 20.0)
-          << "seed " << seed << ", step " << i;
-    }
-  }
 }
 
 TEST_F(Track, ClaimsNoPlaceAtAStepWhoseFrameSpeaksAgainstIt) {

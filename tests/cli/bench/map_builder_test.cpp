@@ -1,0 +1,41 @@
+#include "cli/bench/map_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/cli/bench/bench_run.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+using MapBuilder = BenchRun;
+
+TEST_F(MapBuilder, KeepsMapsOfTheSameNameApart) {
+  const auto other = folder / "other";
+  std::filesystem::create_directory(other);
+  for (const char* file : {"town.png", "town.pgw", "town.png.aux.xml"}) {
+    std::filesystem::copy_file(folder / file, other / file);
+  }
+  cv::imwrite(other / "town.png", cv::imread(folder / "town.png") / 2);
+  const MapBuilding& building = options.maps;
+  const MapView here = build_map({"town", {{folder / "town.png", "imagery"}}}, building);
+  const MapView there = build_map({"town", {{other / "town.png", "imagery"}}}, building);
+  const MapView both =
+      build_map({"town", {{folder / "town.png", "imagery"}, {other / "town.png", "imagery"}}}, building);
+  EXPECT_NE(here.version, there.version);
+  EXPECT_NE(here.version, both.version);
+  EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", "imagery"}}}, building).version);
+}
+
+TEST_F(MapBuilder, MapsBothSidesOfTheEquator) {
+  std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n349.5\n";
+  const MapView map = build_map({"town", {{folder / "town.png", "imagery"}}}, options.maps);
+  EXPECT_FALSE(map.zone.northern());
+  EXPECT_NEAR(map.extent.height_m(), 700.0, 4.0);
+}
+
+}  // namespace
+}  // namespace roadfix::bench

@@ -1,0 +1,93 @@
+// The bench over frames that were taken and described by others.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iomanip>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/detect/frame_camera.hpp"
+#include "core/units/error.hpp"
+#include "tests/cli/bench/bench_run.hpp"
+
+namespace roadfix::bench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+using BenchRunOfFrames = BenchRun;
+
+TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  const cv::Mat picture = cv::imread(folder / "town.png");
+  std::ofstream csv(folder / "flight.csv");
+  csv << std::setprecision(10) << "sequence,file,lat,lon,heading_deg,gsd_m\n";
+  for (int i = 0; i < 3; ++i) {
+    cv::Mat frame = picture(cv::Rect(200 + 70 * i, 300, 110, 110)).clone();
+    if (i == 1) cv::rotate(frame, frame, cv::ROTATE_90_CLOCKWISE);  // its forward edge looks west
+    const std::string name = "flight" + std::to_string(i) + ".png";
+    cv::imwrite(folder / name, frame);
+    const GridPoint centre{400255.0 + 70 * i, 3999645.0};
+    const LatLon at = zone.unproject(centre);
+    csv << "a," << name << ',' << at.lat_deg << ',' << at.lon_deg << ','
+        << zone.true_from_grid(Angle::degrees(i == 1 ? -90.0 : 0.0), centre).degrees() << ",1\n";
+  }
+  csv.close();
+  const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
+  EXPECT_EQ(results.at(0).query_set, "flight.csv 3 together");
+  EXPECT_LT(*results[0].outcomes.at(2).error_m, 3.0);
+  EXPECT_LT(*results[0].outcomes.at(2).heading_error_deg, 1.0);
+}
+
+/// What a camera above a place of the plane takes of the town, whose picture begins at (400000, 4000000).
+cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera& camera, cv::Size size) {
+  const Lens lens = lens_of(camera, size);
+  cv::Mat places(size, CV_32FC2);
+  for (int row = 0; row < size.height; ++row) {
+    for (int col = 0; col < size.width; ++col) {
+      const cv::Point2d ground = ground_of(camera, lens.ray_of({col + 0.5, row + 0.5}).value()).value();
+      const GridPoint at = moved(pose, {-ground.y, ground.x, {}}).position;
+      places.at<cv::Point2f>(row, col) = cv::Point2d(at.east_m - 400000.0 - 0.5, 4000000.0 - at.north_m - 0.5);
+    }
+  }
+  cv::Mat frame;
+  cv::remap(town, frame, places, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  return frame;
+}
+
+TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  const GridPose truth{{400330.0, 3999620.0}, Angle::degrees(40)};
+  FrameCamera camera;
+  camera.focal_px = 400.0;
+  camera.agl_m = 250.0;
+  camera.roll = Angle::degrees(-5);
+  camera.pitch = Angle::degrees(8);
+  camera.distortion = {-0.2, 0.05, 0.0, 0.0};
+  cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}));
+  const LatLon at = zone.unproject(truth.position);
+  std::ofstream(folder / "oblique.csv") << std::setprecision(10)
+                                        << "file,lat,lon,heading_deg,agl_m,focal_px,roll_deg,pitch_deg,distortion\n"
+                                        << "oblique.png," << at.lat_deg << ',' << at.lon_deg << ','
+                                        << zone.true_from_grid(truth.heading, truth.position).degrees()
+                                        << ",250,400,-5,8,-0.2 0.05 0 0\n";
+  for (const SetResult& result : run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads", "sift")")) {
+    const Outcome& outcome = result.outcomes.at(0);
+    EXPECT_LT(outcome.error_m.value(), 3.0) << result.method;
+    EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << result.method;
+    if (result.method != "roads") continue;
+    EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
+        << "how well the attitude is known is part of the accuracy";
+  }
+}
+
+TEST_F(BenchRunOfFrames, NamesTheFrameWhoseCameraCannotBe) {
+  std::ofstream(folder / "level.csv") << "file,lat,lon,heading_deg,agl_m,fov_deg,pitch_deg\n"
+                                         "frame.png,36.13,19.89,0,250,60,89\n";
+  EXPECT_THAT([&] { run(R"({"map": "town", "frames": "level.csv", "elsewhere": true})", R"("roads")"); },
+              ThrowsMessage<InvalidInput>(HasSubstr("frame.png: ")));
+}
+
+}  // namespace
+}  // namespace roadfix::bench

@@ -51,9 +51,9 @@ Another parse_also(const std::string& text) {
 FeatureInput features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
                          double map_cell_m) {
   if (detector == nullptr) {
-    FeatureMap map = feature_map_in(path, options.cell_m);
-    if (!options.nadir.empty()) map.nadir = {options.nadir[0], options.nadir[1]};
-    return {.features = std::move(map)};
+    ToldScale told{options.cell_m, {}, {}};
+    if (!options.nadir.empty()) told = {options.cell_m, options.nadir[0], options.nadir[1]};
+    return {.features = feature_map_in(path, told)};
   }
   const SeenFrame frame = ground_seen(options.frame, path, *detector);
   return {.features = detect_features(*detector, frame.view, map_cell_m, options.seed),

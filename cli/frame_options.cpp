@@ -113,7 +113,7 @@ void require_frame_for(const FrameOptions& options) {
 }
 
 SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
-  const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_image(bytes, kMaxPixels); });
+  const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_frame(bytes, kMaxPixels); });
   std::optional<FrameCamera> camera;
   if (options.camera()) camera = options.camera_in_file ? camera_in(path, options) : camera_of(options);
   const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
@@ -124,15 +124,15 @@ SeenFrame ground_seen(const FrameOptions& options, const std::string& path, cons
   });
 }
 
-FeatureMap feature_map_in(const std::string& path, std::optional<double> cell_m) {
+FeatureMap feature_map_in(const std::string& path, const ToldScale& told) {
   return decoded(path, [&](const auto& bytes) {
-    if (!cell_m && !is_feature_map(bytes)) {
+    if (!told.cell_m && !is_feature_map(bytes)) {
       throw InvalidInput(
           "input-kind-missing",
           "say what the input is: --cell for a feature map that does not tell its cell size itself; --gsd, "
           "--exif or --agl with --fov or --focal-px for a frame");
     }
-    return feature_map_of(decode_feature_map(bytes, kMaxPixels), cell_m);
+    return feature_map_of(decode_feature_map(bytes, kMaxPixels), told);
   });
 }
 

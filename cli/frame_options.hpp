@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame.hpp"
 
 namespace roadfix::cli {
@@ -47,9 +48,9 @@ struct SeenFrame {
 /// all about the file name it. options.given() must hold.
 SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
-/// The feature map in a file, in cells of `cell_m` where it does not say so itself: see decode_feature_map and
+/// The feature map in a file, as told where it does not say so itself: see decode_feature_map and
 /// feature_map_of; what they throw names the file here. Also throws InvalidInput "not-a-file", "input-kind-missing"
 /// where neither tells the cell size, and NotFound "file-not-found".
-FeatureMap feature_map_in(const std::string& path, std::optional<double> cell_m);
+FeatureMap feature_map_in(const std::string& path, const ToldScale& told);
 
 }  // namespace roadfix::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detect/image_codec.hpp"
+#include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
@@ -27,7 +27,7 @@ GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& fr
   if (!file) throw InvalidInput("image-unreadable", fmt::format("{}: cannot be opened", frame.file.string()));
   const std::vector<std::uint8_t> bytes(file->begin(), file->end());
   return said_of(frame.file.string(),
-                 [&] { return frame_image(decode_image(bytes, kMaxPixels), frame.gsd_m, border); });
+                 [&] { return frame_image(decode_frame(bytes, kMaxPixels), frame.gsd_m, border); });
 }
 
 GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector) {

@@ -93,6 +93,25 @@ FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
   }
 }
 
+void require_agreement(const FeatureMap& map, const ToldScale& told) {
+  constexpr double kSame = 1e-6;
+  if (told.cell_m && std::abs(*told.cell_m / map.cell_m - 1.0) > kSame) {
+    throw InvalidInput("cell-size-contradictory",
+                       fmt::format("the picture says that its cells have {} m, not {} m: leave the cell size out",
+                                   map.cell_m, *told.cell_m));
+  }
+  constexpr double kSameCells = 0.01;
+  const GridGeometry::CellPosition nadir{told.nadir_col.value_or(map.nadir.col),
+                                         told.nadir_row.value_or(map.nadir.row)};
+  if (std::abs(nadir.col - map.nadir.col) > kSameCells || std::abs(nadir.row - map.nadir.row) > kSameCells) {
+    throw InvalidInput(
+        "nadir-contradictory",
+        fmt::format("the picture says that the UAV was above its column {:.2f} and row {:.2f}, not {:.2f} "
+                    "and {:.2f}: leave the nadir out",
+                    map.nadir.col, map.nadir.row, nadir.col, nadir.row));
+  }
+}
+
 }  // namespace
 
 FeatureMapPicture decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
@@ -103,17 +122,25 @@ FeatureMapPicture decode_feature_map(Bytes bytes, std::int64_t max_pixels) {
 
 bool is_feature_map(Bytes bytes) { return text_in(bytes, kKeyword).has_value(); }
 
-FeatureMap feature_map_of(FeatureMapPicture picture, std::optional<double> told_cell_m) {
-  assert(told_cell_m || picture.scale);
-  if (!picture.scale) return FeatureMap::centred(std::move(picture.cells), *told_cell_m);
-  const FeatureMapScale& scale = *picture.scale;
-  constexpr double kSame = 1e-6;
-  if (told_cell_m && std::abs(*told_cell_m / scale.cell_m - 1.0) > kSame) {
-    throw InvalidInput("cell-size-contradictory",
-                       fmt::format("the picture says that its cells have {} m, not {} m: leave the cell size out",
-                                   scale.cell_m, *told_cell_m));
+FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told) {
+  assert(told.cell_m || picture.scale);
+  FeatureMap map = FeatureMap::centred(std::move(picture.cells), told.cell_m.value_or(1.0));
+  if (!picture.scale) {
+    map.nadir = {told.nadir_col.value_or(map.nadir.col), told.nadir_row.value_or(map.nadir.row)};
+    return map;
   }
-  return {std::move(picture.cells), scale.cell_m, scale.nadir, scale.nadir_sigma_m};
+  map.cell_m = picture.scale->cell_m;
+  map.nadir = picture.scale->nadir;
+  map.nadir_sigma_m = picture.scale->nadir_sigma_m;
+  require_agreement(map, told);
+  return map;
+}
+
+cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels) {
+  if (!is_feature_map(bytes)) return decode_image(bytes, max_pixels);
+  throw InvalidInput("frame-is-feature-map",
+                     "this picture shows roads that were detected before, and no ground: give it as the feature map "
+                     "that it says it is, without what describes a frame");
 }
 
 std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map) {

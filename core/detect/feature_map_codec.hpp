@@ -31,9 +31,21 @@ FeatureMapPicture decode_feature_map(Bytes bytes, std::int64_t max_pixels);
 /// Whether the bytes are a PNG that says of itself that it is a feature map.
 bool is_feature_map(Bytes bytes);
 
-/// As the picture says, or in cells of `told_cell_m` with the nadir in the middle; one of them tells the cell size.
-/// Throws InvalidInput "cell-size-contradictory" where both do and they differ.
-FeatureMap feature_map_of(FeatureMapPicture picture, std::optional<double> told_cell_m);
+/// What is known of a feature map beside its picture.
+struct ToldScale {
+  std::optional<double> cell_m;
+  std::optional<double> nadir_col;
+  std::optional<double> nadir_row;
+};
+
+/// As the picture says or, where it does not, as is told, with the nadir in the middle where that is not; one of them
+/// tells the cell size. Throws InvalidInput where both tell something and differ: "cell-size-contradictory",
+/// "nadir-contradictory".
+FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told);
+
+/// A picture of the ground, as decode_image. Throws what that does, and InvalidInput "frame-is-feature-map" for one
+/// that says of itself that it shows roads and no ground.
+cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels);
 
 /// Grey and alpha PNG that decode_feature_map turns back into exactly this. At least one cell; LimitExceeded
 /// ("too-many-cells") for more in a row or column than a PNG holds.

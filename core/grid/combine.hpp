@@ -15,10 +15,11 @@ struct PlacedFeatures {
   friend bool operator==(const PlacedFeatures&, const PlacedFeatures&) = default;
 };
 
-/// One feature map in the body frame of the reference, its nadir that of the reference, just large enough for all
-/// parts. Where several parts saw a cell it holds the mean of their log-odds: they err alike, so agreement is not
-/// counted twice. `parts` is not empty. Throws InvalidInput ("cell-size-contradictory") unless all have cells of one
-/// size, and LimitExceeded ("frames-too-far-apart") when the result would have more than `max_cells`.
+/// One feature map in the body frame of the reference, its nadir that of the reference and known as well as the least
+/// known of all, since any of them may be what tells the place; just large enough for all parts. Where several parts
+/// saw a cell it holds the mean of their log-odds: they err alike, so agreement is not counted twice. `parts` is not
+/// empty. Throws InvalidInput ("cell-size-contradictory") unless all have cells of one size, and LimitExceeded
+/// ("frames-too-far-apart") when the result would have more than `max_cells`.
 FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells);
 
 }  // namespace roadfix

@@ -71,13 +71,12 @@ FeatureMapPicture given_picture(const Content& content, const Limits& limits) {
 
 FeatureMap given_map(const Content& content, const Limits& limits) {
   const Fields& fields = content.fields;
-  std::optional<double> cell_m;
-  if (fields.has("cell_m") || !is_feature_map(content.image)) cell_m = fields.number("cell_m", kFeatureCell);
-  FeatureMap map = feature_map_of(given_picture(content, limits), cell_m);
   constexpr Range kPosition{-1e6, 1e6};
-  map.nadir.col = fields.optional_number("nadir_col", kPosition).value_or(map.nadir.col);
-  map.nadir.row = fields.optional_number("nadir_row", kPosition).value_or(map.nadir.row);
-  return map;
+  ToldScale told;
+  if (fields.has("cell_m") || !is_feature_map(content.image)) told.cell_m = fields.number("cell_m", kFeatureCell);
+  told.nadir_col = fields.optional_number("nadir_col", kPosition);
+  told.nadir_row = fields.optional_number("nadir_row", kPosition);
+  return feature_map_of(given_picture(content, limits), told);
 }
 
 struct SeenFrame {
@@ -89,7 +88,7 @@ SeenFrame seen_frame(const Content& content, const RoadDetector& detector, const
   require_picture(content);
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
-  const cv::Mat pixels = decode_image(content.image, limits.pixels);
+  const cv::Mat pixels = decode_frame(content.image, limits.pixels);
   const FrameScale scale = parse_frame_scale(fields, content.image);
   const GroundImage frame = frame_image(pixels, scale.gsd_m, border);
   return {ground_seen(frame, scale.camera, detector, static_cast<double>(limits.pixels)),

@@ -83,18 +83,26 @@ TEST(FeatureMapCodec, AFeatureMapComesBackWithItsCellSizeAndNadir) {
   const auto png = encode_feature_map(leaning());
   EXPECT_TRUE(is_feature_map(png));
   EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {}), leaning());
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), 1.7), leaning());
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {1.7, 6.25, 20.125}), leaning());
 }
 
 TEST(FeatureMapCodec, APictureOfAnotherProgramIsCentredInTheCellsThatAreTold) {
   const auto png = encode_feature_map(leaning().cells);
   EXPECT_FALSE(is_feature_map(png));
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), 3.0), FeatureMap::centred(leaning().cells, 3.0));
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {3.0, {}, {}}), FeatureMap::centred(leaning().cells, 3.0));
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {3.0, {}, 40.0}).nadir.row, 40.0);
 }
 
-TEST(FeatureMapCodec, RefusesACellSizeThatContradictsThePicture) {
+TEST(FeatureMapCodec, RefusesWhatContradictsThePicture) {
   const auto picture = decode_feature_map(encode_feature_map(leaning()), kMany);
-  EXPECT_EQ(code_of([&] { feature_map_of(picture, 2.0); }), "cell-size-contradictory");
+  EXPECT_EQ(code_of([&] { feature_map_of(picture, {2.0, {}, {}}); }), "cell-size-contradictory");
+  EXPECT_EQ(code_of([&] { feature_map_of(picture, {1.7, 6.0, 4.5}); }), "nadir-contradictory");
+  EXPECT_EQ(code_of([&] { feature_map_of(picture, {{}, 6.0, {}}); }), "nadir-contradictory");
+}
+
+TEST(FeatureMapCodec, RefusesAFeatureMapThatIsGivenAsAFrame) {
+  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning()), kMany); }), "frame-is-feature-map");
+  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning().cells), kMany); }), "no error");
 }
 
 /// The picture as a program leaves it that keeps the texts.

@@ -60,10 +60,10 @@ TEST(FeatureRequest, TakesCellSizeAndNadirFromAFeatureMapThatTellsThem) {
   };
   EXPECT_EQ(read(nlohmann::json::object()), map);
   EXPECT_EQ(read({{"cell_m", 1.5}}), map);
-  FeatureMap moved = map;
-  moved.nadir.row = 5.0;
-  EXPECT_EQ(read({{"nadir_row", 5}}), moved) << "what is told counts before it";
+  EXPECT_EQ(read({{"nadir_col", 10}, {"nadir_row", 33.5}}), map);
+  EXPECT_EQ(testing::code_of([&] { read({{"nadir_row", 5}}); }), "nadir-contradictory");
   EXPECT_EQ(testing::code_of([&] { read({{"cell_m", 2}}); }), "cell-size-contradictory");
+  EXPECT_EQ(testing::code_of([&] { read({{"kind", "frame"}, {"gsd_m", 2}}); }), "frame-is-feature-map");
 }
 
 std::string part(const std::string& name, const std::string& value) {

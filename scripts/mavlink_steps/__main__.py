@@ -25,7 +25,8 @@ from packets import messages
 from pictures import NewPictures
 from vehicle import Vehicle
 
-LOOK_S = 0.1  # between two looks into the folder
+LOOK_S = 0.1       # between two looks into the folder
+MOST_HEARD = 1000  # datagrams between them, so that a flood of them leaves time to look
 
 
 def parse_address(text):
@@ -59,11 +60,16 @@ def parse_arguments(arguments):
 
 
 def hear(link, autopilot, vehicle):
-    """Takes what has come."""
-    came = time.monotonic()
-    for message in messages(link.recv(65535)):
-        if autopilot.sent(message):
-            vehicle.hear(message.name, message.fields, came)
+    """Takes all that has come: a look into a full folder takes as long as many messages need to come."""
+    for _ in range(MOST_HEARD):
+        try:
+            datagram = link.recv(65535)
+        except BlockingIOError:
+            return
+        came = time.monotonic()
+        for message in messages(datagram):
+            if autopilot.sent(message):
+                vehicle.hear(message.name, message.fields, came)
 
 
 def follow(link, pictures, clock, options):
@@ -76,11 +82,11 @@ def follow(link, pictures, clock, options):
             hear(link, autopilot, vehicle)
         if time.monotonic() < looked + LOOK_S:
             continue
-        looked = time.monotonic()
         clock.look()
         for path, written in pictures():
             lines.add(path, written - options.delay)
         lines.print_due()
+        looked = time.monotonic()
 
 
 def main(arguments=None):
@@ -91,6 +97,7 @@ def main(arguments=None):
         family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
         with socket.socket(family, socket.SOCK_DGRAM) as link:
             link.bind(options.listen)
+            link.setblocking(False)
             print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)
             follow(link, pictures, clock, options)
     except BrokenPipeError:  # nobody reads the steps any more

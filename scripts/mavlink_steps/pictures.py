@@ -1,4 +1,5 @@
 """Pictures that appear in a folder."""
+import os
 import pathlib
 import time
 
@@ -13,14 +14,12 @@ class NewPictures:
         self._folder = pathlib.Path(folder)
         self._clock = clock
         self._written = {}  # of those that are not complete: date of the file, and time.monotonic() of that
-        self._known = {path.name for path in self._candidates()}
+        self._known = set(os.listdir(folder))
 
     def __call__(self):
         """Path and time.monotonic() of each that is complete since the last call, the oldest first."""
         complete = []
         for path in self._candidates():
-            if path.name in self._known:
-                continue
             try:
                 written = self._last_written(path)
                 if self._is_whole(path) or time.monotonic() - written > QUIET_S:
@@ -41,7 +40,11 @@ class NewPictures:
         return seen[1]
 
     def _candidates(self):
-        return [path for path in self._folder.iterdir() if path.suffix.lower() in ENDINGS]
+        """Those that were not taken yet. A camera leaves tens of thousands: only for names that are new more is done
+        than to look whether they are."""
+        paths = [self._folder / name for name in set(os.listdir(self._folder)) - self._known]
+        self._known.update(path.name for path in paths if path.suffix.lower() not in ENDINGS)
+        return [path for path in paths if path.suffix.lower() in ENDINGS]
 
     @staticmethod
     def _is_whole(path):

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """MAVLink to steps: packets of the public implementation node-mavlink 2.3.0, and the program with a socket and a
 folder."""
+import importlib.util
 import json
 import math
 import random
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 from pathlib import Path
 
@@ -96,6 +98,24 @@ class Autopilots(unittest.TestCase):
         with said():
             self.assertEqual([autopilot.sent(Message(system, component, "ATTITUDE", {}))
                               for system, component in ((9, 1), (8, 2), (9, 2))], [False, False, True])
+
+
+class Listening(unittest.TestCase):
+    def test_takes_all_that_came_during_a_long_look_into_a_folder_and_waits_for_nothing(self):
+        spec = importlib.util.spec_from_file_location("mavlink_steps", PROGRAM / "__main__.py")
+        program = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(program)
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(ours.close)
+        self.addCleanup(theirs.close)
+        ours.setblocking(False)
+        heard = []
+        vehicle = types.SimpleNamespace(hear=lambda name, fields, came: heard.append(fields["time_boot_ms"]))
+        for boot_ms in range(50):
+            theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
+        with said():
+            program.hear(ours, Autopilot(7, 1), vehicle)
+        self.assertEqual(heard, list(range(50)))
 
 
 class Program(unittest.TestCase):

@@ -85,6 +85,18 @@ class Pictures(unittest.TestCase):
             os.utime(Path(folder, "odd.jpg"), (70, 70))
             self.assertEqual([path.name for path, _ in new()], ["odd.jpg"], "nothing was written for long")
 
+    def test_are_found_in_a_full_folder_by_names_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            new = NewPictures(folder, types.SimpleNamespace(monotonic=lambda date_s: date_s))
+            for i in range(1000):
+                Path(folder, f"{i:04}.jpg").write_bytes(b"\xff\xd9")
+                Path(folder, f"{i:04}.txt").touch()
+            self.assertEqual(len(new()), 1000)
+            Path(folder, "later.jpg").write_bytes(b"\xff\xd9")
+            with mock.patch("pathlib.PurePath.suffix", new_callable=mock.PropertyMock, return_value=".jpg") as looks:
+                self.assertEqual([path.name for path, _ in new()], ["later.jpg"])
+            self.assertLess(looks.call_count, 10)
+
     def test_that_were_seen_before_the_clock_was_set_have_the_time_of_the_clock_before(self):
         with tempfile.TemporaryDirectory() as folder, FakeTime() as fake, said():
             clock = WallClock()

@@ -58,7 +58,8 @@ def parse_arguments(arguments):
                         help="where the track begins and what the vehicle is: lat, lon and radius_m, scale_range and "
                              "other members of POST /v1/tracks (default: anywhere on the map)")
     parser.add_argument("--frame", nargs="+", type=parse_setting, default=[], metavar="NAME=VALUE",
-                        help="what is the same of all pictures: fov_deg, gsd_m, exif=true, cell_m of feature maps ...")
+                        help="what is the same of all pictures: fov_deg, gsd_m, exif=true, cell_m of feature maps ..., "
+                             "and of all positions: satellites ...")
     parser.add_argument("--live", action="store_true",
                         help="of the steps that wait send only the newest; without it all of them, as of a recording")
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
@@ -98,6 +99,8 @@ def fly(lines, options):
     for line in NewestLine(lines) if options.live else all_lines(lines):
         try:
             step = read_step(line, folder, dict(options.frame))
+            if sender:
+                sender.expect(step.fields)
             send = functools.partial(sender.send, captured(line, step)) if sender else None
             answer = track.step(step.place, step.fields, step.image, step.origin, options.format, send)
         except (ValueError, OSError, Refused, Silent) as error:

@@ -6,6 +6,8 @@ import time
 
 #: These say nothing of their age: a late position would move a flying vehicle back to where it was.
 FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
+#: ArduPilot flies on no GPS_INPUT without a height.
+FORMATS_OF_GPS_INPUT = ("gps_input", "mavproxy")
 #: These say how long the service took, but nothing of the way to it and back: where in the payload, in which unit.
 PROCESSING = {"global_position_sensor": ("<8xI", 1e-6), "command_int": ("<4xf", 1.0)}
 HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
@@ -29,6 +31,14 @@ class Sender:
         self._socket = socket.socket(family, kind, protocol)
         self._format = packet_format
         self._max_age_s = max_age_s
+        self._missed_height = False
+
+    def expect(self, fields):
+        """Of a step, whose position is to be sent. Says once that it will be of no use."""
+        if self._format in FORMATS_OF_GPS_INPUT and "alt_m" not in fields and not self._missed_height:
+            self._missed_height = True
+            print("a step says no alt_m (height above the sea): its position is a 2D fix, which ArduPilot does not use "
+                  "for flight", file=sys.stderr)
 
     def send(self, captured, packet):
         """`captured`: when, by time.monotonic()."""

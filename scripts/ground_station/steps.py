@@ -85,7 +85,8 @@ def _is_number(value):
 
 
 def read_step(line, folder, frame_fields):
-    """What a line says. `frame_fields` are the same of all pictures. Throws ValueError, OSError."""
+    """What a line says. `frame_fields` are the same of all steps, those of pictures of all pictures. Throws ValueError,
+    OSError."""
     if line.step is None:
         raise ValueError("a step is a JSON object, in one line")
     step = dict(line.step)
@@ -97,7 +98,7 @@ def read_step(line, folder, frame_fields):
         raise ValueError("north_m, east_m and yaw_deg are numbers")
     origin = step.pop("origin", None)
     file = step.pop("image", None)
-    fields = {"time_us": time.time_ns() // 1000, **step}
+    fields = {"time_us": time.time_ns() // 1000, **frame_fields, **step}
     if not _is_number(fields["time_us"]):
         raise ValueError("time_us is a number")
     if file is None:
@@ -105,7 +106,6 @@ def read_step(line, folder, frame_fields):
         return Step(place, origin, fields, None)
     if not isinstance(file, str):
         raise ValueError("image is the name of a file")
-    fields = {**frame_fields, **fields}
     if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
         fields["kind"] = "frame"
     return Step(place, origin, fields, pathlib.Path(folder, file).read_bytes())

@@ -7,7 +7,8 @@ a folder: a line of JSON for each picture.
 
 Movements are the sum of velocities: of LOCAL_POSITION_NED, or with --by-air of airspeed and heading (VFR_HUD, ATTITUDE;
 give the track wind_sigma_m_s). Heights are those above ground of ALTITUDE (PX4) or TERRAIN_REPORT (ArduPilot), else
-above the take-off. A picture was taken when its file was last written, less --delay.
+above the take-off. That above the sea, which goes to the autopilot with each position, is that of ALTITUDE or VFR_HUD.
+A picture was taken when its file was last written, less --delay.
 """
 import argparse
 import math

@@ -1,36 +1,61 @@
-"""How high a vehicle is above the ground."""
+"""How high a vehicle is above the ground, and above the sea."""
 import math
 import sys
 
 KEPT_S = 2.5  # of messages that come once a second one may be lost
+MSL_M = (-1000.0, 50_000.0)  # what the service takes
+
+
+class Told:
+    """A height that was told last, for as long as it counts."""
+
+    def __init__(self):
+        self._height_m, self._came = math.nan, -math.inf
+
+    def tell(self, height_m, came):
+        """NaN: it is not known any more."""
+        self._height_m, self._came = height_m, came
+
+    def at(self, now):
+        """None where it is not known."""
+        return self._height_m if now - self._came <= KEPT_S and math.isfinite(self._height_m) else None
 
 
 class Heights:
-    """From what the autopilot told last: above the ground, or else above the take-off. Times are those at which
-    messages came."""
+    """From what the autopilot told last: above the ground, or else above the take-off; and above the sea. Times are
+    those at which messages came."""
 
     def __init__(self, takeoff_agl_m):
         self._takeoff_agl_m = takeoff_agl_m
-        self._above_ground = (0.0, -math.inf)
-        self._above_takeoff = (0.0, -math.inf)
+        self._above_ground = Told()
+        self._above_takeoff = Told()
+        self._above_sea = {"ALTITUDE": Told(), "VFR_HUD": Told()}  # the better one first
         self._knew_ground = None
 
     def tell_above_ground(self, height_m, came):
         """One that is NaN or not above 0 is not known."""
-        self._above_ground = (height_m, came if 0.0 < height_m < math.inf else -math.inf)
+        self._above_ground.tell(height_m if height_m > 0.0 else math.nan, came)
 
     def tell_above_takeoff(self, height_m, came):
-        self._above_takeoff = (height_m, came)
+        self._above_takeoff.tell(height_m, came)
+
+    def tell_above_sea(self, message, height_m, came):
+        """As one of two messages has it. What no vehicle can be at is not known."""
+        self._above_sea[message].tell(height_m if MSL_M[0] <= height_m <= MSL_M[1] else math.nan, came)
 
     def agl_m(self, now):
         """None where nothing is known."""
-        height_m, came = self._above_ground
-        knows_ground = now - came <= KEPT_S
-        self._say(knows_ground)
-        if knows_ground:
-            return height_m
-        height_m, came = self._above_takeoff
-        return height_m + self._takeoff_agl_m if now - came <= KEPT_S else None
+        above_ground_m = self._above_ground.at(now)
+        self._say(above_ground_m is not None)
+        if above_ground_m is not None:
+            return above_ground_m
+        above_takeoff_m = self._above_takeoff.at(now)
+        return None if above_takeoff_m is None else above_takeoff_m + self._takeoff_agl_m
+
+    def alt_m(self, now):
+        """None where nothing is known."""
+        return next((height_m for height_m in (told.at(now) for told in self._above_sea.values())
+                     if height_m is not None), None)
 
     def _say(self, knows_ground):
         """Where it is not as before."""

@@ -84,12 +84,15 @@ class Vehicle:
                 self._heights.tell_above_takeoff(-fields["z"], came)
             if not self._by_air:
                 self._move((fields["vx"], fields["vy"]), self._clock.ours(fields["time_boot_ms"] / 1e3, came))
-        elif name == "VFR_HUD" and self._by_air:
-            self._move_by_air(fields["airspeed"], came)
+        elif name == "VFR_HUD":
+            self._heights.tell_above_sea(name, fields["alt"], came)
+            if self._by_air:
+                self._move_by_air(fields["airspeed"], came)
         elif name == "TERRAIN_REPORT":
             self._hear_of_terrain(fields["current_height"], fields["spacing"] > 0, came)
         elif name == "ALTITUDE":
             self._heights.tell_above_ground(fields["bottom_clearance"], came)
+            self._heights.tell_above_sea(name, fields["altitude_amsl"], came)
 
     def seen_at(self, when):
         """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
@@ -107,6 +110,10 @@ class Vehicle:
         if height_m is None:
             raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED)")
         return height_m
+
+    def alt_m(self):
+        """Above mean sea level, as of the last message. None where it is not known."""
+        return self._heights.alt_m(self._heard)
 
     def knows(self, when):
         """Whether messages of that time and later ones have come."""

@@ -56,8 +56,8 @@ class Lines(unittest.TestCase):
 
     def test_without_a_picture_say_nothing_of_its_camera(self):
         text = '{"north_m": 1, "east_m": 2, "yaw_deg": 3, "time_us": 5, "alt_m": 7, "agl_m": 90, "roll_deg": 1}'
-        step = read_step(next(all_lines([text])), ".", {"fov_deg": 78})
-        self.assertEqual(step.fields, {"time_us": 5, "alt_m": 7})
+        step = read_step(next(all_lines([text])), ".", {"fov_deg": 78, "satellites": 10})
+        self.assertEqual(step.fields, {"time_us": 5, "alt_m": 7, "satellites": 10})
 
     def test_may_describe_a_picture_by_all_that_the_service_knows_of_one(self):
         schema = json.loads((Path(ROOT, "schema/openapi.json")).read_text())
@@ -119,19 +119,30 @@ class Positions(unittest.TestCase):
         self.autopilot.bind(("127.0.0.1", 0))
         self.autopilot.setblocking(False)
 
+    def run_program(self, fake, packet_format, lines):
+        return subprocess.run(
+            [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", packet_format,
+             "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1]], input=lines, capture_output=True, text=True,
+            timeout=60)
+
     def sent(self, packet_format, script=(), captured_s_ago=0.0, delay_s=0.0, told_s=None):
         steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": (time.time() - captured_s_ago) * 1e6})
         with FakeService(script, delay_s, told_s) as fake:
-            program = subprocess.run(
-                [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", packet_format,
-                 "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1]], input=steps + "\n", capture_output=True,
-                text=True, timeout=60)
+            program = self.run_program(fake, packet_format, steps + "\n")
         self.assertEqual(program.returncode, 0, program.stderr)
         try:
             return bool(self.autopilot.recv(2048))
         except BlockingIOError:
             self.assertIn("is not sent: it is", program.stderr)
             return False
+
+    def test_without_a_height_is_said_once_to_be_of_no_use_to_ardupilot(self):
+        place = {"north_m": 0, "east_m": 0, "yaw_deg": 0}
+        for packet_format, alt_m, warnings in (("gps_input", {}, 1), ("mavproxy", {}, 1), ("mavproxy", {"alt_m": 7}, 0),
+                                               ("nmea", {}, 0), ("command_int", {}, 0)):
+            with FakeService() as fake:
+                program = self.run_program(fake, packet_format, 3 * (json.dumps({**place, **alt_m}) + "\n"))
+            self.assertEqual(program.stderr.count("says no alt_m"), warnings, packet_format)
 
     def test_is_fresh(self):
         for packet_format in ("gps_input", "global_position_sensor"):

@@ -32,7 +32,7 @@ from packets import MESSAGES, crc  # noqa: E402
 
 gdal.UseExceptions()
 PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else "roadfix"
-AGL_M, COLS, ROWS, FOCAL_PX = 260.0, 640, 480, 400.0
+AGL_M, ALT_M, COLS, ROWS, FOCAL_PX = 260.0, 912.5, 640, 480, 400.0
 RADIUS_M, TURN_RATE = 200.0, 0.1  # 20 m/s to the right
 ROLL, PITCH = math.radians(11.0), math.radians(5.0)
 ENOUGH, PATIENCE_S = 6, 120.0  # answers of a track that claims its place
@@ -104,7 +104,8 @@ class Flight(threading.Thread):
             boot_ms, speed = round(1e3 * seconds), RADIUS_M * TURN_RATE
             link.sendto(packet("ATTITUDE", boot_ms, ROLL, PITCH, math.remainder(yaw, math.tau)) +
                         packet("LOCAL_POSITION_NED", boot_ms, 5.0, 7.0, -AGL_M, speed * math.cos(yaw),
-                               speed * math.sin(yaw), 0.0), ("127.0.0.1", self._port))
+                               speed * math.sin(yaw), 0.0) +
+                        packet("VFR_HUD", speed, speed, ALT_M), ("127.0.0.1", self._port))
             if seconds > taken + 1:
                 taken += 1
                 self._take_picture(taken, time.time() - began, began)
@@ -141,8 +142,8 @@ class LiveFlight(unittest.TestCase):
         self.addCleanup(process.terminate)
         return process
 
-    def errors_m(self, camera_yaw):
-        """Of the places that the track claims."""
+    def told(self, camera_yaw):
+        """Of the places that the track claims: errors in metres, and what the autopilot was told."""
         frames = self.folder / f"frames-{camera_yaw}"
         frames.mkdir()
         service = self.start(PROGRAM, "serve", "--maps", str(self.folder / "maps"), "--port", "0",
@@ -153,26 +154,37 @@ class LiveFlight(unittest.TestCase):
                            "--watch", str(frames), "--camera", "body", "--camera-yaw", str(camera_yaw),
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         port = int(steps.stderr.readline().split()[-1])
+        autopilot = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(autopilot.close)
+        autopilot.bind(("127.0.0.1", 0))
+        autopilot.setblocking(False)
         station = self.start(*script, str(SCRIPTS / "ground_station"), "--server", address, "--map", "town", "--live",
-                             "--frame", f"focal_px={FOCAL_PX}", stdin=steps.stdout, stdout=subprocess.PIPE)
+                             "--frame", f"focal_px={FOCAL_PX}", "satellites=10", "--format", "mavproxy",
+                             "--max-age", "60", "--send", "127.0.0.1:%d" % autopilot.getsockname()[1],
+                             stdin=steps.stdout, stdout=subprocess.PIPE)
         flight = Flight(self.ground, frames, port, math.radians(camera_yaw))
         flight.start()
         self.addCleanup(flight.over.set)
         give_up = time.monotonic() + PATIENCE_S
-        errors = []
+        errors, positions = [], []
         while len(errors) < ENOUGH and time.monotonic() < give_up:
             answer = json.loads(station.stdout.readline())
+            position = json.loads(autopilot.recv(2048))
             if answer["status"] == "converged":
                 captured = min(flight.truth, key=lambda time_us: abs(time_us - answer["time_us"]))
+                positions.append(position)
                 errors.append(math.dist(self.ground.plane(answer["pose"]), flight.truth[captured]))
         flight.over.set()
         flight.join()
-        return errors
+        return errors, positions
 
     def check(self, camera_yaw):
-        errors = self.errors_m(camera_yaw)
+        errors, positions = self.told(camera_yaw)
         self.assertGreaterEqual(len(errors), ENOUGH)
         self.assertLess(max(errors), 4.0, "the bank alone moves the middle of the frame by 50 m")
+        for position in positions:
+            self.assertEqual((position["fix_type"], position["satellites_visible"]), (3, 10), "for ArduPilot")
+            self.assertAlmostEqual(position["alt"], ALT_M, delta=0.1)
 
     def test_is_located_to_metres_in_a_banked_turn(self):
         self.check(camera_yaw=0)

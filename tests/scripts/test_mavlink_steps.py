@@ -31,11 +31,12 @@ ATTITUDE_OF_VERSION_1 = bytes.fromhex(
 LOCAL_POSITION = bytes.fromhex(
     "fd1800000407012000006ce201000000803f00000040004096c300004841000050c00fba")  # the last zeros are left out
 OTHERS = {
-    "VFR_HUD": (bytes.fromhex("fd1300000507014a000000008c410000a04100000044000000005a003768b6"), "airspeed", 17.5),
+    "VFR_HUD": (bytes.fromhex("fd1300000507014a000000008c410000a04100000044000000005a003768b6"),
+                {"airspeed": 17.5, "alt": 512.0}),
     "TERRAIN_REPORT": (bytes.fromhex("fd1500000607018800007b358216d395cd160000164400209b436400000054823c"),
-                       "current_height", 310.25),
+                       {"current_height": 310.25}),
     "ALTITUDE": (bytes.fromhex("fd2000000707018d000015cd5b07000000000000803f0000004000004040000080400000a04000c08f43"
-                               "759e"), "bottom_clearance", 287.5),
+                               "759e"), {"bottom_clearance": 287.5, "altitude_amsl": 2.0}),
 }
 
 
@@ -55,9 +56,10 @@ class Packets(unittest.TestCase):
         (message,) = messages(LOCAL_POSITION)
         self.assertEqual(message.fields, {"time_boot_ms": 123500, "x": 1.0, "y": 2.0, "z": -300.5, "vx": 12.5,
                                           "vy": -3.25, "vz": 0.0})
-        for name, (data, field, value) in OTHERS.items():
+        for name, (data, fields) in OTHERS.items():
             (message,) = messages(data)
-            self.assertEqual((message.name, message.fields[field]), (name, value))
+            self.assertEqual(message.name, name)
+            self.assertEqual({field: message.fields[field] for field in fields}, fields)
 
     def test_are_found_among_others_and_rubbish(self):
         unknown = b"\xfd\x04\x00\x00\x00\x07\x01\x00\x00\x00" + bytes(6)
@@ -134,6 +136,7 @@ class Program(unittest.TestCase):
     def tell(self, boot_ms, system=7):
         self.link.sendto(packet("ATTITUDE", boot_ms, 0.02, -0.01, 1.0, system=system) +
                          packet("LOCAL_POSITION_NED", boot_ms, 0, 0, -120.0, 10.0, 5.0, 0.0, system=system) +
+                         packet("VFR_HUD", 11.0, 11.0, 640.5, system=system) +
                          packet("ATTITUDE", boot_ms + 50, 1.0, 1.0, 2.0, system=system, component=154),
                          ("127.0.0.1", self.port))
 
@@ -153,7 +156,7 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0), places=2)
         self.assertAlmostEqual(step["roll_deg"], math.degrees(0.02), places=2)
         self.assertAlmostEqual(step["pitch_deg"], math.degrees(-0.01), places=2)
-        self.assertEqual(step["agl_m"], 120.0)
+        self.assertEqual((step["agl_m"], step["alt_m"]), (120.0, 640.5))
 
     def test_ends_quietly_when_nobody_reads_its_steps(self):
         self.tell(1000)

@@ -173,6 +173,7 @@ class LinesOfPictures(unittest.TestCase):
             self.lines.add("1.jpg", self.clock.monotonic(self.time.now + self.time.ahead_s - 0.05))
             steps += self.printed()[0]
         self.assertEqual(len(steps), 4)
+        self.assertNotIn("alt_m", steps[0], "the autopilot told no height above the sea")
         for before, now in zip(steps, steps[1:]):
             self.assertAlmostEqual(now["north_m"] - before["north_m"], 20.0, places=2)
             self.assertGreater(now["time_us"], before["time_us"])

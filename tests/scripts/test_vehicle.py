@@ -30,6 +30,14 @@ def rotation(roll, pitch, yaw):
     return product(about(2, yaw), about(1, pitch), about(0, roll))
 
 
+def hud(airspeed, alt=0.0):
+    return {"airspeed": airspeed, "alt": alt}
+
+
+def altitude(above_ground_m, above_sea_m=0.0):
+    return {"bottom_clearance": above_ground_m, "altitude_amsl": above_sea_m}
+
+
 class Camera(unittest.TestCase):
     def test_that_is_turned_in_the_airframe_has_the_attitude_of_both_rotations(self):
         draw = random.Random(3)
@@ -68,7 +76,7 @@ class Flights(unittest.TestCase):
         vehicle = Vehicle(by_air=True)
         for i in range(11):
             vehicle.hear("ATTITUDE", {"time_boot_ms": 100 * i, "roll": 0, "pitch": 0, "yaw": 0.5 * math.pi}, 5.0 + 0.1 * i)
-            vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 5.0 + 0.1 * i)
+            vehicle.hear("VFR_HUD", hud(20.0), 5.0 + 0.1 * i)
             vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 100 * i, "z": -9, "vx": 3.0, "vy": 0.0}, 5.0 + 0.1 * i)
         (north, east), _ = vehicle.seen_at(6.0)
         self.assertAlmostEqual(north, 0.0, places=6)
@@ -81,7 +89,7 @@ class Flights(unittest.TestCase):
         vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 0, "z": -80.0, "vx": 0.0, "vy": 0.0}, 1.0)
         self.assertEqual(vehicle.agl_m(), 92.0)
         vehicle.hear("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 1.0)
-        vehicle.hear("ALTITUDE", {"bottom_clearance": math.nan}, 1.0)
+        vehicle.hear("ALTITUDE", altitude(math.nan), 1.0)
         self.assertEqual(vehicle.agl_m(), 92.0, "neither knows the ground")
         vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
         with said() as words:
@@ -95,22 +103,22 @@ class Flights(unittest.TestCase):
     def test_are_no_longer_as_high_above_ground_as_was_told_seconds_ago(self):
         vehicle = Vehicle(takeoff_agl_m=12.0)
         with said() as words:
-            vehicle.hear("ALTITUDE", {"bottom_clearance": 35.0}, 1.0)
+            vehicle.hear("ALTITUDE", altitude(35.0), 1.0)
             for came in (1.5, 2.0, 3.0, 4.0, 5.0):
                 self.climb(vehicle, 50.0 * came, came)
                 self.assertEqual(vehicle.agl_m(), 35.0 if came < 3.5 else 50.0 * came + 12.0)
             self.assertEqual(words.getvalue().count("not known any more"), 1)
-            vehicle.hear("ALTITUDE", {"bottom_clearance": 36.0}, 5.0)
+            vehicle.hear("ALTITUDE", altitude(36.0), 5.0)
             self.assertEqual((vehicle.agl_m(), vehicle.agl_m()), (36.0, 36.0))
             self.assertEqual(words.getvalue().count("known now"), 1)
 
     def test_are_no_longer_above_ground_that_the_autopilot_lost(self):
         for name, fields, height_m in (
-                ("ALTITUDE", {"bottom_clearance": math.nan}, 80.0), ("ALTITUDE", {"bottom_clearance": -1.0}, 80.0),
-                ("ALTITUDE", {"bottom_clearance": math.inf}, 80.0),
+                ("ALTITUDE", altitude(math.nan), 80.0), ("ALTITUDE", altitude(-1.0), 80.0),
+                ("ALTITUDE", altitude(math.inf), 80.0),
                 ("TERRAIN_REPORT", {"spacing": 0, "current_height": 300.0}, 80.0),
                 ("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 70.0),  # of another place, asked for
-                ("ALTITUDE", {"bottom_clearance": 60.0, "altitude_terrain": math.nan}, 60.0)):
+                ("ALTITUDE", altitude(60.0), 60.0)):
             vehicle = Vehicle()
             self.climb(vehicle, 80.0, 1.0)
             vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
@@ -125,9 +133,24 @@ class Flights(unittest.TestCase):
     def test_have_no_height_that_was_heard_long_ago(self):
         vehicle = Vehicle(by_air=True)
         self.climb(vehicle, 80.0, 1.0)
-        vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 9.0)
+        vehicle.hear("VFR_HUD", hud(20.0), 9.0)
         with self.assertRaisesRegex(Unknown, "no height"):
             vehicle.agl_m()
+
+    def test_are_as_high_above_the_sea_as_the_better_message_told_last(self):
+        vehicle = Vehicle()
+        self.assertIsNone(vehicle.alt_m())
+        for came, name, fields, alt_m in (
+                (1.0, "VFR_HUD", hud(20.0, 512.0), 512.0),
+                (1.5, "ALTITUDE", altitude(80.0, 519.0), 519.0),
+                (2.0, "VFR_HUD", hud(20.0, 530.0), 519.0),
+                (3.5, "ALTITUDE", altitude(80.0, math.nan), 530.0),
+                (4.0, "VFR_HUD", hud(20.0, 1e9), None),
+                (5.0, "VFR_HUD", hud(20.0, 540.0), 540.0)):
+            vehicle.hear(name, fields, came)
+            self.assertEqual(vehicle.alt_m(), alt_m, (name, fields))
+        self.climb(vehicle, 80.0, 8.0)
+        self.assertIsNone(vehicle.alt_m(), "heard long ago")
 
     def test_are_unknown_where_nothing_was_heard(self):
         vehicle = Vehicle()
@@ -154,9 +177,9 @@ class Flights(unittest.TestCase):
         vehicle = Vehicle(by_air=True)
         vehicle.hear("ATTITUDE", {"time_boot_ms": 0, "roll": 0, "pitch": 0, "yaw": 0}, 5.0)
         for i in range(100):
-            vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 5.0 + 0.1 * i)
+            vehicle.hear("VFR_HUD", hud(20.0), 5.0 + 0.1 * i)
         vehicle.hear("ATTITUDE", {"time_boot_ms": 10_000, "roll": 0, "pitch": 0, "yaw": 0}, 15.0)
-        vehicle.hear("VFR_HUD", {"airspeed": 20.0}, 15.0)
+        vehicle.hear("VFR_HUD", hud(20.0), 15.0)
         self.assertEqual(vehicle.holes_before(15.0), 1)
 
 

@@ -10,6 +10,7 @@ of JSON in for each step, a line with the answer out.
   then begins anew around the last place that was known.
 - image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.
 - time_us: when the frame was captured, increasing. Without it: now.
+- covariance: of the movement from the line before, as a step has it; those of lines that are not sent are added.
 - All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m ...
 """
 import argparse
@@ -23,7 +24,7 @@ import time
 from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from service import Refused, Service, Silent
 from state import FORGOTTEN_S
-from steps import NewestLine, all_lines, read_step
+from steps import NewestLine, all_lines, place_and_covariance, read_step
 from track import Track
 
 
@@ -95,10 +96,19 @@ def fly(lines, options):
     track = Track(service, {"map": options.map, **dict(options.track)}, options.state,
                   lambda track_id: print(f"a track begins: {service.page_of(track_id)}", file=sys.stderr, flush=True))
     folder = pathlib.Path(options.steps or ".").parent
+    frame_fields = dict(options.frame)
     all_taken = True
     for line in NewestLine(lines) if options.live else all_lines(lines):
+        for passed in line.passed:
+            track.pass_by(*place_and_covariance(passed, frame_fields))
         try:
-            step = read_step(line, folder, dict(options.frame))
+            step = read_step(line, folder, frame_fields)
+        except (ValueError, OSError) as error:
+            track.pass_by(*place_and_covariance(line, frame_fields))
+            print(f"line {line.number}: {error}", file=sys.stderr)
+            all_taken = False
+            continue
+        try:
             if sender:
                 sender.expect(step.fields)
             send = functools.partial(sender.send, captured(line, step)) if sender else None

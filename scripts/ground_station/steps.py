@@ -6,16 +6,19 @@ import threading
 import time
 from typing import NamedTuple, Optional
 
+PLACE = ("north_m", "east_m", "yaw_deg")
 CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
 PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m", "roll_deg", "pitch_deg",
                                   "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m")
 
 
 class Line(NamedTuple):
-    """A line and when it came, by time.monotonic(). `step` is what it says, None where it is no JSON object."""
+    """A line and when it came, by time.monotonic(). `step` is what it says, None where it is no JSON object; `passed`
+    are those since the last one that are not sent."""
     number: int
     came: float
     step: Optional[dict]
+    passed: tuple = ()
 
     @property
     def has_picture(self):
@@ -43,7 +46,8 @@ class NewestLine:
 
     def __init__(self, texts):
         self._changed = threading.Condition()
-        self._waiting = None
+        self._lines = []      # since the last
+        self._newest = None   # of them
         self._ended = False
         threading.Thread(target=self._read, args=(texts,), daemon=True).start()
 
@@ -52,19 +56,22 @@ class NewestLine:
 
     def __next__(self):
         with self._changed:
-            while not self._changed.wait_for(lambda: self._waiting or self._ended, timeout=1.0):
+            while not self._changed.wait_for(lambda: self._newest is not None or self._ended, timeout=1.0):
                 pass  # without a limit Ctrl-C would not be heard everywhere
-            line, self._waiting = self._waiting, None
-        if line is None:
-            raise StopIteration
-        return line
+            if self._newest is None:
+                raise StopIteration
+            *passed, line = self._lines[:self._newest + 1]
+            del self._lines[:self._newest + 1]
+            self._newest = None
+        return line._replace(passed=tuple(passed))
 
     def _read(self, texts):
         try:
             for line in all_lines(texts):
                 with self._changed:
-                    if not (self._waiting and self._waiting.has_picture and not line.has_picture):
-                        self._waiting = line
+                    self._lines.append(line)
+                    if self._newest is None or line.has_picture or not self._lines[self._newest].has_picture:
+                        self._newest = len(self._lines) - 1
                     self._changed.notify()
         finally:
             with self._changed:
@@ -79,9 +86,28 @@ class Step(NamedTuple):
     image: Optional[bytes]
 
 
-def _is_number(value):
+def is_number(value):
     """A finite one: the place of a step with another would make all movements after it unknown."""
     return isinstance(value, (int, float)) and abs(value) <= sys.float_info.max
+
+
+def _place(step):
+    """Throws ValueError."""
+    try:
+        place = tuple(step[name] for name in PLACE)
+    except KeyError as missing:
+        raise ValueError(f"a step needs {missing.args[0]}") from None
+    if not all(map(is_number, place)):
+        raise ValueError("north_m, east_m and yaw_deg are numbers")
+    return place
+
+
+def place_and_covariance(line, frame_fields):
+    """Of a line that is not sent, each None where it does not tell."""
+    try:
+        return _place(line.step or {}), {**frame_fields, **line.step}.get("covariance")
+    except ValueError:
+        return None, None
 
 
 def read_step(line, folder, frame_fields):
@@ -89,17 +115,12 @@ def read_step(line, folder, frame_fields):
     OSError."""
     if line.step is None:
         raise ValueError("a step is a JSON object, in one line")
-    step = dict(line.step)
-    try:
-        place = tuple(step.pop(name) for name in ("north_m", "east_m", "yaw_deg"))
-    except KeyError as missing:
-        raise ValueError(f"a step needs {missing.args[0]}") from None
-    if not all(map(_is_number, place)):
-        raise ValueError("north_m, east_m and yaw_deg are numbers")
+    place = _place(line.step)
+    step = {name: value for name, value in line.step.items() if name not in PLACE}
     origin = step.pop("origin", None)
     file = step.pop("image", None)
     fields = {"time_us": time.time_ns() // 1000, **frame_fields, **step}
-    if not _is_number(fields["time_us"]):
+    if not is_number(fields["time_us"]):
         raise ValueError("time_us is a number")
     if file is None:
         fields = {name: value for name, value in fields.items() if name not in PICTURE_FIELDS}

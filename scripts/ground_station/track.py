@@ -6,6 +6,7 @@ import urllib.parse
 
 from service import Refused, Silent
 from state import StateFile
+from travel import Travel, movement
 
 #: The last two: another client flew it, or the state file could not be written and is older than the track.
 TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced", "step-differs", "step-late")
@@ -15,15 +16,6 @@ SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
 KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
 FASTEST_M_S = 50.0
 WIDEST_M = 10_000.0  # beyond it the last place says too little to begin a track around it
-
-
-def movement(before, now):
-    """Forward, right (metres, in the body frame of `before`) and turn (degrees, clockwise) between two places
-    (north_m, east_m, yaw_deg), as a step has them."""
-    north_m, east_m, yaw = now[0] - before[0], now[1] - before[1], math.radians(before[2])
-    return {"forward_m": north_m * math.cos(yaw) + east_m * math.sin(yaw),
-            "right_m": east_m * math.cos(yaw) - north_m * math.sin(yaw),
-            "turn_deg": (now[2] - before[2] + 180.0) % 360.0 - 180.0}
 
 
 def farther(known, moved):
@@ -53,6 +45,8 @@ class Track:
         self._file = StateFile(state_file, request["map"])
         self._state = self._file.read()
         self._file.write(self._state)  # one that cannot be written is told of before the flight
+        self._travel = Travel()
+        self._asked_places = 0  # of it that the step without an answer spans
 
     @property
     def id(self):
@@ -60,8 +54,10 @@ class Track:
 
     def step(self, place, fields, image=None, origin=None, packet_format=None, send=None):
         """The answer to a step. `place`: (north_m, east_m, yaw_deg); where `origin` is another one than before, places
-        are too, and the movement between is not known. `fields`: time_us and other fields of a step; `send` is called
-        with the message for the autopilot in `packet_format`, if there is one."""
+        are too, and the movement between is not known. `fields`: time_us and other fields of a step, `covariance` that
+        of the movement since the last call of this or of pass_by(); `send` is called with the message for the autopilot
+        in `packet_format`, if there is one."""
+        self._travel.add(tuple(place), fields.get("covariance"))
         if not self.id:
             self._begin(origin)
         elif origin != self._state["origin"]:
@@ -77,6 +73,10 @@ class Track:
         if code != "step-differs" or not self._settle():
             self._begin_near_the_last_place(origin)
         return self._step(place, fields, image, packet_format, send)
+
+    def pass_by(self, place, covariance):
+        """A place that no step is made of, and the covariance of the movement to it. None where it is not known."""
+        self._travel.add(place, covariance)
 
     def _is_over(self, refusal, fields):
         """Whether the track takes no step like that any more. The same map may have another version, the service may
@@ -135,13 +135,16 @@ class Track:
     def _step(self, place, fields, image, packet_format, send):
         before = self._state
         moved = self._moved_to(place)
-        if not moved:  # the first step of a track has no movement that it could be the covariance of
-            fields = {name: value for name, value in fields.items() if name != "covariance"}
+        covariance = self._travel.covariance() if moved else None  # the first step of a track has no movement
+        fields = {name: value for name, value in fields.items() if name != "covariance"}
+        if covariance is not None:
+            fields["covariance"] = covariance
         numbered = {**fields, "sequence": before["sequence"] + 1, **moved}
         asked = {"sequence": numbered["sequence"], "time_us": fields["time_us"], "place": list(place),
                  "known": farther(before["known"], moved), "taken_s": time.time()}
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
         self._keep({**before, "asked": asked})
+        asked_before, self._asked_places = self._asked_places, len(self._travel)
         try:
             if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
                 packet = self._post({**numbered, "format": packet_format}, image)
@@ -149,6 +152,7 @@ class Track:
                     send(packet)
             answer = json.loads(self._post({**numbered, "format": "json"}, image))
         except Refused:
+            self._asked_places = asked_before
             self._keep(before)
             raise
         self._moved_on(asked, answer)
@@ -156,6 +160,8 @@ class Track:
 
     def _moved_on(self, asked, answer):
         """With a step that the service has taken."""
+        self._travel.taken(self._asked_places)
+        self._asked_places = 0
         state = {**self._state, **asked}
         del state["asked"]
         if answer["status"] == "converged":

@@ -89,13 +89,14 @@ class Lines(unittest.TestCase):
                 feed.write(text + "\n")
             feed.flush()
             until = time.monotonic() + 10.0
-            while (lines._waiting is None or lines._waiting.number < 2) and time.monotonic() < until:
+            while len(lines._lines) < 4 and time.monotonic() < until:
                 time.sleep(0.01)
-            time.sleep(0.2)  # for the two that must not displace it
-            self.assertEqual(next(lines).number, 2)
+            line = next(lines)
+            self.assertEqual((line.number, [passed.number for passed in line.passed]), (2, [1]))
             feed.write("{}\n")
             feed.close()
-            self.assertEqual([line.number for line in lines], [5])
+            (line,) = lines
+            self.assertEqual((line.number, [passed.number for passed in line.passed]), (5, [3, 4]))
 
     def test_that_wait_when_the_input_ends_are_still_given(self):
         self.assertEqual([line.number for line in NewestLine(io.StringIO("\n{}\n"))], [2])
@@ -173,6 +174,26 @@ class Positions(unittest.TestCase):
 
 
 class Program(unittest.TestCase):
+    def test_sends_the_covariance_of_all_lines_that_a_movement_spans(self):
+        told = [1.0, 0, 0, 0, 1.0, 0, 0, 0, 0]
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
+            Path(folder, "3.jpg").write_bytes(b"\xff\xd8")
+            place = {"east_m": 0, "yaw_deg": 0, "covariance": told}
+            pictures = ({}, {}, {"image": "missing.jpg"}, {"image": f"{folder}/3.jpg"})
+            lines = [json.dumps({"north_m": 10 * i, "time_us": i, **place, **more}) for i, more in enumerate(pictures)]
+            program = subprocess.Popen(
+                [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--live"],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            program.stdin.write(lines[0] + "\n")
+            program.stdin.flush()
+            program.stdout.readline()
+            program.communicate("\n".join(lines[1:]) + "\n", timeout=60)
+            sent = fake.steps()[1:]
+        self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
+        for step in sent:  # one or two, by how fast the lines were read
+            variance = float(str(step["covariance"]).strip("[").split(",")[0])
+            self.assertEqual(variance, float(step["forward_m"]) / 10.0)
+
     def test_goes_on_after_lines_that_are_no_text(self):
         good = b'{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
         lines = good + b'{"note": "\xfc"}\n' + b"[" * 100_000 + b"\n" + good

@@ -1,10 +1,7 @@
 #!/usr/bin/python3
-"""A flight that the ground station's client follows: movements against rotations, and a service that is busy, hangs up,
-or forgets."""
+"""A flight that the ground station's client follows, with a service that is busy, hangs up, or forgets."""
 import json
-import math
 import os
-import random
 import tempfile
 import time
 import unittest
@@ -14,24 +11,7 @@ from fake_service import CONVERGED, FakeService
 from words import said
 
 from service import Refused, Service, Silent
-from track import Track, movement
-
-
-class Movement(unittest.TestCase):
-    def test_takes_the_vehicle_from_the_first_place_to_the_second(self):
-        draw = random.Random(1)
-        for _ in range(200):
-            before, now = ([draw.uniform(-500, 500), draw.uniform(-500, 500), draw.uniform(-720, 720)] for _ in range(2))
-            moved = movement(before, now)
-            ahead = complex(math.cos(math.radians(before[2])), math.sin(math.radians(before[2])))  # north + i east
-            flown = ahead * complex(moved["forward_m"], moved["right_m"])
-            self.assertAlmostEqual(before[0] + flown.real, now[0], places=6)
-            self.assertAlmostEqual(before[1] + flown.imag, now[1], places=6)
-            self.assertLessEqual(abs(moved["turn_deg"]), 180.0)
-            self.assertAlmostEqual(math.cos(math.radians(before[2] + moved["turn_deg"] - now[2])), 1.0, places=9)
-
-    def test_turns_the_short_way_round(self):
-        self.assertAlmostEqual(movement((0, 0, 350.0), (0, 0, 10.0))["turn_deg"], 20.0)
+from track import Track
 
 
 class Steps(unittest.TestCase):
@@ -148,6 +128,46 @@ class Steps(unittest.TestCase):
             for i in (1, 2):
                 track.step((10.0 * i, 0.0, 0.0), {"time_us": i, "covariance": [1.0] * 9})
             self.assertEqual(["covariance" in step for step in fake.steps()], [False, True])
+
+    def test_have_the_covariance_of_all_that_their_movement_spans(self):
+        def errors(turn_rad2):
+            return [1.0, 0, 0, 0, 2.0, 0, 0, 0, turn_rad2]
+
+        for fates, sequence, right_m2 in (([(422, {"code": "image-damaged"})], 2, 2.0 + 2.0 + 15.0**2 * 0.01),
+                                          (["hang up"] * 100, 2, 2.0 + 2.0 + 15.0**2 * 0.01),
+                                          (["lose"] * 100, 3, 2.0)):
+            with FakeService([200, *fates]) as fake:
+                track, _ = self.fly(fake, 1, patience_s=0.2)
+                with self.assertRaises((Refused, Silent)):
+                    track.step((10.0, 0.0, 0.0), {"time_us": 2, "covariance": errors(0.01)})
+                fake.script.clear()
+                track.step((25.0, 0.0, 0.0), {"time_us": 3, "covariance": errors(0.02)})
+                self.assertEqual(fake.steps()[-1]["sequence"], sequence)
+                self.assertAlmostEqual(fake.steps()[-1]["covariance"][4], right_m2)
+                track.step((30.0, 0.0, 0.0), {"time_us": 4, "covariance": errors(0.03)})
+                self.assertEqual(fake.steps()[-1]["covariance"], errors(0.03), "of this movement alone")
+
+    def test_say_nothing_of_a_covariance_where_that_of_a_part_is_not_known(self):
+        with FakeService([200]) as fake, tempfile.TemporaryDirectory() as folder:
+            state = Path(folder, "state.json")
+            track, _ = self.fly(fake, 1, state_file=state)
+            track.pass_by((10.0, 0.0, 0.0), None)
+            track.step((25.0, 0.0, 0.0), {"time_us": 2, "covariance": [1.0] * 9})
+            self.assertNotIn("covariance", fake.steps()[-1])
+            again = Track(track._service, {"map": "m"}, state)
+            again.step((30.0, 0.0, 0.0), {"time_us": 3, "covariance": [1.0] * 9})
+            self.assertNotIn("covariance", fake.steps()[-1], "lines may have been lost before the restart")
+            again.step((35.0, 0.0, 0.0), {"time_us": 4, "covariance": [1.0] * 9})
+            self.assertEqual(fake.steps()[-1]["covariance"], [1.0] * 9)
+
+    def test_come_after_one_that_was_taken_late_with_the_covariance_since_it(self):
+        with FakeService([200] + ["hang up"] * 100) as fake:
+            track, _ = self.fly(fake, 1, patience_s=0.2)
+            with self.assertRaises(Silent):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2, "covariance": [1.0] * 9})
+            fake.script = ["still at it"]
+            track.step((25.0, 0.0, 0.0), {"time_us": 3, "covariance": [2.0] * 9})
+            self.assertEqual(fake.steps()[-1]["covariance"], [2.0] * 9)
 
     def test_begin_a_new_track_around_the_last_known_place_where_the_origin_is_another(self):
         with FakeService([CONVERGED]) as fake:

@@ -11,7 +11,8 @@ of JSON in for each step, a line with the answer out.
 - image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.
 - time_us: when the frame was captured, increasing. Without it: now.
 - covariance: of the movement from the line before, as a step has it; those of lines that are not sent are added.
-- All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m ...
+- All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m,
+  camera_yaw_deg ...
 """
 import argparse
 import functools

@@ -49,6 +49,7 @@ class Lines:
         (north_m, east_m), attitude = self._vehicle.seen_at(captured)
         if self._options.camera == "level":
             attitude = (0.0, 0.0, attitude[2])
+        heading = attitude[2]
         roll, pitch, yaw = turned(attitude, math.radians(self._options.camera_yaw))
         agl_m = self._options.agl if self._options.agl is not None else self._vehicle.agl_m()
         if agl_m <= 0.0:
@@ -59,7 +60,8 @@ class Lines:
         step = {"time_us": time_us, "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
                 "north_m": round(north_m, 3), "east_m": round(east_m, 3),
                 "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
-                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2), "image": str(path)}
+                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2),
+                "camera_yaw_deg": round(math.degrees(math.remainder(yaw - heading, math.tau)), 3), "image": str(path)}
         alt_m = self._vehicle.alt_m()
         return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}
 

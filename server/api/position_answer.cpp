@@ -18,12 +18,14 @@ constexpr std::array<Media, 6> kFormats{{{"json", "application/json"},
                                          {"mavproxy", "application/x-mavproxy-gps-input+json"},
                                          {"nmea", "application/x-nmea-0183"}}};
 
-std::optional<autopilot::Position> position_of(const nlohmann::json& answer) {
+/// Answers have the heading of the frame, autopilots want that of the vehicle.
+std::optional<autopilot::Position> position_of(const nlohmann::json& answer, Angle camera_yaw) {
   if (!answer.contains("pose")) return std::nullopt;
   const nlohmann::json& pose = answer.at("pose");
   const std::array<double, 2> sigma_m = answer.at("sigma_m");
-  return autopilot::Position{
-      {pose.at("lat"), pose.at("lon")}, Angle::degrees(pose.at("heading_deg")), std::max(sigma_m[0], sigma_m[1])};
+  return autopilot::Position{{pose.at("lat"), pose.at("lon")},
+                             Angle::degrees(pose.at("heading_deg")) - camera_yaw,
+                             std::max(sigma_m[0], sigma_m[1])};
 }
 
 /// nullopt where there is nothing to be said.
@@ -38,13 +40,18 @@ std::optional<std::string> encoded(const autopilot::PositionReport& report, cons
 }  // namespace
 
 const std::vector<std::string>& position_fields() {
-  static const std::vector<std::string> kFields{"format", "alt_m", "satellites", "system", "component"};
+  static const std::vector<std::string> kFields{"format",     "alt_m",  "camera_yaw_deg",
+                                                "satellites", "system", "component"};
   return kFields;
 }
 
 PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
   const Media& media = media_asked_for(request, fields, kFormats);
-  PositionFormat format{media.name, media.type, fields.optional_number("alt_m", {-1000.0, 50'000.0}), 0, {}};
+  PositionFormat format;
+  format.name = media.name;
+  format.type = media.type;
+  format.altitude_msl_m = fields.optional_number("alt_m", {-1000.0, 50'000.0});
+  format.camera_yaw = Angle::degrees(fields.optional_number("camera_yaw_deg", kDegrees).value_or(0.0));
   format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
   format.sender.system = static_cast<std::uint8_t>(fields.optional_integer("system", 1, 255).value_or(1));
   if (const auto component = fields.optional_integer("component", 1, 255)) {
@@ -54,7 +61,8 @@ PositionFormat parse_position_format(const http::Request& request, const Fields&
 }
 
 http::Response position_response(const nlohmann::json& answer, const PositionFormat& format, const PositionTime& time) {
-  const autopilot::PositionReport report{position_of(answer), format.altitude_msl_m, time.captured_us, time.processing};
+  const autopilot::PositionReport report{position_of(answer, format.camera_yaw), format.altitude_msl_m,
+                                         time.captured_us, time.processing};
   http::Response response{204, {}, {}};
   if (auto message = encoded(report, format)) response = {200, std::string(format.type), std::move(*message)};
   response.headers.emplace_back("Roadfix-Status", answer.at("status"));

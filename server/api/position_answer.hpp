@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/units/angle.hpp"
 #include "server/api/fields.hpp"
 #include "server/autopilot/mavlink_frame.hpp"
 #include "server/http/message.hpp"
@@ -22,6 +23,7 @@ struct PositionFormat {
   std::string_view name;  ///< as in format=
   std::string_view type;  ///< "application/json", ...
   std::optional<double> altitude_msl_m;
+  Angle camera_yaw;  ///< where the frame's upper edge points, clockwise from the vehicle's nose
   int satellites = 0;
   autopilot::MavlinkSender sender;
 

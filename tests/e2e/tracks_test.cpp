@@ -250,6 +250,10 @@ TEST_F(Tracks, AnswerInTheWordsOfAutopilots) {
   EXPECT_NEAR(1e-7 * input["lon"].get<double>(), pose["lon"].get<double>(), 1e-7);
   EXPECT_EQ(input["fix_type"], 3);
   EXPECT_EQ(input["time_usec"], 8'000'000);
+  const double heading_deg = pose["heading_deg"];
+  EXPECT_NEAR(input["yaw"].get<double>(), 100.0 * heading_deg, 1.0);
+  const json turned = testing::json_of(as(7, "&format=mavproxy&camera_yaw_deg=" + std::to_string(heading_deg - 20.0)));
+  EXPECT_NEAR(turned["yaw"].get<double>(), 2000.0, 1.0) << "the vehicle's: the camera is turned in it by the rest";
   const std::string packet = as(7, "&format=gps_input&system=7")->body;
   EXPECT_EQ(packet.substr(0, 1), "\xfd");
   EXPECT_EQ(packet.substr(4, 3), std::string("\x07\x07\xc5")) << "sequence, system, component";

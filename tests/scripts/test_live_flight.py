@@ -80,7 +80,8 @@ class Ground:
 
 
 class Flight(threading.Thread):
-    """Round a circle about the middle of the town, until it is told to end. `truth`: time in microseconds to place."""
+    """Round a circle about the middle of the town, until it is told to end. `truth`: time in microseconds to north,
+    east and yaw."""
 
     def __init__(self, ground, folder, port, camera_yaw):
         super().__init__(daemon=True)
@@ -119,7 +120,7 @@ class Flight(threading.Thread):
         part = str(self._folder / f"{number}.part")
         gdal.GetDriverByName("JPEG").CreateCopy(part, memory, options=["QUALITY=90"])
         os.utime(part, (began + seconds, began + seconds))
-        self.truth[round((began + seconds) * 1e6)] = (north, east)
+        self.truth[round((began + seconds) * 1e6)] = (north, east, yaw)
         os.rename(part, self._folder / f"{number}.jpg")
 
 
@@ -172,8 +173,9 @@ class LiveFlight(unittest.TestCase):
             position = json.loads(autopilot.recv(2048))
             if answer["status"] == "converged":
                 captured = min(flight.truth, key=lambda time_us: abs(time_us - answer["time_us"]))
-                positions.append(position)
-                errors.append(math.dist(self.ground.plane(answer["pose"]), flight.truth[captured]))
+                north, east, yaw = flight.truth[captured]
+                errors.append(math.dist(self.ground.plane(answer["pose"]), (north, east)))
+                positions.append({**position, "true_yaw_deg": math.degrees(yaw)})
         flight.over.set()
         flight.join()
         return errors, positions
@@ -185,6 +187,7 @@ class LiveFlight(unittest.TestCase):
         for position in positions:
             self.assertEqual((position["fix_type"], position["satellites_visible"]), (3, 10), "for ArduPilot")
             self.assertAlmostEqual(position["alt"], ALT_M, delta=0.1)
+            self.assertLess(abs(math.remainder(0.01 * position["yaw"] - position["true_yaw_deg"], 360.0)), 3.0)
 
     def test_is_located_to_metres_in_a_banked_turn(self):
         self.check(camera_yaw=0)

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import math
 import os
 import sys
 import tempfile
@@ -126,15 +127,16 @@ class LinesOfPictures(unittest.TestCase):
         self.addCleanup(self.time.__exit__)
         self.vehicle = Vehicle()
         self.clock = WallClock()
-        options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
-        self.lines = Lines(self.vehicle, self.clock, options)
+        self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
+        self.lines = Lines(self.vehicle, self.clock, self.options)
 
-    def fly(self, seconds, heard=True):
+    def fly(self, seconds, heard=True, roll=0.0, yaw=0.0):
         for _ in range(round(10 * seconds)):
             self.time.now += 0.1
             if heard:
                 boot_ms = round(1e3 * self.time.now)
-                self.vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, self.time.now)
+                self.vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": roll, "pitch": 0.1, "yaw": yaw},
+                                  self.time.now)
                 self.vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": -9, "vx": 10, "vy": 0},
                                   self.time.now)
 
@@ -178,6 +180,17 @@ class LinesOfPictures(unittest.TestCase):
             self.assertAlmostEqual(now["north_m"] - before["north_m"], 20.0, places=2)
             self.assertGreater(now["time_us"], before["time_us"])
             self.assertEqual(now["origin"], before["origin"])
+
+    def test_tell_the_heading_of_the_vehicle_from_that_of_its_camera(self):
+        for camera, camera_yaw in (("level", 0.0), ("level", 90.0), ("body", 0.0), ("body", -90.0), ("body", 200.0)):
+            self.options.camera, self.options.camera_yaw = camera, camera_yaw
+            self.fly(3.0, roll=0.2, yaw=3.0)
+            self.lines.add("1.jpg", self.time.now - 0.05)
+            ((step,), _) = self.printed()
+            vehicle_deg = step["yaw_deg"] - step["camera_yaw_deg"]
+            self.assertAlmostEqual(math.remainder(vehicle_deg - math.degrees(3.0), 360.0), 0.0, places=2)
+            self.assertAlmostEqual(math.remainder(step["camera_yaw_deg"] - camera_yaw, 360.0), 0.0,
+                                   delta=0.01 if camera == "level" else 3.0)
 
     def test_are_not_kept_back_by_a_picture_of_the_future(self):
         self.fly(3.0)

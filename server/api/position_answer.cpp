@@ -61,8 +61,11 @@ PositionFormat parse_position_format(const http::Request& request, const Fields&
 }
 
 http::Response position_response(const nlohmann::json& answer, const PositionFormat& format, const PositionTime& time) {
-  const autopilot::PositionReport report{position_of(answer, format.camera_yaw), format.altitude_msl_m,
-                                         time.captured_us, time.processing};
+  autopilot::PositionReport report{std::nullopt, format.altitude_msl_m, time.captured_us, {}};
+  if (time.processing) {
+    report.position = position_of(answer, format.camera_yaw);
+    report.processing = *time.processing;
+  }
   http::Response response{204, {}, {}};
   if (auto message = encoded(report, format)) response = {200, std::string(format.type), std::move(*message)};
   response.headers.emplace_back("Roadfix-Status", answer.at("status"));

@@ -35,7 +35,8 @@ PositionFormat parse_position_format(const http::Request& request, const Fields&
 
 struct PositionTime {
   std::int64_t captured_us = 0;
-  std::chrono::microseconds processing{0};
+  /// Without it there is no position: an old one would be taken for a new one.
+  std::optional<std::chrono::microseconds> processing;
 };
 
 /// `answer` is that of to_json for a fix or an estimate of a track: only where it has a "pose" at its top there is a

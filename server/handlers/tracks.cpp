@@ -86,14 +86,13 @@ struct PostedStep {
   StepInput input;
 };
 
-http::Response step_response(const Service& service, const http::Request& request, const PostedStep& step,
-                             std::string answer) {
+http::Response step_response(const Service& service, const PostedStep& step, std::string answer) {
   if (step.format.is_json()) return {200, "application/json", std::move(answer)};
   api::PositionFormat numbered = step.format;
   numbered.sender.sequence = static_cast<std::uint8_t>(step.input.sequence & 0xff);
   // A step that is sent again is as old as when it came first.
-  const auto processing = std::max(time_spent(request), service.tracks.age_of_last_step(step.track.id));
-  return api::position_response(api::stored_json(answer), numbered, {step.input.time_us, processing});
+  const auto age = service.tracks.age_of_step(step.track.id, step.input.sequence);
+  return api::position_response(api::stored_json(answer), numbered, {step.input.time_us, age});
 }
 
 PostedStep read_step(const Service& service, const http::Request& request) {
@@ -110,7 +109,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   StepInput& input = step.input;
   const std::int64_t digest = digest_of(step.content);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
-    http::Response repeated = step_response(service, request, step, std::move(*answer));
+    http::Response repeated = step_response(service, step, std::move(*answer));
     repeated.headers.emplace_back("Roadfix-Repeated", "true");
     return repeated;
   }
@@ -129,7 +128,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   std::string answer = service.tracks.step(track.id, input, digest, limits, request.received);
   const std::string status = api::stored_json(answer).at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
-  return step_response(service, request, step, std::move(answer));
+  return step_response(service, step, std::move(answer));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first.

@@ -111,7 +111,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, {}};
   store().add(track);
   live_[track.id] = std::move(fresh);
-  heard_[track.id] = {Clock::now(), Clock::now()};
+  heard_[track.id] = {Clock::now()};
   return track;
 }
 
@@ -156,11 +156,14 @@ std::chrono::milliseconds TrackRegistry::idle(const std::string& id) const {
   return std::chrono::floor<std::chrono::milliseconds>(Clock::now() - since);
 }
 
-std::chrono::microseconds TrackRegistry::age_of_last_step(const std::string& id) const {
+std::optional<std::chrono::microseconds> TrackRegistry::age_of_step(const std::string& id,
+                                                                    std::int64_t sequence) const {
   const std::lock_guard lock(mutex_);
   const auto heard = heard_.find(id);
-  const auto since = heard == heard_.end() ? began_ : heard->second.came;
-  return std::chrono::floor<std::chrono::microseconds>(Clock::now() - since);
+  if (heard == heard_.end()) return std::nullopt;
+  const auto step = std::ranges::find(heard->second.steps, sequence, &Arrival::sequence);
+  if (step == heard->second.steps.end()) return std::nullopt;
+  return std::chrono::floor<std::chrono::microseconds>(Clock::now() - step->came);
 }
 
 std::optional<TrackEnd> TrackRegistry::ended(const StoredTrack& track) const {
@@ -282,7 +285,12 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   }
   turn.settle(std::move(result.state));
   const std::lock_guard registry_lock(mutex_);
-  if (live_.contains(id)) heard_[id] = {came, Clock::now()};  // else it has ended since
+  if (live_.contains(id)) {  // else it has ended since
+    Heard& heard = heard_[id];
+    heard.taken = Clock::now();
+    heard.steps.push_back({input.sequence, came});
+    if (heard.steps.size() > kAged) heard.steps.pop_front();
+  }
   ++changes_;
   news_.notify_all();
   return text;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -63,9 +64,10 @@ class TrackRegistry {
   std::chrono::milliseconds silent(const StoredTrack& track) const;
   /// Since its last step, its beginning or the start of the service: a track has TrackLimits::idle from then.
   std::chrono::milliseconds idle(const std::string& id) const;
-  /// Since the last step came, the time that it took included: so old is its answer, and those before it are older. At
-  /// most since the start of the service.
-  std::chrono::microseconds age_of_last_step(const std::string& id) const;
+  /// How old the answer to a step is: since it came first, the time that it took included. Known of the last kAged
+  /// steps that were taken since the start of the service.
+  std::optional<std::chrono::microseconds> age_of_step(const std::string& id, std::int64_t sequence) const;
+  static constexpr std::size_t kAged = 100;
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
   /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").
@@ -109,11 +111,15 @@ class TrackRegistry {
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
   std::condition_variable news_;
   std::map<std::string, std::shared_ptr<LiveTrack>> live_;
-  struct Heard {
+  struct Arrival {
+    std::int64_t sequence = 0;
     Clock::time_point came;
-    Clock::time_point taken;
   };
-  std::map<std::string, Heard> heard_;  ///< last steps or beginnings, of the tracks that were heard since the start
+  struct Heard {
+    Clock::time_point taken;  ///< the last step, or the beginning
+    std::deque<Arrival> steps = {};
+  };
+  std::map<std::string, Heard> heard_;  ///< of the tracks that were heard since the start
   std::uint64_t changes_ = 0;
   std::set<Listener*> listeners_;
   int steps_waiting_ = 0;

@@ -1,26 +1,10 @@
 // Flights followed by a running service: a track for each, and every step sent until it is answered.
 #pragma once
 
-#include <chrono>
-#include <stop_token>
-#include <string>
-
 #include "cli/fly/campaign.hpp"
+#include "cli/fly/service_plan.hpp"
 
 namespace roadfix::fly {
-
-struct ServicePlan {
-  std::string base;  ///< "http://HOST:PORT"
-  std::string map;   ///< its name there
-  int particles = 10'000;
-  int measure_every = 1;
-  VehicleNoise vehicle;
-  /// How long a request that gets no answer, or 503, is sent again and again: long enough for a service that was killed
-  /// to come back.
-  std::chrono::seconds patience{60};
-  bool keeps_tracks = false;  ///< else they are ended after the flight
-  std::stop_token stop;
-};
 
 /// Filters of the service: "default" and "paper". Throws, when used, InvalidInput ("filter-unknown", "service-refused"
 /// with its reason), IoFailure ("service-silent") and Interrupted ("flight-stopped").

@@ -1,0 +1,71 @@
+#include "cli/fly/service_connection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using http::Answer;
+using nlohmann::json;
+
+constexpr std::chrono::seconds kAnswerTime{600};  // a first search of a large map takes its time
+
+/// Worth another try: the service is not there, has too much to do, or cannot write just now.
+bool may_pass(const std::optional<Answer>& answer) {
+  return !answer || answer->status == 502 || answer->status == 503 || answer->status == 504;
+}
+
+std::string reason_of(const std::optional<Answer>& answer) {
+  if (!answer) return "no answer";
+  const json problem = json::parse(answer->body, nullptr, false);
+  if (!problem.is_object()) return std::to_string(answer->status);
+  return fmt::format("{} {}: {}", answer->status, problem.value("code", "?"), problem.value("detail", "?"));
+}
+
+json content_of(const Answer& answer) {
+  if (answer.status >= 400) throw InvalidInput("service-refused", "the service refused: " + reason_of(answer));
+  return answer.body.empty() ? json() : json::parse(answer.body, nullptr, false);
+}
+
+}  // namespace
+
+ServiceConnection::ServiceConnection(const ServicePlan& plan)
+    : client_(plan.base, kAnswerTime), base_(plan.base), patience_(plan.patience), stop_(plan.stop) {}
+
+json ServiceConnection::ask(const Send& send) {
+  const Clock::time_point began = Clock::now();
+  json content = answered(send, began);
+  waited_ += Clock::now() - began;
+  return content;
+}
+
+json ServiceConnection::answered(const Send& send, Clock::time_point began) {
+  constexpr std::chrono::milliseconds kFirstPause{20};
+  constexpr std::chrono::milliseconds kLongestPause{2000};
+  for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+    const std::optional<Answer> answer = send(client_);
+    if (!may_pass(answer)) return content_of(*answer);
+    if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
+    if (Clock::now() + pause > began + patience_) {
+      throw IoFailure("service-silent", fmt::format("the service at {} did not take a request within {} s ({})", base_,
+                                                    patience_.count(), reason_of(answer)));
+    }
+    rest(answer && answer->retry_after ? std::max<std::chrono::milliseconds>(pause, *answer->retry_after) : pause);
+  }
+}
+
+void ServiceConnection::rest(std::chrono::milliseconds pause) const {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any stopped;
+  stopped.wait_for(lock, stop_, pause, [] { return false; });
+}
+
+}  // namespace roadfix::fly

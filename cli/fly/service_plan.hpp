@@ -1,0 +1,25 @@
+// A service that flights are told to, and how.
+#pragma once
+
+#include <chrono>
+#include <stop_token>
+#include <string>
+
+#include "core/locate/tracker.hpp"
+
+namespace roadfix::fly {
+
+struct ServicePlan {
+  std::string base;  ///< "http://HOST:PORT"
+  std::string map;   ///< its name there
+  int particles = 10'000;
+  int measure_every = 1;
+  VehicleNoise vehicle;
+  /// How long a request that gets no answer, or 503, is sent again and again: long enough for a service that was killed
+  /// to come back.
+  std::chrono::seconds patience{60};
+  bool keeps_tracks = false;  ///< else they are ended after the flight
+  std::stop_token stop;
+};
+
+}  // namespace roadfix::fly

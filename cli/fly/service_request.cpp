@@ -1,0 +1,109 @@
+#include "cli/fly/service_request.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/detect/feature_map_codec.hpp"
+#include "core/detect/image_codec.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix::fly {
+namespace {
+
+using nlohmann::json;
+
+/// A picture and the values that describe it.
+struct Picture {
+  json fields = json::object();
+  std::string png;
+};
+
+Picture picture_of(const FeatureMap& features) {
+  const auto png = encode_feature_map(features);
+  return {{{"cell_m", features.cell_m},
+           {"nadir_col", features.nadir.col},
+           {"nadir_row", features.nadir.row},
+           {"nadir_sigma_m", features.nadir_sigma_m}},
+          {png.begin(), png.end()}};
+}
+
+std::string with_commas(const std::vector<double>& numbers) { return fmt::format("{}", fmt::join(numbers, ",")); }
+
+json camera_fields(const FrameCamera& camera) {
+  json fields{{"agl_m", camera.agl_m}};
+  if (camera.roll_sigma != kUntoldAttitudeSigma) fields["roll_deg"] = camera.roll.degrees();
+  if (camera.pitch_sigma != kUntoldAttitudeSigma) fields["pitch_deg"] = camera.pitch.degrees();
+  if (camera.horizontal_fov) fields["fov_deg"] = camera.horizontal_fov->degrees();
+  if (camera.focal_px) fields["focal_px"] = *camera.focal_px;
+  if (camera.principal_px) fields["principal_px"] = with_commas({camera.principal_px->x, camera.principal_px->y});
+  if (camera.lens == LensModel::kFisheye) fields["lens"] = "fisheye";
+  if (!camera.distortion.empty()) fields["distortion"] = with_commas(camera.distortion);
+  return fields;
+}
+
+Picture picture_of(const CameraFrame& frame) {
+  const auto png = encode_frame(frame.image);
+  Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}, {"seed", frame.seed}}, {png.begin(), png.end()}};
+  if (frame.camera) {
+    picture.fields.update(camera_fields(*frame.camera));
+  } else {
+    picture.fields["gsd_m"] = frame.image.gsd_m;
+  }
+  return picture;
+}
+
+json told(const StepInput& step) {
+  json fields{{"sequence", step.sequence}, {"time_us", step.time_us}};
+  if (step.odometry) {
+    fields["forward_m"] = step.odometry->forward_m;
+    fields["right_m"] = step.odometry->right_m;
+    fields["turn_deg"] = step.odometry->turn.degrees();
+  }
+  return fields;
+}
+
+std::string as_query(const json& fields) {
+  std::string query;
+  for (const auto& [name, value] : fields.items()) {
+    query += (query.empty() ? "?" : "&") + name + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return query;
+}
+
+}  // namespace
+
+json track_request(const ServicePlan& plan, const std::string& filter, std::uint64_t seed) {
+  if (filter != "default" && filter != "paper") {
+    throw InvalidInput("filter-unknown",
+                       fmt::format("a service has no filter '{}': take default or paper, or fly without it", filter));
+  }
+  json request{{"map", plan.map},
+               {"filter", filter == "paper" ? "paper" : "adaptive"},
+               {"particles", plan.particles},
+               {"measure_every", plan.measure_every},
+               {"seed", seed},
+               {"odometry_share", plan.vehicle.odometry_share},
+               {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
+               {"wind_walk", plan.vehicle.wind.walk},
+               {"scale_range", plan.vehicle.scale_range}};
+  if (plan.vehicle.planar) {
+    const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
+    request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;
+    request["speed_sigma_m_s"] = plan.vehicle.planar->speed_m_s.sigma;
+    request["turn_rate_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.mean);
+    request["turn_rate_sigma_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.sigma);
+  }
+  return request;
+}
+
+StepRequest step_request(const Report& step) {
+  json fields = told(step);
+  if (!step.saw()) return {"", fields.dump(), "application/json"};
+  Picture picture = step.frame ? picture_of(step.frame()) : picture_of(*step.features);
+  fields.update(picture.fields);
+  return {as_query(fields), std::move(picture.png), "image/png"};
+}
+
+}  // namespace roadfix::fly

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -17,9 +18,12 @@ using nlohmann::json;
 
 constexpr std::chrono::seconds kAnswerTime{600};  // a first search of a large map takes its time
 
-/// Worth another try: the service is not there, has too much to do, or cannot write just now.
+/// Worth another try: the request came too slowly, the service has too much to do or cannot write just now, or a proxy
+/// does not find it (docs/service.md).
+constexpr std::array kMayPass{408, 429, 502, 503, 504};
+
 bool may_pass(const std::optional<Answer>& answer) {
-  return !answer || answer->status == 502 || answer->status == 503 || answer->status == 504;
+  return !answer || std::ranges::find(kMayPass, answer->status) != kMayPass.end();
 }
 
 std::string reason_of(const std::optional<Answer>& answer) {

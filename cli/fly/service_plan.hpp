@@ -15,8 +15,8 @@ struct ServicePlan {
   int particles = 10'000;
   int measure_every = 1;
   VehicleNoise vehicle;
-  /// How long a request that gets no answer, or 503, is sent again and again: long enough for a service that was killed
-  /// to come back.
+  /// How long a request that gets no answer, or one that may pass, is sent again and again: long enough for a service
+  /// that was killed to come back.
   std::chrono::seconds patience{60};
   bool keeps_tracks = false;  ///< else they are ended after the flight
   std::stop_token stop;

@@ -33,8 +33,8 @@ std::string with_commas(const std::vector<double>& numbers) { return fmt::format
 
 json camera_fields(const FrameCamera& camera) {
   json fields{{"agl_m", camera.agl_m}};
-  if (camera.roll_sigma != kUntoldAttitudeSigma) fields["roll_deg"] = camera.roll.degrees();
-  if (camera.pitch_sigma != kUntoldAttitudeSigma) fields["pitch_deg"] = camera.pitch.degrees();
+  if (camera.roll) fields["roll_deg"] = camera.roll->degrees();
+  if (camera.pitch) fields["pitch_deg"] = camera.pitch->degrees();
   if (camera.horizontal_fov) fields["fov_deg"] = camera.horizontal_fov->degrees();
   if (camera.focal_px) fields["focal_px"] = *camera.focal_px;
   if (camera.principal_px) fields["principal_px"] = with_commas({camera.principal_px->x, camera.principal_px->y});

@@ -31,13 +31,11 @@ struct FrameCamera {
   LensModel lens = LensModel::kPerspective;
   std::vector<double> distortion;  ///< with a focal length; coefficients of the model, empty = none
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
-  Angle roll;
-  Angle pitch;
-  Angle roll_sigma = kUntoldAttitudeSigma;  ///< how well it is known, 1 sigma
-  Angle pitch_sigma = kUntoldAttitudeSigma;
+  std::optional<Angle> roll;       ///< nullopt = nobody told it; it is only taken to be zero
+  std::optional<Angle> pitch;
 };
 
-/// What was told of roll and pitch, and with it how well each is known: one that is not told is only taken to be zero.
+/// What was told of roll and pitch.
 void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg);
 
 /// Throws InvalidInput ("frame-camera") that names the field and its range.

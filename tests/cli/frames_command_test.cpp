@@ -65,7 +65,7 @@ TEST_F(FramesCommand, MakesATableThatBenchReads) {
   EXPECT_DOUBLE_EQ(table[0].camera.value().agl_m, 128.0);
   EXPECT_DOUBLE_EQ(table[1].camera.value().agl_m, 130.0);
   EXPECT_DOUBLE_EQ(table[0].camera.value().focal_px.value(), 100.0);
-  EXPECT_DOUBLE_EQ(table[0].camera.value().pitch.degrees(), 3.0);
+  EXPECT_DOUBLE_EQ(table[0].camera.value().pitch.value().degrees(), 3.0);
 }
 
 TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {

@@ -55,14 +55,14 @@ TEST(NadirSigma, IsWhatSmallErrorsOfAttitudeAndHeightMoveTheGroundInViewBy) {
       return 100.0 * std::abs(ground_at(other, middle)->y - ground_at(camera, middle)->y);
     };
     FrameCamera turned = camera;
-    turned.pitch += Angle::degrees(0.01);
+    turned.pitch = Angle::degrees(pitch_deg + 0.01);
     FrameCamera higher = camera;
     higher.agl_m *= 1.0 + 0.01 * kHeightSigma;
     const double told_m = std::hypot(moved_m(turned), moved_m(higher));
-    camera.roll_sigma = camera.pitch_sigma = kToldAttitudeSigma;
-    EXPECT_NEAR(nadir_sigma_m(camera), told_m, 0.002 * told_m) << pitch_deg;
     const double untold_m = std::hypot(5.0 * moved_m(turned), moved_m(higher));
-    camera.roll_sigma = kUntoldAttitudeSigma;
+    camera.roll = Angle();
+    EXPECT_NEAR(nadir_sigma_m(camera), told_m, 0.002 * told_m) << pitch_deg;
+    camera.roll.reset();
     EXPECT_NEAR(nadir_sigma_m(camera), untold_m, 0.002 * untold_m) << pitch_deg;
   }
 }

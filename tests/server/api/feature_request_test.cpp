@@ -133,15 +133,15 @@ TEST(FeatureRequest, TakesTheCameraOfAPhotoFromItsFile) {
   ASSERT_TRUE(read.camera_in_file);
   EXPECT_DOUBLE_EQ(read.camera_in_file->agl_m, 40.0);
   EXPECT_DOUBLE_EQ(read.camera_in_file->focal_px.value(), 30.0);
-  EXPECT_NEAR(read.camera_in_file->pitch.degrees(), 10.0, 1e-9);
+  EXPECT_NEAR(read.camera_in_file->pitch.value().degrees(), 10.0, 1e-9);
 }
 
 TEST(FeatureRequest, BelievesTheClientMoreThanAPhotosFile) {
   const FrameCamera camera =
       seen(photo({{"exif", true}, {"agl_m", 55}, {"roll_deg", 1}, {"pitch_deg", -2}})).camera_in_file.value();
   EXPECT_DOUBLE_EQ(camera.agl_m, 55.0);
-  EXPECT_NEAR(camera.roll.degrees(), 1.0, 1e-9);
-  EXPECT_NEAR(camera.pitch.degrees(), -2.0, 1e-9);
+  EXPECT_NEAR(camera.roll.value().degrees(), 1.0, 1e-9);
+  EXPECT_NEAR(camera.pitch.value().degrees(), -2.0, 1e-9);
 }
 
 TEST(FeatureRequest, RefusesACameraThatIsToldTwiceOrNotAtAll) {

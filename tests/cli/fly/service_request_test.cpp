@@ -1,0 +1,64 @@
+#include "cli/fly/service_request.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace roadfix::fly {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Report seen_by(const FrameCamera& camera) {
+  Report report;
+  report.sequence = 3;
+  report.time_us = 4'000'000;
+  report.odometry = Odometry{20.0, -0.5, Angle::degrees(3.0)};
+  report.frame = [camera] {
+    return CameraFrame{{cv::Mat(20, 30, CV_8UC3, cv::Scalar(7, 7, 7)), {}, 0.0}, camera, 2.0, 5};
+  };
+  return report;
+}
+
+FrameCamera camera() {
+  FrameCamera camera;
+  camera.agl_m = 250.0;
+  camera.focal_px = 40.0;
+  return camera;
+}
+
+TEST(StepRequest, OfAFrameTellsWhatWasToldOfItsAttitudeAndNoMore) {
+  FrameCamera told = camera();
+  told.pitch = Angle();  // straight down is something to tell
+  const StepRequest request = step_request(seen_by(told));
+  EXPECT_THAT(request.query, HasSubstr("pitch_deg=0.0"));
+  EXPECT_THAT(request.query, Not(HasSubstr("roll_deg")));
+  told.roll = Angle::degrees(-4.0);
+  told.pitch.reset();
+  EXPECT_THAT(step_request(seen_by(told)).query, HasSubstr("roll_deg=-4.0"));
+  EXPECT_THAT(step_request(seen_by(told)).query, Not(HasSubstr("pitch_deg")));
+}
+
+TEST(StepRequest, IsAPictureDescribedInTheQuery) {
+  const StepRequest request = step_request(seen_by(camera()));
+  EXPECT_STREQ(request.content_type, "image/png");
+  EXPECT_EQ(request.body.substr(1, 3), "PNG");
+  EXPECT_EQ(request.query,
+            "?agl_m=250.0&cell_m=2.0&focal_px=40.0&forward_m=20.0&kind=frame&right_m=-0.5&seed=5&sequence=3"
+            "&time_us=4000000&turn_deg=3.0");
+}
+
+TEST(StepRequest, IsJsonWhereNothingWasSeen) {
+  Report report;
+  report.sequence = 3;
+  report.time_us = 4'000'000;
+  const StepRequest request = step_request(report);
+  EXPECT_STREQ(request.content_type, "application/json");
+  EXPECT_EQ(request.query, "");
+  EXPECT_EQ(nlohmann::json::parse(request.body), (nlohmann::json{{"sequence", 3}, {"time_us", 4'000'000}}));
+}
+
+}  // namespace
+}  // namespace roadfix::fly

@@ -82,23 +82,20 @@ TEST(FrameScale, TakesTheLensAsACalibrationGivesIt) {
 }
 
 TEST(FrameScale, TellsAnAttitudeOfZeroFromOneThatNobodyTold) {
-  struct Case {
-    json told;
-    Angle roll_sigma, pitch_sigma;
+  const auto nadir_sigma_of = [](const json& attitude) {
+    const FrameCamera camera = camera_of(told(attitude));
+    EXPECT_EQ(to_json(camera)["roll_deg"], 0.0) << attitude;
+    EXPECT_EQ(to_json(camera)["pitch_deg"], 0.0) << attitude;
+    return nadir_sigma_m(camera);
   };
-  for (const Case& c : {Case{json::object(), kUntoldAttitudeSigma, kUntoldAttitudeSigma},
-                        {{{"roll_deg", 0}}, kToldAttitudeSigma, kUntoldAttitudeSigma},
-                        {{{"pitch_deg", 0}}, kUntoldAttitudeSigma, kToldAttitudeSigma},
-                        {{{"roll_deg", 0}, {"pitch_deg", 0}}, kToldAttitudeSigma, kToldAttitudeSigma}}) {
-    const FrameCamera camera = camera_of(told(c.told));
-    EXPECT_EQ(camera.roll.degrees(), 0.0);
-    EXPECT_EQ(camera.pitch.degrees(), 0.0);
-    EXPECT_EQ(camera.roll_sigma.degrees(), c.roll_sigma.degrees()) << c.told;
-    EXPECT_EQ(camera.pitch_sigma.degrees(), c.pitch_sigma.degrees()) << c.told;
-  }
-  const FrameCamera leaning = camera_of(told({{"roll_deg", -3}, {"pitch_deg", 20}}));
-  EXPECT_NEAR(leaning.roll.degrees(), -3.0, 1e-12);
-  EXPECT_NEAR(leaning.pitch.degrees(), 20.0, 1e-12);
+  const double degree_m = 120.0 * Angle::degrees(1.0).radians();
+  EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}, {"pitch_deg", 0}}), degree_m, 1e-9);
+  EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}}), 5.0 * degree_m, 1e-9);
+  EXPECT_NEAR(nadir_sigma_of({{"pitch_deg", 0}}), 5.0 * degree_m, 1e-9);
+  EXPECT_NEAR(nadir_sigma_of(json::object()), 5.0 * degree_m, 1e-9);
+  const json leaning = to_json(camera_of(told({{"roll_deg", -3}, {"pitch_deg", 20}})));
+  EXPECT_NEAR(leaning["roll_deg"].get<double>(), -3.0, 1e-12);
+  EXPECT_NEAR(leaning["pitch_deg"].get<double>(), 20.0, 1e-12);
 }
 
 TEST(FrameScale, TakesNumbersUpToTheEndsOfTheirRanges) {
@@ -125,13 +122,15 @@ TEST(FrameScale, OfAPhotoIsReadBackFromWhatIsToldOfIt) {
   EXPECT_TRUE(scale.in_file);
   const FrameCamera& in_file = scale.camera.value();
   ASSERT_TRUE(in_file.principal_px && in_file.distortion.size() == 5U);
-  const FrameCamera again = camera_of(to_json(in_file));
+  const json said = to_json(in_file);
+  const FrameCamera again = camera_of(said);
   EXPECT_EQ(again.focal_px, in_file.focal_px);
   EXPECT_EQ(again.principal_px, in_file.principal_px);
   EXPECT_EQ(again.distortion, in_file.distortion);
   EXPECT_EQ(again.agl_m, in_file.agl_m);
-  EXPECT_EQ(again.roll.degrees(), in_file.roll.degrees());
-  EXPECT_EQ(again.pitch.degrees(), in_file.pitch.degrees());
+  for (const char* name : {"roll_deg", "pitch_deg"}) {
+    EXPECT_NEAR(to_json(again)[name].get<double>(), said[name].get<double>(), 1e-12) << name;
+  }
 }
 
 TEST(FrameScale, SaysWhereAFileTellsNoCamera) {

@@ -15,12 +15,8 @@ using testing::pose_within;
 using testing::reader_of;
 using testing::street_map;
 
-GridGeometry town(double width_m, double height_m) {
-  return {2.0, {150'000, -2'000'000}, static_cast<int>(width_m / 2.0), static_cast<int>(height_m / 2.0)};
-}
-
 TEST(SearchProof, IsGivenWhereItIsAskedFor) {
-  const RoadGrid map = street_map(14, town(1000, 900));
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 500, 450});
   std::mt19937_64 random(15);
   PoseRegion region;
   region.box = map.geometry.box();
@@ -40,7 +36,7 @@ TEST(SearchProof, IsGivenWhereItIsAskedFor) {
 }
 
 TEST(SearchProof, IsOverAllScalesToo) {
-  const RoadGrid map = street_map(18, town(700, 600));
+  const RoadGrid map = street_map(18, {2.0, {150'000, -2'000'000}, 350, 300});
   std::mt19937_64 random(19);
   PoseRegion region;
   region.box = map.geometry.box();

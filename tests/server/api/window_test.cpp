@@ -97,13 +97,13 @@ TEST(Window, RefusesMoreCellsThanTheLimitWithoutMakingThem) {
 }
 
 TEST(Window, TellsItsGroundInJson) {
-  const auto json =
+  const auto described =
       to_json(cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {}));
-  EXPECT_EQ(json["cols"], 10);
-  EXPECT_EQ(json["rows"], 6);
-  EXPECT_EQ(json["footprint"]["coordinates"][0].size(), 5U);
-  EXPECT_EQ(json["footprint"]["coordinates"][0][0], json["footprint"]["coordinates"][0][4]);
-  EXPECT_EQ(json["map"]["version"], "v1");
+  EXPECT_EQ(described["cols"], 10);
+  EXPECT_EQ(described["rows"], 6);
+  EXPECT_EQ(described["footprint"]["coordinates"][0].size(), 5U);
+  EXPECT_EQ(described["footprint"]["coordinates"][0][0], described["footprint"]["coordinates"][0][4]);
+  EXPECT_EQ(described["map"]["version"], "v1");
 }
 
 }  // namespace

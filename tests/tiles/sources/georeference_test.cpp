@@ -16,20 +16,19 @@ namespace {
 using testing::code_of;
 using testing::write_raster;
 
-class Georeference : public ::testing::Test {
+class GeoreferenceTest : public ::testing::Test {
  protected:
+  static double grey(int, int, int) { return 10.0; }
   testing::TemporaryFolder folder;
 };
 
-double band_number(int band, int, int) { return 10.0 * band; }
-
-TEST_F(Georeference, WithoutGeoreferenceItSaysWhatToDo) {
-  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+TEST_F(GeoreferenceTest, WithoutGeoreferenceItSaysWhatToDo) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
 }
 
-TEST_F(Georeference, AWorldFileNeedsAReferenceSystemFromTheUser) {
-  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+TEST_F(GeoreferenceTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
   EXPECT_THAT(testing::message_of([&] { RasterFile(path, {}); }), ::testing::HasSubstr("--crs of ingest"))
@@ -38,8 +37,8 @@ TEST_F(Georeference, AWorldFileNeedsAReferenceSystemFromTheUser) {
   EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
 }
 
-TEST_F(Georeference, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
-  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, band_number);
+TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
   std::ofstream(folder / "a.prj") << "nonsense";
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");

@@ -18,21 +18,22 @@
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
 #include "core/units/shell_word.hpp"
+#include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/source_shift.hpp"
 
 namespace roadfix::cli {
 namespace {
 
+/// As the source itself has it.
 SourceRecord record_of(const IngestArguments& arguments, const SourceRequest& request, const SourceSummary& summary) {
-  SourceRecord record = arguments.record;
+  SourceRecord record;
   record.name = request.files.name;
   record.kind = summary.kind;
   record.location = request.files.location;
   record.fingerprint = fmt::format("{}-seed{}", summary.fingerprint, arguments.options.seed);
   record.method = summary.method;
-  record.registration_sigma_m =
-      arguments.registration_sigma_m > 0.0 ? arguments.registration_sigma_m : summary.registration_sigma_m;
+  record.registration_sigma_m = summary.registration_sigma_m;
   return record;
 }
 
@@ -75,8 +76,11 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   SourceSummary summary = source->summary();
   std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
   if (auto note = note_on_distance(*source, arguments.map)) summary.notes.push_back(std::move(*note));
+  SourceRecord record = record_of(arguments, request, summary);
+  std::ranges::move(describe_source(record, arguments.told, MapWriter::records_of(arguments.map, record.name),
+                                    arguments.options.replace),
+                    std::back_inserter(summary.notes));
   print_notes(request.files, summary);
-  const SourceRecord record = record_of(arguments, request, summary);
   const nlohmann::json json = summary_json(record, summary, blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);

@@ -50,14 +50,14 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
 
 void add_provenance_options(CLI::App& command, IngestArguments& a) {
   command
-      .add_option("--date", a.record.date,
+      .add_option("--date", a.told.date,
                   "Date of the content, ISO 8601: 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z")
       ->check(iso_date());
-  command.add_option("--licence", a.record.licence, "Licence of the content");
-  command.add_option("--attribution", a.record.attribution, "Attribution that the licence asks for");
+  command.add_option("--licence", a.told.licence, "Licence of the content");
+  command.add_option("--attribution", a.told.attribution, "Attribution that the licence asks for");
   command
       .add_option(
-          "--registration-sigma", a.registration_sigma_m,
+          "--registration-sigma", a.told.registration_sigma_m,
           "Uncertainty of the position, 1 sigma in metres; default: 2.5 for imagery, 3 for rasters of roads, 4 for "
           "vectors, more with control points or RPC")
       ->check(positive());
@@ -115,7 +115,7 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
   add_provenance_options(command, a);
   add_threads_option(command, "--jobs", a.options.jobs, "Blocks in progress at a time");
   command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());
-  command.add_flag("--replace", a.options.replace, "Replace a source of the same name");
+  command.add_flag("--replace", a.options.replace, "Replace a source of the same name, and what was told of it");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");
   command.add_flag("--json", a.json, "Print one line of JSON for each source");
   return cell;

@@ -9,6 +9,7 @@
 #include "cli/detector_options.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
+#include "tiles/sources/provenance.hpp"
 
 namespace roadfix::cli {
 
@@ -28,8 +29,7 @@ struct IngestArguments {
   double width_m = 0.0;
   VectorOptions vectors;
   DetectorChoice detector;
-  double registration_sigma_m = 0.0;
-  SourceRecord record;  ///< date, licence and attribution
+  Provenance told;
   IngestOptions options;
   bool dry_run = false;
   bool json = false;

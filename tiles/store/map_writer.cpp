@@ -101,6 +101,16 @@ std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& p
   return read_settings(map);
 }
 
+std::vector<SourceRecord> MapWriter::records_of(const std::filesystem::path& path, const std::string& source) {
+  std::vector<SourceRecord> records;
+  if (!is_there(path)) return records;
+  Connection map = open_map(path, Access::kRead);
+  for (SourceStatus& status : read_info(map).sources) {
+    if (status.record.name == source) records.push_back(std::move(status.record));
+  }
+  return records;
+}
+
 void MapWriter::require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
                                    const SourceRecord& record, bool replace) {
   if (!is_there(path)) return;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
+#include <vector>
 
 #include "core/grid/cell_array.hpp"
 #include "tiles/store/map_records.hpp"
@@ -31,6 +33,9 @@ class MapWriter {
   const MapSettings& settings() const;
   /// Settings of an existing map; nullopt where no file is.
   static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
+
+  /// What the map tells of the sources of this name, complete or not, the one in force first; nothing where no file is.
+  static std::vector<SourceRecord> records_of(const std::filesystem::path& path, const std::string& source);
 
   /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
   /// writes nothing: for a plan.

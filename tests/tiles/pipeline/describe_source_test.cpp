@@ -1,0 +1,86 @@
+#include "tiles/pipeline/describe_source.hpp"
+
+#include <gmock/gmock.h>
+
+namespace roadfix {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+SourceRecord record(const std::string& fingerprint, double sigma_m = 2.5) {
+  SourceRecord result;
+  result.name = "roads";
+  result.fingerprint = fingerprint;
+  result.registration_sigma_m = sigma_m;
+  return result;
+}
+
+SourceRecord credited(const std::string& fingerprint) {
+  SourceRecord result = record(fingerprint, 30.0);
+  result.date = "2020";
+  result.licence = "CC-BY";
+  result.attribution = "X";
+  return result;
+}
+
+TEST(DescribeSource, ANewOneIsWhatTheUserSaysAndOtherwiseWhatItSaysItself) {
+  SourceRecord fresh = credited("1");
+  EXPECT_THAT(describe_source(fresh, {.licence = "CC0", .registration_sigma_m = 10.0}, {}, false), IsEmpty());
+  EXPECT_EQ(fresh.licence, "CC0");
+  EXPECT_EQ(fresh.registration_sigma_m, 10.0);
+  EXPECT_EQ(fresh.attribution, "X");
+}
+
+TEST(DescribeSource, RepeatedWithoutOptionsItKeepsWhatWasTold) {
+  const std::vector before{credited("1")};
+  SourceRecord again = record("1");
+  EXPECT_THAT(describe_source(again, {}, before, false), IsEmpty());
+  EXPECT_EQ(again, before.front());
+}
+
+TEST(DescribeSource, RepeatedWithOptionsItChangesInTheseAlone) {
+  const std::vector before{credited("1")};
+  SourceRecord again = record("1");
+  EXPECT_THAT(
+      describe_source(again, {.licence = "CC0", .attribution = "X", .registration_sigma_m = 10.0}, before, false),
+      ElementsAre("'roads' now has licence 'CC0' instead of 'CC-BY'",
+                  "'roads' now has position within 10 m instead of 30 m (1 sigma)"));
+  SourceRecord expected = before.front();
+  expected.licence = "CC0";
+  expected.registration_sigma_m = 10.0;
+  EXPECT_EQ(again, expected);
+}
+
+TEST(DescribeSource, AnInterruptedOneGoesOnAsItWasBegun) {
+  const std::vector before{record("old"), credited("1")};
+  SourceRecord again = record("1");
+  EXPECT_THAT(describe_source(again, {}, before, false), IsEmpty());
+  EXPECT_EQ(again, credited("1"));
+}
+
+TEST(DescribeSource, ReplacingDescribesAnewAndSaysWhatIsLost) {
+  const std::vector before{credited("1")};
+  for (const char* fingerprint : {"1", "2"}) {
+    SourceRecord anew = record(fingerprint);
+    EXPECT_THAT(
+        describe_source(anew, {.date = "2024", .licence = "CC-BY"}, before, true),
+        ElementsAre("'roads' now has date '2024' instead of '2020'",
+                    AllOf(HasSubstr("--replace describes 'roads' anew: attribution none instead of 'X'"),
+                          HasSubstr("with --attribution")),
+                    AllOf(HasSubstr("position within 2.5 m instead of 30 m"), HasSubstr("with --registration-sigma"))));
+    EXPECT_EQ(anew.registration_sigma_m, 2.5);
+    EXPECT_EQ(anew.attribution, "");
+  }
+}
+
+TEST(DescribeSource, OtherContentThatWillBeRefusedIsNotCompared) {
+  const std::vector before{credited("1")};
+  SourceRecord other = record("2");
+  EXPECT_THAT(describe_source(other, {}, before, false), IsEmpty());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,20 @@
+// Who has the last word about date, licence, attribution and registration error of a source: the user, then what the
+// map was told before of the same content, then the source itself.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tiles/sources/provenance.hpp"
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix {
+
+/// Completes `record`, which holds what the source says of itself. `told` by the user. `before` are the records of this
+/// name in the map, the one in force first: those of the same fingerprint keep what was told of them, unless `replace`
+/// describes the source anew. Returns notes for the user on what changes, and on what replacing loses.
+std::vector<std::string> describe_source(SourceRecord& record, const Provenance& told,
+                                         std::span<const SourceRecord> before, bool replace);
+
+}  // namespace roadfix

@@ -73,12 +73,12 @@ void note_shift(MapWriter& writer, const SourceRecord& record) {
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
   const auto [source, blocks] = plan_source(request, settings, detector);
-  SourceSummary summary = source->summary();
+  SourceSummary summary = summary_of(*source, request.files);
   std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
   if (auto note = note_on_distance(*source, arguments.map)) summary.notes.push_back(std::move(*note));
   SourceRecord record = record_of(arguments, request, summary);
-  std::ranges::move(describe_source(record, arguments.told, MapWriter::records_of(arguments.map, record.name),
-                                    arguments.options.replace),
+  std::ranges::move(describe_source(record, summary.told, arguments.told,
+                                    MapWriter::records_of(arguments.map, record.name), arguments.options.replace),
                     std::back_inserter(summary.notes));
   print_notes(request.files, summary);
   const nlohmann::json json = summary_json(record, summary, blocks, settings);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
+#include "core/units/provenance.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
-#include "tiles/sources/provenance.hpp"
 
 namespace roadfix::cli {
 

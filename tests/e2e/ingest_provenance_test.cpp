@@ -33,5 +33,28 @@ TEST_F(IngestProvenance, RepeatedWithoutItsOptionsItKeepsWhatWasToldOfTheSource)
   EXPECT_THAT(info(), ::testing::Not(HasSubstr("CC-BY")));
 }
 
+TEST_F(IngestProvenance, WhatWasToldOfAMapGoesWithItIntoOtherMapsAndThroughExports) {
+  ASSERT_EQ(ingest({picture(600, 0.5), "--as", "roads", "--map", map("m.gpkg"), "--registration-sigma", "30",
+                    "--licence", "CC-BY", "--attribution", "© Surveyors", "--date", "2020-05"})
+                .code,
+            0);
+  const auto told = ::testing::AllOf(HasSubstr("CC-BY\n"), HasSubstr("© Surveyors\n"), HasSubstr("2020-05"));
+  for (const char* copy : {"m.gpkg", "m.tif", "m.png", "m.mbtiles"}) {
+    const std::string source = folder / copy;
+    if (source != map("m.gpkg")) {
+      ASSERT_EQ(run_child(ROADFIX_PROGRAM, {"export", map("m.gpkg"), source}, folder.path()).code, 0);
+    }
+    const std::string target = map(std::string("of-") + copy + ".gpkg");
+    const ChildResult copied = ingest({source, "--as", "roads", "--map", target});
+    EXPECT_EQ(copied.code, 0) << copied.err;
+    EXPECT_THAT(copied.err, HasSubstr(source + " says of itself: date '2020-05', licence 'CC-BY', attribution "
+                                               "'© Surveyors', position within 30 m (1 sigma)"));
+    const std::string info = run_child(ROADFIX_PROGRAM, {"info", target}, folder.path()).out;
+    EXPECT_THAT(info, ::testing::AllOf(told, HasSubstr("30 m (1 sigma)"))) << copy;
+    EXPECT_EQ(ingest({source, "--as", "roads", "--map", target, "--replace", "--licence", "CC0"}).code, 0);
+    EXPECT_THAT(run_child(ROADFIX_PROGRAM, {"info", target}, folder.path()).out, HasSubstr("CC0\n")) << copy;
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "tiles/export/probability_pixel.hpp"
+#include "tiles/sources/exported_roads.hpp"
 
 namespace roadfix {
 namespace {
@@ -64,6 +65,9 @@ MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, Pixel
   nRasterYSize = geometry.rows;
   reference_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   reference_.importFromEPSG(map.info().settings.zone.epsg());
+  for (const auto& [name, value] : provenance_items(provenance_of(map.info()))) {
+    SetMetadataItem(name.c_str(), value.c_str());
+  }
   if (kind == PixelKind::kProbability) {
     SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", description_of(map.info()).c_str());
     const std::string credits = credits_of(map.info());

@@ -40,6 +40,7 @@ Driver driver_of(ExportFormat format, const MapInfo& info) {
       return {"GTiff", PixelKind::kProbability, options};
     case ExportFormat::kPng:
       options.SetNameValue("WORLDFILE", "YES");
+      options.SetNameValue("WRITE_METADATA_AS_TEXT", "YES");
       options.SetNameValue("DESCRIPTION", description_of(info).c_str());
       if (const std::string credits = credits_of(info); !credits.empty()) {
         options.SetNameValue("COPYRIGHT", credits.c_str());
@@ -168,7 +169,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     copy(source, driver, unfinished, {progress, stop});
     const fs::path world = fs::path(unfinished).replace_extension(".wld");
     const fs::path reference = unfinished.string() + ".aux.xml";
-    if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, credits_of(map.info()));
+    if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, map.info());
     if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
     if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);

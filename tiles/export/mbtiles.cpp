@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/units/error.hpp"
-#include "tiles/store/map_records.hpp"
+#include "tiles/sources/exported_roads.hpp"
 #include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
@@ -30,13 +30,13 @@ bool add_zooms(GDALDataset& tiles, GDALProgressFunc progress, void* monitor) {
                               monitor, nullptr) == CE_None;
 }
 
-void complete_metadata(const std::filesystem::path& tiles, const std::string& attribution) {
+void complete_metadata(const std::filesystem::path& tiles, const MapInfo& info) {
   sqlite::Connection connection(tiles, sqlite::Access::kReadWrite, error_of);
   connection.execute("UPDATE metadata SET value = (SELECT min(zoom_level) FROM tiles) WHERE name = 'minzoom'");
-  if (attribution.empty()) return;
-  sqlite::Statement(connection, "INSERT INTO metadata (name, value) VALUES ('attribution', ?1)")
-      .with(attribution)
-      .run();
+  auto items = provenance_items(provenance_of(info));
+  if (const std::string credits = credits_of(info); !credits.empty()) items.emplace_back("attribution", credits);
+  sqlite::Statement insert(connection, "INSERT INTO metadata (name, value) VALUES (?1, ?2)");
+  for (const auto& [name, value] : items) insert.with(name, value).run();
 }
 
 }  // namespace roadfix

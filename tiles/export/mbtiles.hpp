@@ -4,7 +4,8 @@
 #include <gdal_priv.h>
 
 #include <filesystem>
-#include <string>
+
+#include "tiles/store/map_records.hpp"
 
 namespace roadfix {
 
@@ -12,8 +13,8 @@ namespace roadfix {
 /// unless it is close. Returns false where GDAL failed or `progress` said to stop.
 bool add_zooms(GDALDataset& tiles, GDALProgressFunc progress, void* monitor);
 
-/// Of the metadata (MBTiles 1.3) "minzoom", which GDAL gives as 0 whatever there is, and "attribution", unless empty.
-/// Throws IoFailure ("export-failed").
-void complete_metadata(const std::filesystem::path& tiles, const std::string& attribution);
+/// Of the metadata (MBTiles 1.3) "minzoom", which GDAL gives as 0 whatever there is, "attribution", unless empty, and
+/// what ingest reads back. Throws IoFailure ("export-failed").
+void complete_metadata(const std::filesystem::path& tiles, const MapInfo& info);
 
 }  // namespace roadfix

@@ -1,9 +1,11 @@
 #include "tiles/pipeline/describe_source.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace roadfix {
 namespace {
@@ -32,6 +34,26 @@ void tell(SourceRecord& record, const Provenance& told) {
   if (told.registration_sigma_m > 0.0) record.registration_sigma_m = told.registration_sigma_m;
 }
 
+std::string shown(const std::string& text) { return text.empty() ? "none" : "'" + text + "'"; }
+
+/// Of what the source tells of itself and nobody otherwise.
+std::optional<std::string> note_on_own(const SourceRecord& record, const Provenance& own, const Provenance& told) {
+  std::vector<std::string> facts;
+  std::vector<std::string> options;
+  for (const auto& [name, option, of_record, text] : kTexts) {
+    if ((own.*text).empty() || !(told.*text).empty()) continue;
+    facts.push_back(fmt::format("{} {}", name, shown(own.*text)));
+    options.emplace_back(option);
+  }
+  if (own.registration_sigma_m > 0.0 && told.registration_sigma_m == 0.0) {
+    facts.push_back(fmt::format("position within {:.3g} m (1 sigma)", own.registration_sigma_m));
+    options.emplace_back("--registration-sigma");
+  }
+  if (facts.empty()) return std::nullopt;
+  return fmt::format("{} says of itself: {}. That is taken over; {} would say otherwise", record.location,
+                     fmt::join(facts, ", "), fmt::join(options, ", "));
+}
+
 /// Of something that is told otherwise than before.
 struct Change {
   const char* option;
@@ -43,7 +65,6 @@ std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& n
   std::vector<Change> changes;
   for (const auto& [name, option, of_record, of_user] : kTexts) {
     if (before.*of_record == now.*of_record) continue;
-    const auto shown = [](const std::string& value) { return value.empty() ? "none" : "'" + value + "'"; };
     changes.push_back({option,
                        fmt::format("{} {} instead of {}", name, shown(now.*of_record), shown(before.*of_record)),
                        !(told.*of_user).empty()});
@@ -59,14 +80,19 @@ std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& n
 
 }  // namespace
 
-std::vector<std::string> describe_source(SourceRecord& record, const Provenance& told,
+std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const Provenance& told,
                                          std::span<const SourceRecord> before, bool replace) {
   const auto same = std::ranges::find(before, record.fingerprint, &SourceRecord::fingerprint);
   const bool goes_on = same != before.end() && !replace;
-  if (goes_on) keep(record, *same);
-  tell(record, told);
-  if (!goes_on && (!replace || before.empty())) return {};
   std::vector<std::string> notes;
+  if (goes_on) {
+    keep(record, *same);
+  } else {
+    for (const Text& text : kTexts) record.*text.of_record = own.*text.told;
+    if (auto note = note_on_own(record, own, told)) notes.push_back(std::move(*note));
+  }
+  tell(record, told);
+  if (!goes_on && (!replace || before.empty())) return notes;
   for (const auto& [option, text, asked_for] : changes_of(goes_on ? *same : before.front(), record, told)) {
     notes.push_back(asked_for ? fmt::format("'{}' now has {}", record.name, text)
                               : fmt::format("--replace describes '{}' anew: {}. Where the old still holds, repeat this "

@@ -2,8 +2,10 @@
 
 #include <cassert>
 
+#include "core/units/error.hpp"
 #include "tiles/sources/georeference.hpp"
 #include "tiles/sources/vector_roads.hpp"
+#include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
 
@@ -26,6 +28,18 @@ std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapS
       break;
   }
   return open_road_vectors(files.paths, request.vectors, request.rules, settings.zone, settings.cell_m);
+}
+
+SourceSummary summary_of(const CellSource& source, const SourceFiles& files) {
+  SourceSummary summary = source.summary();
+  if (!files.is_map || files.kind != SourceKind::kRoadRaster) return summary;
+  try {
+    summary.told = provenance_of(MapReader(files.paths.front()).info());
+  } catch (const InvalidInput&) {  // another program's that is called alike, or of a newer version: its pixels are read
+    return summary;
+  }
+  if (summary.told.registration_sigma_m > 0.0) summary.registration_sigma_m = summary.told.registration_sigma_m;
+  return summary;
 }
 
 MapSettings settings_of_new_map(const SourceRequest& first, double cell_m, const RoadDetector* detector) {

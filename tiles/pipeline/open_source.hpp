@@ -29,6 +29,9 @@ LatLon centre_of_source(const SourceRequest& request);
 std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,
                                         const RoadDetector* detector);
 
+/// What the source says of itself; of another map also what it was told of its own sources.
+SourceSummary summary_of(const CellSource& source, const SourceFiles& files);
+
 /// A new map gets the zone of its first source; around the equator the southern one, whose cells go on for 485 km
 /// beyond it, where those of the northern one end.
 MapSettings settings_of_new_map(const SourceRequest& first, double cell_m, const RoadDetector* detector);

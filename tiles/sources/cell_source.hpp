@@ -7,6 +7,7 @@
 
 #include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
+#include "core/units/provenance.hpp"
 
 namespace roadfix {
 
@@ -21,6 +22,7 @@ struct SourceSummary {
   std::int64_t features = 0;  ///< lines drawn, for vectors
   std::int64_t left_out = 0;  ///< features that the rules leave out
   double registration_sigma_m = 0.0;
+  Provenance told = {};  ///< by the files themselves; its registration error is that above, where it is told
   std::vector<std::string> notes = {};  ///< what was assumed of it, for the user to read
 };
 

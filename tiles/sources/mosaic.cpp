@@ -11,6 +11,7 @@
 #include "core/detect/blank_ground.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/collar.hpp"
+#include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/georeference.hpp"
 #include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/warp.hpp"
@@ -112,6 +113,7 @@ void Mosaic::add_image(std::string path, std::vector<float>& values) {
   if (images_.empty()) crs_ = crs_name(file.crs());
   PositionError error = roadfix::position_error(file, georeference, zone_);
   if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
+  told_.push_back(provenance_in(file.dataset()));
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
     image.sampled = sampled_in(sample);
@@ -150,6 +152,14 @@ void Mosaic::find_collars() {
 }
 
 Mosaic::~Mosaic() = default;
+
+Provenance Mosaic::told() const {
+  Provenance all = combined(told_);
+  if (std::ranges::any_of(told_, [](const Provenance& one) { return one.registration_sigma_m == 0.0; })) {
+    all.registration_sigma_m = 0.0;
+  }
+  return all;
+}
 
 bool Mosaic::touches(const GridBox& box) const {
   return std::ranges::any_of(images_, [&](const Image& image) { return image.footprint.overlaps(box); });

@@ -15,6 +15,7 @@
 #include "core/detect/road_detector.hpp"
 #include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
+#include "core/units/provenance.hpp"
 #include "tiles/sources/position_error.hpp"
 #include "tiles/sources/raster_file.hpp"
 
@@ -51,6 +52,9 @@ class Mosaic {
   /// Of the image whose place is the least certain.
   const PositionError& position_error() const { return position_error_; }
 
+  /// What the images tell of themselves together; the registration error only where each tells its own.
+  Provenance told() const;
+
   /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed, nor is what pictures
   /// show blank (exclude_blank). Thread-safe.
   GroundImage view(const GridBox& box, double gsd_m) const;
@@ -76,6 +80,7 @@ class Mosaic {
   ValueRange sampled_{1.0, 0.0};
   std::string crs_;
   PositionError position_error_;
+  std::vector<Provenance> told_;  ///< by each image
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first
 };

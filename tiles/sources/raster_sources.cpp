@@ -158,7 +158,9 @@ class RoadRaster final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     summary_.notes = notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
-    state_position(mosaic_, kRasterSigmaM, summary_);
+    summary_.told = mosaic_.told();
+    const double told_m = summary_.told.registration_sigma_m;
+    state_position(mosaic_, told_m > 0.0 ? told_m : kRasterSigmaM, summary_);
     std::optional<std::string> note = note_on_likely_picture(paths.front(), options, mosaic_.range());
     if (note) summary_.notes.push_back(std::move(*note));
   }

@@ -37,13 +37,10 @@ bool one_of(const Endings& endings, std::string_view ending) {
   return std::ranges::find(endings, ending) != endings.end();
 }
 
-/// What the rasters of a file are unless the user says it: those of a map made by roadfix are roads, all others
-/// imagery.
-SourceKind kind_of(GDALDataset& raster) {
+bool is_map(GDALDataset& raster) {
   const char* identifier = raster.GetMetadataItem("IDENTIFIER");
-  const bool map = EQUAL(raster.GetDriverName(), "GPKG") && identifier != nullptr &&
-                   std::string_view(identifier) == "road_probability";
-  return map ? SourceKind::kRoadRaster : SourceKind::kImagery;
+  return EQUAL(raster.GetDriverName(), "GPKG") && identifier != nullptr &&
+         std::string_view(identifier) == "road_probability";
 }
 
 /// "layer 'roads' of city.gpkg" for each that has geometries.
@@ -63,16 +60,23 @@ bool is_vector_vrt(const std::string& path) {
   return ending_of(path) == ".vrt" && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
 }
 
-/// A file that neither opens as raster nor as vectors is reported by name.
-SourceKind kind_of(const std::string& path, const std::string& layer) {
-  constexpr SourceKind kVectors = SourceKind::kRoadVectors;
+struct FileKind {
+  SourceKind kind = SourceKind::kRoadVectors;
+  bool is_map = false;
+};
+
+/// What a file is unless the user says it: the rasters of a map made by roadfix are roads, all others imagery. A file
+/// that neither opens as raster nor as vectors is reported by name.
+FileKind kind_of(const std::string& path, const std::string& layer) {
+  constexpr FileKind kVectors;
   if (one_of(kVectorEndings, ending_of(path)) && ending_of(path) != ".gpkg") return kVectors;
   if (is_vector_vrt(path)) return kVectors;
   if (!layer.empty() && !layers_of(path).empty()) return kVectors;
   {
     const GdalMessages messages;
     const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-    if (raster) return kind_of(*raster);
+    if (raster && is_map(*raster)) return {SourceKind::kRoadRaster, true};
+    if (raster) return {SourceKind::kImagery};
   }
   if (one_of(kImageEndings, ending_of(path))) {
     open_dataset(path, GDAL_OF_RASTER);  // says why not
@@ -182,7 +186,9 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning, cons
     result.name = name_of_file(path);
   } else {
     result.paths = {argument};
-    result.kind = kind_of(argument, layer);
+    const FileKind kind = kind_of(argument, layer);
+    result.kind = kind.kind;
+    result.is_map = kind.is_map;
     if (result.kind == SourceKind::kRoadVectors) {
       open_dataset(argument, GDAL_OF_VECTOR);
     } else {

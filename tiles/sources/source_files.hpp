@@ -18,6 +18,7 @@ struct SourceFiles {
   std::string name;  ///< stem of the file or archive, or name of the folder
   std::string location;
   SourceKind kind = SourceKind::kImagery;
+  bool is_map = false;             ///< a single map of roadfix
   std::vector<std::string> paths;  ///< of a folder or ZIP archive all images or vector files in it and below, sorted
   /// Of a folder or archive: vector files beside images, and files of formats that are not looked for, sorted. Of a
   /// file that holds pixels: its layers of vectors.

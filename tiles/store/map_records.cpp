@@ -1,7 +1,7 @@
 #include "tiles/store/map_records.hpp"
 
-#include <algorithm>
 #include <cassert>
+#include <vector>
 
 #include "core/units/floor_div.hpp"
 
@@ -25,19 +25,21 @@ std::vector<TileIndex> tiles_covering(const GridGeometry& geometry) {
   return tiles;
 }
 
-std::string credits_of(const MapInfo& info) {
-  std::vector<std::string> credits;
+namespace {
+
+std::vector<Provenance> parts_of(const MapInfo& info) {
+  std::vector<Provenance> parts;
   for (const SourceStatus& source : info.sources) {
-    const std::string& attribution = source.record.attribution;
-    const std::string& licence = source.record.licence;
-    if (!source.complete || (attribution.empty() && licence.empty())) continue;
-    const std::string credit =
-        attribution.empty() || licence.empty() ? attribution + licence : attribution + " (" + licence + ")";
-    if (std::ranges::find(credits, credit) == credits.end()) credits.push_back(credit);
+    const SourceRecord& r = source.record;
+    if (source.complete) parts.push_back({r.date, r.licence, r.attribution, r.registration_sigma_m});
   }
-  std::string text;
-  for (const std::string& credit : credits) text += (text.empty() ? "" : "; ") + credit;
-  return text;
+  return parts;
 }
+
+}  // namespace
+
+Provenance provenance_of(const MapInfo& info) { return combined(parts_of(info)); }
+
+std::string credits_of(const MapInfo& info) { return credits_of(parts_of(info)); }
 
 }  // namespace roadfix

@@ -8,6 +8,7 @@
 #include "core/geodesy/utm.hpp"
 #include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
+#include "core/units/provenance.hpp"
 
 namespace roadfix {
 
@@ -76,6 +77,9 @@ struct MapInfo {
   std::int64_t pending = 0;  ///< tiles of all levels that wait to be fused: an ingest was interrupted
   std::vector<SourceStatus> sources = {};
 };
+
+/// Of the complete sources together.
+Provenance provenance_of(const MapInfo& info);
 
 /// What the licences of the complete sources ask to be shown beside the map, "attribution (licence)", each once and
 /// separated by "; "; empty where none was told.

@@ -13,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/sources/exported_roads.hpp"
 
 namespace roadfix {
 namespace {
@@ -196,6 +197,19 @@ TEST_F(MapExport, SaysWhoseTheContentIs) {
   EXPECT_EQ(item_of("out.png", ExportFormat::kPng, "Copyright"), credits);
   EXPECT_EQ(item_of("out.mbtiles", ExportFormat::kMbTiles, "attribution"), credits);
   EXPECT_THAT(item_of("out.mbtiles", ExportFormat::kMbTiles, "description"), ::testing::HasSubstr(map.info().version));
+}
+
+TEST_F(MapExport, TellsIngestDateLicenceAttributionAndRegistrationError) {
+  const MapReader map(path);
+  for (const auto& [name, format] : {std::pair("cog.tif", ExportFormat::kCog),
+                                     {"plain.tif", ExportFormat::kGeoTiff},
+                                     {"out.png", ExportFormat::kPng},
+                                     {"out.mbtiles", ExportFormat::kMbTiles}}) {
+    export_map(map, folder / name, {.format = format});
+    fs::remove(folder / (std::string(name) + ".aux.xml"));
+    const Picture picture(folder / name);
+    EXPECT_EQ(provenance_in(*picture.data), (Provenance{"2023-02-06", "CC BY 4.0", "someone", 2.5})) << name;
+  }
 }
 
 TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {

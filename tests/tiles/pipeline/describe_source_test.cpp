@@ -27,8 +27,13 @@ SourceRecord credited(const std::string& fingerprint) {
 }
 
 TEST(DescribeSource, ANewOneIsWhatTheUserSaysAndOtherwiseWhatItSaysItself) {
-  SourceRecord fresh = credited("1");
-  EXPECT_THAT(describe_source(fresh, {.licence = "CC0", .registration_sigma_m = 10.0}, {}, false), IsEmpty());
+  SourceRecord fresh = record("1");
+  fresh.location = "a.tif";
+  const Provenance own{.date = "2020", .licence = "CC-BY", .attribution = "X"};
+  EXPECT_THAT(
+      describe_source(fresh, own, {.licence = "CC0", .registration_sigma_m = 10.0}, {}, false),
+      ElementsAre("a.tif says of itself: date '2020', attribution 'X'. That is taken over; --date, --attribution "
+                  "would say otherwise"));
   EXPECT_EQ(fresh.licence, "CC0");
   EXPECT_EQ(fresh.registration_sigma_m, 10.0);
   EXPECT_EQ(fresh.attribution, "X");
@@ -37,7 +42,7 @@ TEST(DescribeSource, ANewOneIsWhatTheUserSaysAndOtherwiseWhatItSaysItself) {
 TEST(DescribeSource, RepeatedWithoutOptionsItKeepsWhatWasTold) {
   const std::vector before{credited("1")};
   SourceRecord again = record("1");
-  EXPECT_THAT(describe_source(again, {}, before, false), IsEmpty());
+  EXPECT_THAT(describe_source(again, {.licence = "of the file"}, {}, before, false), IsEmpty());
   EXPECT_EQ(again, before.front());
 }
 
@@ -45,7 +50,7 @@ TEST(DescribeSource, RepeatedWithOptionsItChangesInTheseAlone) {
   const std::vector before{credited("1")};
   SourceRecord again = record("1");
   EXPECT_THAT(
-      describe_source(again, {.licence = "CC0", .attribution = "X", .registration_sigma_m = 10.0}, before, false),
+      describe_source(again, {}, {.licence = "CC0", .attribution = "X", .registration_sigma_m = 10.0}, before, false),
       ElementsAre("'roads' now has licence 'CC0' instead of 'CC-BY'",
                   "'roads' now has position within 10 m instead of 30 m (1 sigma)"));
   SourceRecord expected = before.front();
@@ -57,7 +62,7 @@ TEST(DescribeSource, RepeatedWithOptionsItChangesInTheseAlone) {
 TEST(DescribeSource, AnInterruptedOneGoesOnAsItWasBegun) {
   const std::vector before{record("old"), credited("1")};
   SourceRecord again = record("1");
-  EXPECT_THAT(describe_source(again, {}, before, false), IsEmpty());
+  EXPECT_THAT(describe_source(again, {}, {}, before, false), IsEmpty());
   EXPECT_EQ(again, credited("1"));
 }
 
@@ -66,7 +71,7 @@ TEST(DescribeSource, ReplacingDescribesAnewAndSaysWhatIsLost) {
   for (const char* fingerprint : {"1", "2"}) {
     SourceRecord anew = record(fingerprint);
     EXPECT_THAT(
-        describe_source(anew, {.date = "2024", .licence = "CC-BY"}, before, true),
+        describe_source(anew, {}, {.date = "2024", .licence = "CC-BY"}, before, true),
         ElementsAre("'roads' now has date '2024' instead of '2020'",
                     AllOf(HasSubstr("--replace describes 'roads' anew: attribution none instead of 'X'"),
                           HasSubstr("with --attribution")),
@@ -79,7 +84,7 @@ TEST(DescribeSource, ReplacingDescribesAnewAndSaysWhatIsLost) {
 TEST(DescribeSource, OtherContentThatWillBeRefusedIsNotCompared) {
   const std::vector before{credited("1")};
   SourceRecord other = record("2");
-  EXPECT_THAT(describe_source(other, {}, before, false), IsEmpty());
+  EXPECT_THAT(describe_source(other, {}, {}, before, false), IsEmpty());
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+#include "tiles/sources/exported_roads.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace roadfix {
+namespace {
+
+constexpr const char* kSigma = "ROADFIX_REGISTRATION_SIGMA_M";
+constexpr std::array<std::pair<const char*, std::string Provenance::*>, 3> kTexts{
+    {{"ROADFIX_DATE", &Provenance::date},
+     {"ROADFIX_LICENCE", &Provenance::licence},
+     {"ROADFIX_ATTRIBUTION", &Provenance::attribution}}};
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance) {
+  std::vector<std::pair<std::string, std::string>> items;
+  for (const auto& [name, text] : kTexts) {
+    if (!(provenance.*text).empty()) items.emplace_back(name, provenance.*text);
+  }
+  if (provenance.registration_sigma_m > 0.0) {
+    items.emplace_back(kSigma, fmt::format("{}", provenance.registration_sigma_m));
+  }
+  return items;
+}
+
+Provenance provenance_in(GDALDataset& dataset) {
+  Provenance provenance;
+  char** metadata = dataset.GetMetadata();  // not item by item: some drivers read them only here
+  for (const auto& [name, text] : kTexts) {
+    const char* value = CSLFetchNameValue(metadata, name);
+    if (value != nullptr && CPLIsUTF8(value, -1) != FALSE) provenance.*text = value;
+  }
+  const char* sigma = CSLFetchNameValue(metadata, kSigma);
+  const double sigma_m = sigma == nullptr ? 0.0 : CPLAtof(sigma);
+  if (std::isfinite(sigma_m) && sigma_m > 0.0) provenance.registration_sigma_m = sigma_m;
+  return provenance;
+}
+
+}  // namespace roadfix

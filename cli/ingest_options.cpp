@@ -28,8 +28,9 @@ RoadRules rules_of(const IngestArguments& arguments) {
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
-  command.add_option("--as", a.meaning,
-                     "What the sources are: auto (vectors and other maps are roads, rasters imagery), imagery, roads");
+  command.add_option(
+      "--as", a.meaning,
+      "What the sources are: auto (vectors and what roadfix wrote are roads, other rasters imagery), imagery, roads");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");
   command.add_option(

@@ -56,5 +56,36 @@ TEST_F(IngestProvenance, WhatWasToldOfAMapGoesWithItIntoOtherMapsAndThroughExpor
   }
 }
 
+TEST_F(IngestProvenance, WhatRoadfixWroteComesBackAsTheRoadsThatItIs) {
+  const std::string image = picture(600, 0.5);
+  ASSERT_EQ(ingest({image, "--as", "roads", "--map", map("m.gpkg")}).code, 0);
+  std::filesystem::create_directory(folder / "exports");
+  for (const char* name : {"e.tif", "e.png", "exports/e.png", "e.mbtiles"}) {
+    const std::string file = folder / name;
+    ASSERT_EQ(run_child(ROADFIX_PROGRAM, {"export", map("m.gpkg"), file}, folder.path()).code, 0);
+    const bool in_folder = std::string(name).starts_with("exports");
+    const std::string target = map("of-" + std::filesystem::path(file).filename().string() + (in_folder ? "s" : ""));
+    const ChildResult back = ingest({in_folder ? (folder / "exports").string() : file, "--cell", "2", "--map", target});
+    EXPECT_EQ(back.code, 0) << back.err;
+    const std::string info = run_child(ROADFIX_PROGRAM, {"info", target}, folder.path()).out;
+    EXPECT_THAT(info, ::testing::AllOf(HasSubstr("(roads)"), HasSubstr("become 0..1"))) << name;
+    if (name == std::string("e.mbtiles")) continue;  // on another lattice
+    const auto version = [&](const std::string& path) {
+      const std::string text = run_child(ROADFIX_PROGRAM, {"info", path}, folder.path()).out;
+      const std::size_t at = text.find("version ");
+      return text.substr(at, text.find('\n', at) - at);
+    };
+    EXPECT_EQ(version(target), version(map("m.gpkg"))) << name;
+  }
+  const std::string detected = folder / "seen.png";
+  const ChildResult detect =
+      run_child(ROADFIX_PROGRAM, {"detect", image, detected, "--detector", "tree"}, folder.path());
+  ASSERT_EQ(detect.code, 0) << detect.err;
+  const ChildResult seen = ingest({detected, "--map", map("seen.gpkg"), "--crs", "EPSG:32637"});
+  EXPECT_EQ(seen.code, 0) << seen.err;
+  EXPECT_THAT(run_child(ROADFIX_PROGRAM, {"info", map("seen.gpkg")}, folder.path()).out,
+              ::testing::AllOf(HasSubstr("(roads)"), HasSubstr("values 0..254 become 0..1")));
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -56,7 +56,7 @@ GByte alpha_pixel(Cell cell) { return is_observed(cell) ? 255 : 0; }
 }  // namespace
 
 std::string description_of(const MapInfo& info) {
-  return "Probability of road, by Roadfix, from version " + info.version + " of its map";
+  return std::string(kExportedRoads) + ", from version " + info.version + " of its map";
 }
 
 MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)

@@ -4,12 +4,16 @@
 #include <cpl_string.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace roadfix {
 namespace {
 
+constexpr std::array<const char*, 2> kDescriptions{"TIFFTAG_IMAGEDESCRIPTION", "DESCRIPTION"};
+/// The text of core/detect/feature_map_codec as GDAL names it.
+constexpr const char* kFeatureMap = "Roadfix_feature_map";
 constexpr const char* kSigma = "ROADFIX_REGISTRATION_SIGMA_M";
 constexpr std::array<std::pair<const char*, std::string Provenance::*>, 3> kTexts{
     {{"ROADFIX_DATE", &Provenance::date},
@@ -17,6 +21,15 @@ constexpr std::array<std::pair<const char*, std::string Provenance::*>, 3> kText
      {"ROADFIX_ATTRIBUTION", &Provenance::attribution}}};
 
 }  // namespace
+
+bool holds_exported_roads(GDALDataset& dataset) {
+  char** metadata = dataset.GetMetadata();
+  if (CSLFetchNameValue(metadata, kFeatureMap) != nullptr) return true;
+  return std::ranges::any_of(kDescriptions, [&](const char* name) {
+    const char* text = CSLFetchNameValue(metadata, name);
+    return text != nullptr && std::string_view(text).starts_with(kExportedRoads);
+  });
+}
 
 std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance) {
   std::vector<std::pair<std::string, std::string>> items;

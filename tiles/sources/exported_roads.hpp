@@ -1,7 +1,9 @@
-// What a raster that roadfix exported says of itself in its metadata, so that it can be ingested again as what it is.
+// What a raster of roads that roadfix wrote says of itself in its metadata, so that it can be ingested again as what it
+// is.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,6 +11,12 @@
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
+
+/// How descriptions of what is exported begin.
+inline constexpr std::string_view kExportedRoads = "Probability of road, by Roadfix";
+
+/// Whether it says so, or that it is a feature map: then bytes are probabilities k / 254.
+bool holds_exported_roads(GDALDataset& dataset);
 
 /// Names and values of the metadata that tell it; nothing of what is not known.
 std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance);

@@ -20,6 +20,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kIdleHandles = 48;
+constexpr ValueRange kExportedBytes{0.0, 254.0};
 
 ValueRange share_range(const std::vector<float>& values, bool integers) {
   if (!integers) return {0.0, 1.0};
@@ -75,6 +76,8 @@ struct Mosaic::Image {
   std::optional<ValueRange> declared;
   double full_opacity = 1.0;
   Sampled sampled = {};
+  bool exported = false;
+  bool bytes = false;
   ValueRange range = {};
   std::shared_ptr<const Collar> collar = nullptr;
 };
@@ -114,6 +117,9 @@ void Mosaic::add_image(std::string path, std::vector<float>& values) {
   PositionError error = roadfix::position_error(file, georeference, zone_);
   if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
   told_.push_back(provenance_in(file.dataset()));
+  image.exported = holds_exported_roads(file.dataset());
+  image.bytes = file.declared_range().has_value();
+  exported_ = exported_ && image.exported;
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
     image.sampled = sampled_in(sample);
@@ -134,12 +140,15 @@ void Mosaic::choose_ranges(std::vector<float> values) {
   } else {
     range_ = rule_ == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   }
+  const auto exact = [&](const Image& image) { return rule_ == ValueRule::kShare && image.exported && image.bytes; };
+  if (std::ranges::all_of(images_, exact)) range_ = kExportedBytes;
   // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
   const bool masks = rule_ == ValueRule::kShare && integers_ &&
                      std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
     if (masks && image.sampled.max == 1.0F) image.range = {0.0, 1.0};
+    if (exact(image)) image.range = kExportedBytes;
   }
 }
 

@@ -28,6 +28,7 @@ enum class ValueRule {
   /// and blocks.
   kPicture,
   /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
+  /// Bytes that roadfix wrote: 0..254.
   /// Masks of 0 and 1 beside masks of 0 and 255 keep their own range.
   kShare,
 };
@@ -44,6 +45,8 @@ class Mosaic {
   /// Of the finest image.
   double gsd_m() const { return gsd_m_; }
   bool holds_integers() const { return integers_; }
+  /// Whether roadfix wrote all of it.
+  bool exported() const { return exported_; }
   /// Of the images whose type does not say it; of the first one where all types do.
   ValueRange range() const { return range_; }
   /// Least and largest value sampled of a source of shares; low > high where none is valid, or they are colours.
@@ -76,6 +79,7 @@ class Mosaic {
   double gsd_m_ = 0.0;
   int channels_ = 1;
   bool integers_ = false;
+  bool exported_ = true;
   ValueRange range_;
   ValueRange sampled_{1.0, 0.0};
   std::string crs_;

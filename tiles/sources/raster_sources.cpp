@@ -157,10 +157,14 @@ class RoadRaster final : public CellSource {
     summary_.crs = mosaic_.crs();
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
-    summary_.notes = notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
+    if (!mosaic_.exported()) {
+      summary_.notes =
+          notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
+    }
     summary_.told = mosaic_.told();
     const double told_m = summary_.told.registration_sigma_m;
     state_position(mosaic_, told_m > 0.0 ? told_m : kRasterSigmaM, summary_);
+    if (mosaic_.exported()) return;
     std::optional<std::string> note = note_on_likely_picture(paths.front(), options, mosaic_.range());
     if (note) summary_.notes.push_back(std::move(*note));
   }
@@ -187,7 +191,9 @@ class RoadRaster final : public CellSource {
   }
 
  private:
-  Certainty certainty_of_values() const { return mosaic_.holds_integers() ? Certainty{} : Certainty{1.0, 0.0}; }
+  Certainty certainty_of_values() const {
+    return mosaic_.holds_integers() && !mosaic_.exported() ? Certainty{} : Certainty{1.0, 0.0};
+  }
 
   Mosaic mosaic_;
   double cell_m_;

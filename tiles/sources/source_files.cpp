@@ -13,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -43,6 +44,12 @@ bool is_map(GDALDataset& raster) {
          std::string_view(identifier) == "road_probability";
 }
 
+bool is_exported(const std::string& image) {
+  const GdalMessages messages;
+  const DatasetPtr raster(GDALDataset::Open(image.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  return raster && holds_exported_roads(*raster);
+}
+
 /// "layer 'roads' of city.gpkg" for each that has geometries.
 std::vector<std::string> layers_of(const std::string& path) {
   std::vector<std::string> layers;
@@ -65,7 +72,7 @@ struct FileKind {
   bool is_map = false;
 };
 
-/// What a file is unless the user says it: the rasters of a map made by roadfix are roads, all others imagery. A file
+/// What a file is unless the user says it: rasters of roads that roadfix wrote are roads, all others imagery. A file
 /// that neither opens as raster nor as vectors is reported by name.
 FileKind kind_of(const std::string& path, const std::string& layer) {
   constexpr FileKind kVectors;
@@ -76,7 +83,7 @@ FileKind kind_of(const std::string& path, const std::string& layer) {
     const GdalMessages messages;
     const DatasetPtr raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
     if (raster && is_map(*raster)) return {SourceKind::kRoadRaster, true};
-    if (raster) return {SourceKind::kImagery};
+    if (raster) return {holds_exported_roads(*raster) ? SourceKind::kRoadRaster : SourceKind::kImagery};
   }
   if (one_of(kImageEndings, ending_of(path))) {
     open_dataset(path, GDAL_OF_RASTER);  // says why not
@@ -144,7 +151,9 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
         fmt::format("{}: holds neither images nor vector files{}", location,
                     others.empty() ? "" : fmt::format("; to ingest {}, name it itself", others.front())));
   }
-  result.kind = meaning == SourceMeaning::kRoads ? SourceKind::kRoadRaster : SourceKind::kImagery;
+  const bool roads =
+      meaning == SourceMeaning::kRoads || (meaning == SourceMeaning::kAuto && std::ranges::all_of(images, is_exported));
+  result.kind = roads ? SourceKind::kRoadRaster : SourceKind::kImagery;
   result.paths = std::move(images);
   if (result.paths.empty()) {
     result.kind = SourceKind::kRoadVectors;

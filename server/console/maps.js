@@ -1,9 +1,9 @@
 // The list of maps as the page shows it: what an answer of /v1/maps makes of it while the operator's choice stays.
 
-const STATES = { empty: 'nothing is ingested yet', incomplete: 'still being ingested' };
+const STATES = { empty: 'nothing is ingested yet', incomplete: 'still being ingested', damaged: 'parts of it are lost' };
 
 /// Whether there is ground to show and to search.
-const usable = (map) => map.status === 'ready' || map.status === 'incomplete';
+const usable = (map) => ['ready', 'incomplete', 'damaged'].includes(map.status) && map.bbox !== null;
 
 function textOf(map) {
   const state = map.reason ?? STATES[map.status];

@@ -11,6 +11,15 @@ namespace {
 
 using nlohmann::json;
 
+/// Blocks of a source in force that are missing, as verify --repair leaves it.
+bool is_damaged(const SourceStatus& source) { return source.complete && source.blocks_done < source.blocks_total; }
+
+const char* status_of(const MapInfo& info) {
+  if (std::ranges::any_of(info.sources, is_damaged)) return "damaged";
+  if (info.extent.empty()) return "empty";
+  return info.pending > 0 ? "incomplete" : "ready";
+}
+
 json source_json(const SourceStatus& source) {
   const SourceRecord& r = source.record;
   json answer{{"name", r.name},
@@ -20,7 +29,9 @@ json source_json(const SourceStatus& source) {
               {"attribution", r.attribution},
               {"method", r.method},
               {"registration_sigma_m", r.registration_sigma_m},
-              {"complete", source.complete}};
+              {"complete", source.complete && !is_damaged(source)},
+              {"blocks_total", source.blocks_total},
+              {"blocks_done", source.blocks_done}};
   if (source.complete) answer["ingested_at"] = source.ingested_at;
   return answer;
 }
@@ -28,9 +39,7 @@ json source_json(const SourceStatus& source) {
 json summary(const ServedMap& map) {
   const MapInfo& info = map.reader->info();
   json answer{{"name", map.name},
-              {"status", info.extent.empty() ? "empty"
-                         : info.pending > 0  ? "incomplete"
-                                             : "ready"},
+              {"status", status_of(info)},
               {"version", info.version},
               {"epsg", info.settings.zone.epsg()},
               {"cell_m", info.settings.cell_m},

@@ -67,6 +67,24 @@ TEST(ServiceMaps, AMapWithoutLatitudeAndLongitudeHidesNoOther) {
   EXPECT_EQ(maps[1]["status"], "ready");
 }
 
+TEST(ServiceMaps, SaysWhereAMapLacksBlocks) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  testing::open_sqlite(folder / "town.gpkg")
+      .execute(
+          "UPDATE roadfix_blocks SET done = 0 WHERE (tile_row, tile_column) IN (SELECT tile_row, tile_column FROM "
+          "roadfix_blocks LIMIT 1)");
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  EXPECT_EQ(testing::json_of(client.Get("/v1/maps"))["maps"][0]["status"], "damaged");
+  const json map = testing::json_of(client.Get("/v1/maps/town"));
+  EXPECT_EQ(map["status"], "damaged");
+  const json& source = map["sources"][0];
+  EXPECT_EQ(source["complete"], false);
+  EXPECT_EQ(source["blocks_done"], source["blocks_total"].get<int>() - 1);
+}
+
 TEST(ServiceMaps, DescribesTilesAcrossThe180thMeridianWithinTheBoundsOfTileJson) {
   const testing::TemporaryFolder folder;
   const auto zone = UtmZone::from_epsg(32760).value();

@@ -28,6 +28,11 @@ const cases = {
     assert.deepEqual(texts(maps, 'c'), ['a: nothing is ingested yet', 'b: cut off', 'c: still being ingested']);
     assert.deepEqual(linesOf(maps, 'c').map((line) => line.disabled), [true, true, false]);
   },
+  'a damaged map says so and is shown as far as it goes'() {
+    const maps = [{ ...ready('a'), status: 'damaged' }, { ...ready('b'), status: 'damaged', bbox: null }];
+    assert.deepEqual(texts(maps, 'a'), ['a: parts of it are lost', 'b: parts of it are lost']);
+    assert.deepEqual(linesOf(maps, 'a').map((line) => line.disabled), [false, true]);
+  },
   'a map that appears gets a line, one that left loses it unless it is chosen'() {
     assert.deepEqual(texts([ready('a'), ready('b')], 'a'), ['a', 'b']);
     assert.deepEqual(texts([ready('b')], 'a'), ['b', 'a: no longer served']);

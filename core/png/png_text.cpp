@@ -30,17 +30,12 @@ std::uint32_t checksum(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
 }
 
-bool is_type(std::span<const std::uint8_t> type, std::string_view name) { return std::ranges::equal(type, name); }
-
-}  // namespace
-
-std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::string_view keyword,
-                                    std::string_view text) {
+std::vector<std::uint8_t> with_chunk(std::span<const std::uint8_t> png, std::string_view type, std::string_view keyword,
+                                     std::string_view between, std::string_view text) {
   assert(png.size() > kHeaderEnd && !keyword.empty() && keyword.size() < 80);
-  std::vector<std::uint8_t> typed{'t', 'E', 'X', 't'};
-  typed.insert(typed.end(), keyword.begin(), keyword.end());
-  typed.push_back(0);
-  typed.insert(typed.end(), text.begin(), text.end());
+  std::vector<std::uint8_t> typed;
+  for (const std::string_view part : {type, keyword, between, text})
+    typed.insert(typed.end(), part.begin(), part.end());
   const auto header = png.first(kHeaderEnd);
   std::vector<std::uint8_t> result(header.begin(), header.end());
   result.reserve(png.size() + typed.size() + 2 * kNumber);
@@ -49,6 +44,21 @@ std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::stri
   append(checksum(typed), result);
   result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
   return result;
+}
+
+bool is_type(std::span<const std::uint8_t> type, std::string_view name) { return std::ranges::equal(type, name); }
+
+}  // namespace
+
+std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::string_view keyword,
+                                    std::string_view text) {
+  return with_chunk(png, "tEXt", keyword, {"\0", 1}, text);
+}
+
+std::vector<std::uint8_t> with_utf8_text(std::span<const std::uint8_t> png, std::string_view keyword,
+                                         std::string_view text) {
+  constexpr std::string_view kPlain("\0\0\0\0\0", 5);  // end of the keyword, not compressed, of no said language
+  return with_chunk(png, "iTXt", keyword, kPlain, text);
 }
 
 std::optional<std::string> text_in(std::span<const std::uint8_t> png, std::string_view keyword) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/detect/feature_map_codec.hpp"
+#include "core/png/png_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
@@ -18,11 +19,18 @@ namespace {
 constexpr std::array<api::Media, 3> kFormats{
     {{"png", "image/png"}, {"tiff", "image/tiff"}, {"json", "application/json"}}};
 
-http::Response rendered(const api::Window& window, std::string_view format) {
-  if (format == "json") return json_response(api::to_json(window));
-  if (format == "tiff")
-    return {200, "image/tiff", window_tiff(window.cells.cells, window.zone, api::geotransform(window))};
-  const auto png = encode_feature_map(window.cells);
+http::Response rendered(const api::Window& window, const MapInfo& info, std::string_view format) {
+  const std::string credits = credits_of(info);
+  if (format == "json") {
+    auto json = api::to_json(window);
+    json["attribution"] = credits;
+    return json_response(json);
+  }
+  if (format == "tiff") {
+    return {200, "image/tiff", window_tiff(window.cells.cells, window.zone, api::geotransform(window), info)};
+  }
+  auto png = encode_feature_map(window.cells);
+  if (!credits.empty()) png = with_utf8_text(png, "Copyright", credits);
   return {200, "image/png", std::string(png.begin(), png.end())};
 }
 
@@ -33,7 +41,7 @@ http::Response get_window(const Service& service, const http::Request& request, 
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
   const api::Window window = api::cut_window(map->view, asked, service.limits);
-  http::Response response = rendered(window, format);
+  http::Response response = rendered(window, map->reader->info(), format);
   // What a picture cannot say about itself, so that it can be posted back: its pose and cell size.
   response.headers.emplace_back("Roadfix-Pose", api::pose_json(window.pose).dump());
   response.headers.emplace_back("Roadfix-Cell-M", fmt::format("{}", window.cells.cell_m));

@@ -69,6 +69,16 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
   EXPECT_EQ(testing::refusal(client_.Get("/v1/maps/town/tiles/16/70000/0.png")), "404 tile-not-found");
 }
 
+TEST_F(Service, CreditsTheMapInEveryFormatOfAWindow) {
+  const std::string window =
+      "/v1/maps/town/window?width_m=100&height_m=100&lat=" + std::to_string(town->place.lat_deg) +
+      "&lon=" + std::to_string(town->place.lon_deg);
+  EXPECT_EQ(testing::json_of(client_.Get(window + "&format=json"))["attribution"], "CC0");
+  EXPECT_THAT(client_.Get(window + "&format=png")->body, HasSubstr(std::string("iTXtCopyright\0\0\0\0\0CC0", 21)));
+  EXPECT_THAT(client_.Get(window + "&format=tiff")->body,
+              ::testing::AllOf(HasSubstr("CC0"), HasSubstr("Probability of road, by Roadfix")));
+}
+
 TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
   const json description = testing::json_of(client_.Get("/v1/maps/town/localizability/tilejson.json?footprint_m=500"));
   EXPECT_EQ(description["attribution"], "CC0");

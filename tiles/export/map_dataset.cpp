@@ -59,19 +59,24 @@ std::string description_of(const MapInfo& info) {
   return std::string(kExportedRoads) + ", from version " + info.version + " of its map";
 }
 
+void describe(GDALDataset& dataset, PixelKind kind, const MapInfo& info) {
+  for (const auto& [name, value] : provenance_items(provenance_of(info))) {
+    dataset.SetMetadataItem(name.c_str(), value.c_str());
+  }
+  if (kind != PixelKind::kProbability) return;
+  dataset.SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", description_of(info).c_str());
+  const std::string credits = credits_of(info);
+  if (!credits.empty()) dataset.SetMetadataItem("TIFFTAG_COPYRIGHT", credits.c_str());
+}
+
 MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)
     : map_(map), geometry_(geometry) {
   nRasterXSize = geometry.cols;
   nRasterYSize = geometry.rows;
   reference_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   reference_.importFromEPSG(map.info().settings.zone.epsg());
-  for (const auto& [name, value] : provenance_items(provenance_of(map.info()))) {
-    SetMetadataItem(name.c_str(), value.c_str());
-  }
+  describe(*this, kind, map.info());
   if (kind == PixelKind::kProbability) {
-    SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", description_of(map.info()).c_str());
-    const std::string credits = credits_of(map.info());
-    if (!credits.empty()) SetMetadataItem("TIFFTAG_COPYRIGHT", credits.c_str());
     SetBand(1, new MapBand<float, probability_pixel>(*this, 1, GDT_Float32, GCI_Undefined, "probability of road"));
   } else {
     SetBand(1, new MapBand<GByte, grey_pixel>(*this, 1, GDT_Byte, GCI_GrayIndex, "probability of road x 254"));

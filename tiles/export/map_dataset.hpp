@@ -17,6 +17,9 @@ enum class PixelKind {
 /// What an exported file says of itself.
 std::string description_of(const MapInfo& info);
 
+/// Description, credits and what ingest reads back, as metadata of a file that is made of the map.
+void describe(GDALDataset& dataset, PixelKind kind, const MapInfo& info);
+
 class MapDataset final : public GDALDataset {
  public:
   /// `map` must outlive it. An exception of the map ends the copy with a GDAL error; rethrow_failure() then throws it.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/units/error.hpp"
+#include "tiles/export/map_dataset.hpp"
 #include "tiles/export/probability_pixel.hpp"
 
 namespace roadfix {
@@ -52,7 +53,8 @@ std::vector<float> probabilities(const CellArray& cells) {
 
 }  // namespace
 
-std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::array<double, 6>& geotransform) {
+std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::array<double, 6>& geotransform,
+                        const MapInfo& info) {
   static std::once_flag registered;
   std::call_once(registered, GDALAllRegister);
   const MemoryFile file;
@@ -66,6 +68,7 @@ std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::
   require(reference.importFromEPSG(zone.epsg()) == OGRERR_NONE);
   auto transform = geotransform;
   require(dataset->SetSpatialRef(&reference) == CE_None && dataset->SetGeoTransform(transform.data()) == CE_None);
+  describe(*dataset, PixelKind::kProbability, info);
   GDALRasterBand* band = dataset->GetRasterBand(1);
   require(band->SetNoDataValue(static_cast<double>(kNoData)) == CE_None);
   std::vector<float> values = probabilities(cells);

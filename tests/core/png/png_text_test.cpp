@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
 
 namespace roadfix {
 namespace {
@@ -26,6 +27,15 @@ TEST(PngText, ComesBackUnderItsKeyword) {
 TEST(PngText, LeavesThePixelsAsTheyWere) {
   const cv::Mat pixels = cv::imdecode(with_text(picture(), "Title", "a town"), cv::IMREAD_UNCHANGED);
   EXPECT_EQ(cv::norm(pixels, cv::Mat(7, 5, CV_8UC1, cv::Scalar(90)), cv::NORM_INF), 0.0);
+}
+
+TEST(PngText, OfAnyLanguageIsAChunkOfItsOwnBesideTheOthers) {
+  const auto png = with_text(with_utf8_text(picture(), "Copyright", "© a town"), "Title", "a town");
+  const std::string chunk("iTXtCopyright\0\0\0\0\0© a town", 27);
+  EXPECT_NE(std::string(png.begin(), png.end()).find(chunk), std::string::npos);
+  EXPECT_EQ(text_in(png, "Title"), "a town");
+  EXPECT_EQ(cv::norm(cv::imdecode(png, cv::IMREAD_UNCHANGED), cv::Mat(7, 5, CV_8UC1, cv::Scalar(90)), cv::NORM_INF),
+            0.0);
 }
 
 TEST(PngText, IsNoneWhereItIsDamagedOrCutOff) {

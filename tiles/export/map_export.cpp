@@ -12,6 +12,7 @@
 #include "core/units/error.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/mbtiles.hpp"
+#include "tiles/export/one_side.hpp"
 
 namespace roadfix {
 namespace {
@@ -161,6 +162,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
                         fmt::format("{} x {} pixels are too many for a PNG. Export a region or coarser cells",
                                     geometry.cols, geometry.rows));
   }
+  if (options.format == ExportFormat::kMbTiles) require_one_side(map.info().settings.zone, geometry);
   // The name ends like the target: drivers look at the extension.
   const fs::path unfinished = target.parent_path() / ("unfinished-" + target.filename().string());
   remove_unfinished(unfinished);

@@ -1,5 +1,6 @@
 #include "tiles/export/map_export.hpp"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -7,10 +8,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <string>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 #include "tiles/sources/exported_roads.hpp"
@@ -166,6 +170,51 @@ TEST_F(MapExport, MbTilesCoverTheMapAtAllZooms) {
   EXPECT_LE(std::max(smallest.GetXSize(), smallest.GetYSize()), 256);
   const auto zoom = [&](const char* name) { return std::stoi(picture.data->GetMetadataItem(name)); };
   EXPECT_EQ(zoom("minzoom"), zoom("maxzoom") - band.GetOverviewCount());
+}
+
+/// Of numbers "W,S,E,N" behind the n-th "--bbox " of a text.
+GeoBox proposed_box(const std::string& text, int number) {
+  std::size_t at = 0;
+  for (int i = 0; i <= number; ++i) at = text.find("--bbox ", at) + 7;
+  GeoBox box;
+  EXPECT_EQ(std::sscanf(text.c_str() + at, "%lf,%lf,%lf,%lf", &box.south_west.lon_deg, &box.south_west.lat_deg,
+                        &box.north_east.lon_deg, &box.north_east.lat_deg),
+            4);
+  return box;
+}
+
+TEST_F(MapExport, MbTilesOnBothSidesOf180DegreesAreRefusedAndEitherSideIsNot) {
+  for (const int epsg : {32701, 32760}) {  // of Fiji: a map of either zone
+    const UtmZone zone = *UtmZone::from_epsg(epsg);
+    const fs::path across = folder / fmt::format("{}.gpkg", epsg);
+    {
+      const GridPoint at = zone.project({-16.8, 180.0});
+      const auto block = [](double metres) { return static_cast<int>(std::floor(metres / 512.0)); };
+      MapWriter writer(across, {zone, 2.0});
+      testing::TestSource source{"a", 1, {}};
+      for (const int east : {-1, 0, 1}) {
+        source.blocks.push_back({block(at.east_m) + east, -block(at.north_m)});
+      }
+      ingest(writer, source);
+    }
+    const MapReader map(across);
+    const fs::path target = folder / "out.mbtiles";
+    std::string text;
+    try {
+      export_map(map, target, {.format = ExportFormat::kMbTiles});
+    } catch (const InvalidInput& error) {
+      EXPECT_EQ(error.code(), "region-across-antimeridian");
+      text = error.what();
+    }
+    ASSERT_FALSE(text.empty());
+    for (const int side : {0, 1}) {
+      const GridBox box = grid_box_around(zone, proposed_box(text, side), map.info().extent);
+      export_map(map, target, {.format = ExportFormat::kMbTiles, .box = box});
+      EXPECT_GT(box.width_m(), 400.0) << text;
+      EXPECT_LT(Picture(target).cols(), 2048) << text;
+    }
+    EXPECT_EQ(code_of(folder / "out.tif", {}), "no error");
+  }
 }
 
 TEST_F(MapExport, SaysWhoseTheContentIs) {

@@ -13,6 +13,7 @@
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/mbtiles.hpp"
 #include "tiles/export/one_side.hpp"
+#include "tiles/export/side_files.hpp"
 
 namespace roadfix {
 namespace {
@@ -92,13 +93,7 @@ void remove_unfinished(const fs::path& unfinished) {
   std::error_code ignored;
   for (const char* suffix : {"", ".aux.xml", "-journal", ".ovr.tmp", ".msk.ovr.tmp"})
     fs::remove(unfinished.string() + suffix, ignored);
-  fs::remove(fs::path(unfinished).replace_extension(".wld"), ignored);
-}
-
-/// Overviews and statistics that other programs left beside the file that is replaced: they would be taken for its own.
-void remove_side_files(const fs::path& target) {
-  std::error_code none;
-  for (const char* suffix : {".ovr", ".aux.xml", ".msk"}) fs::remove(target.string() + suffix, none);
+  fs::remove(common_world_file(unfinished), ignored);
 }
 
 bool ends_with(const fs::path& file, std::string_view end) {
@@ -169,13 +164,13 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
   try {
     MapDataset source(map, geometry, driver.pixels);
     copy(source, driver, unfinished, {progress, stop});
-    const fs::path world = fs::path(unfinished).replace_extension(".wld");
+    const fs::path world = common_world_file(unfinished);
     const fs::path reference = unfinished.string() + ".aux.xml";
     if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, map.info());
     if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
-    if (fs::exists(world)) fs::rename(world, fs::path(target).replace_extension(".wld"));
     fs::rename(unfinished, target);
     remove_side_files(target);
+    if (fs::exists(world)) fs::rename(world, common_world_file(target));
     if (fs::exists(reference)) fs::rename(reference, target.string() + ".aux.xml");
     remove_unfinished(unfinished);
   } catch (const fs::filesystem_error& error) {

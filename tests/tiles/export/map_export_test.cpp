@@ -157,6 +157,21 @@ TEST_F(MapExport, WhatOtherProgramsLeftBesideAReplacedFileIsRemoved) {
   EXPECT_NE(Picture(target).data->GetSpatialRef(), nullptr);
 }
 
+TEST_F(MapExport, APictureLiesWhereItsMapDoesWhereverTheOneBeforeLay) {
+  const char* place = "9\n0\n0\n-9\n1\n2\n";
+  for (const char* name : {"out.pgw", "out.PGW", "out.pngw", "out.wld"}) std::ofstream(folder / name) << place;
+  export_map(MapReader(path), folder / "out.png", {.format = ExportFormat::kPng});
+  EXPECT_EQ(files(), 4U) << "map, picture, its own world file and reference system";
+  std::array<double, 6> transform{};
+  Picture(folder / "out.png").data->GetGeoTransform(transform.data());
+  EXPECT_EQ(transform[1], 2.0);
+
+  std::ofstream(folder / "out.tfw") << place;
+  export_map(MapReader(path), folder / "out.tif", {.format = ExportFormat::kCog});
+  EXPECT_FALSE(fs::exists(folder / "out.tfw"));
+  EXPECT_TRUE(fs::exists(folder / "out.wld")) << "of the PNG beside it";
+}
+
 TEST_F(MapExport, MbTilesCoverTheMapAtAllZooms) {
   const auto target = folder / "out.mbtiles";
   export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});

@@ -19,6 +19,7 @@
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "tiles/export/side_files.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
@@ -74,6 +75,17 @@ void write_place(std::filesystem::path png, const Place& place, double cell_m) {
                          place.north_west.north_m - 0.5 * cell_m));
 }
 
+/// Where picture and target differ in their endings alone, one world file would serve both: the picture's is neither
+/// taken away nor left to say where a frame lies.
+void require_own_world_file(const DetectOptions& options) {
+  namespace fs = std::filesystem;
+  const fs::path world = fs::absolute(common_world_file(options.target)).lexically_normal();
+  if (fs::absolute(common_world_file(options.image)).lexically_normal() != world || !fs::exists(world)) return;
+  throw InvalidInput("target-is-source",
+                     fmt::format("{} belongs to {}, and would be taken for that of {}: name another file",
+                                 world.string(), options.image, options.target));
+}
+
 double mean_probability(const CellArray& cells) {
   double sum = 0.0;
   for (const Cell cell : cells.cells()) {
@@ -85,6 +97,7 @@ double mean_probability(const CellArray& cells) {
 void run_detect(const DetectOptions& options) {
   require_apart({options.target}, {options.image});
   require_png_name(options.target);
+  require_own_world_file(options);
   const auto detector = make_detector(options.detector);
   const Picture picture = read_picture(options, *detector);
   const auto start = std::chrono::steady_clock::now();
@@ -96,6 +109,7 @@ void run_detect(const DetectOptions& options) {
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map);
   write_file(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
+  remove_side_files(options.target);
   if (picture.place) write_place(options.target, *picture.place, options.cell_m);
   nlohmann::json answer{{"feature_map", options.target},
                         {"cell_m", options.cell_m},

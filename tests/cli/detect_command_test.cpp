@@ -1,4 +1,5 @@
 // roadfix detect as a script meets it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -108,6 +109,25 @@ TEST_F(DetectCommand, KeepsThePlaceOfAGeoreferencedImage) {
   EXPECT_EQ(nlohmann::json::parse(result.out)["crs"], "EPSG:32637");
   EXPECT_EQ(text_of(folder / "roads.pgw"), "2\n0\n0\n-2\n434001.000\n4179999.000\n");
   EXPECT_THAT(text_of(folder / "roads.png.aux.xml"), HasSubstr("EPSG:32637"));
+}
+
+TEST_F(DetectCommand, AFrameLiesNowhereWhateverWasThereBefore) {
+  for (const char* name : {"roads.pgw", "roads.png.aux.xml", "roads.wld"}) std::ofstream(folder / name) << "of old";
+  ASSERT_EQ(detect("--gsd 0.5").code, 0);
+  for (const char* name : {"roads.pgw", "roads.png.aux.xml", "roads.wld"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  }
+}
+
+TEST_F(DetectCommand, KeepsTheWorldFileOfTheFrame) {
+  std::filesystem::copy(folder / "frame.png", folder / "roads.jpg");
+  std::ofstream(folder / "roads.wld") << "of the frame";
+  const ProgramResult result =
+      run_program(folder.path(), fmt::format("detect --detector tree {} {} --gsd 0.5", (folder / "roads.jpg").string(),
+                                             (folder / "roads.png").string()));
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("roads.wld belongs to"), HasSubstr("[target-is-source]")));
+  EXPECT_EQ(text_of(folder / "roads.wld"), "of the frame");
 }
 
 TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -32,7 +33,7 @@ struct FramesOptions {
 
 /// A picture whose file says all that a row needs.
 struct Frame {
-  fs::path file;
+  std::string name;  ///< as the table has it
   std::string sequence;
   DronePicture picture;
   double agl_m = 0.0;
@@ -83,18 +84,41 @@ std::string lacks(const DronePicture& picture, const std::optional<double>& agl_
   return missing.empty() ? "" : fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
 }
 
+bool fits_a_cell(std::string_view text) {
+  return text.find_first_of(",\r\n") == std::string_view::npos && trimmed(text) == text;
+}
+
+/// Why the table cannot name it or its flight; empty where it can.
+std::string unnameable(const std::string& name, const std::string& sequence) {
+  if (!fits_a_cell(name)) {
+    return fmt::format(
+        "no CSV can hold the commas, line breaks or outer blanks of '{}': rename it, or write the table "
+        "into its folder",
+        name);
+  }
+  if (!fits_a_cell(sequence)) {
+    return fmt::format(
+        "no CSV can hold the commas, line breaks or outer blanks of its folder's name, '{}': name the "
+        "flight with --sequence",
+        sequence);
+  }
+  return "";
+}
+
 /// nullopt, said on stderr, where the file does not tell enough.
-std::optional<Frame> frame_of(const fs::path& file, const FramesOptions& options) {
+std::optional<Frame> frame_of(const fs::path& file, const fs::path& table_folder, const FramesOptions& options) {
   DronePicture picture = drone_picture(read_picture_tags(file));
   const auto agl_m = agl_of(picture, options);
-  const std::string reason =
-      file.string().find(',') == std::string::npos ? lacks(picture, agl_m) : "no CSV can hold the comma in its name";
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  const std::string name = whole.lexically_proximate(table_folder).generic_string();
+  const std::string sequence = options.sequence.empty() ? whole.parent_path().filename().string() : options.sequence;
+  std::string reason = unnameable(name, sequence);
+  if (reason.empty()) reason = lacks(picture, agl_m);
   if (!reason.empty()) {
     fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
     return std::nullopt;
   }
-  const std::string folder = fs::absolute(file).lexically_normal().parent_path().filename();
-  return Frame{file, options.sequence.empty() ? folder : options.sequence, std::move(picture), *agl_m};
+  return Frame{name, sequence, std::move(picture), *agl_m};
 }
 
 /// With two decimals, and without the sign of a zero.
@@ -102,24 +126,24 @@ std::string hundredths(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", std::round(*value * 100.0) / 100.0 + 0.0) : "";
 }
 
-std::string row_of(const Frame& frame, const fs::path& folder) {
+std::string row_of(const Frame& frame) {
   const DronePicture& p = frame.picture;
   const std::string time = p.time_s ? fmt::format("{:.3f}", *p.time_s) : "";
   const std::string principal =
       p.principal_px ? fmt::format("{:.2f} {:.2f}", p.principal_px->x, p.principal_px->y) : "";
-  return fmt::format("{},{},{},{:.8f},{:.8f},{:.2f},{:.2f},{:.2f},{},{},{},{}\n",
-                     fs::absolute(frame.file).lexically_normal().lexically_proximate(folder).generic_string(),
-                     frame.sequence, time, p.place->lat_deg, p.place->lon_deg, p.heading->compass_degrees(),
-                     frame.agl_m, p.focal_px.value(), hundredths(p.roll_deg), hundredths(p.pitch_deg), principal,
-                     fmt::join(p.distortion, " "));
+  return fmt::format("{},{},{},{:.8f},{:.8f},{:.2f},{:.2f},{:.2f},{},{},{},{}\n", frame.name, frame.sequence, time,
+                     p.place->lat_deg, p.place->lon_deg, p.heading->compass_degrees(), frame.agl_m, p.focal_px.value(),
+                     hundredths(p.roll_deg), hundredths(p.pitch_deg), principal, fmt::join(p.distortion, " "));
 }
 
 void run_frames(const FramesOptions& options) {
+  const fs::path folder =
+      options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
   std::vector<Frame> frames;
   const auto files = files_of(options.pictures);
   for (const fs::path& file : files) {
     require_apart({options.csv}, {file});
-    if (auto frame = frame_of(file, options)) frames.push_back(std::move(*frame));
+    if (auto frame = frame_of(file, folder, options)) frames.push_back(std::move(*frame));
   }
   if (frames.empty()) {
     throw InvalidInput("no-drone-pictures",
@@ -127,10 +151,8 @@ void run_frames(const FramesOptions& options) {
                        "or shrink pictures often drop that; take them as the drone stored them");
   }
   std::ranges::stable_sort(frames, {}, [](const Frame& f) { return std::pair(f.sequence, f.picture.time_s); });
-  const fs::path folder =
-      options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
   std::string table = kColumns;
-  for (const Frame& frame : frames) table += row_of(frame, folder);
+  for (const Frame& frame : frames) table += row_of(frame);
   if (options.csv.empty()) {
     fmt::print("{}", table);
   } else {
@@ -156,7 +178,10 @@ void add_frames_command(CLI::App& app) {
   const auto options = std::make_shared<FramesOptions>();
   command->add_option("pictures", options->pictures, "JPEG files, or folders of them")->required();
   command->add_option("--csv", options->csv, "File to write, from which the pictures are named; default: print");
-  command->add_option("--sequence", options->sequence, "Name of the flight; default: that of the folder");
+  command->add_option("--sequence", options->sequence, "Name of the flight; default: that of the folder")
+      ->check([](const std::string& name) {
+        return fits_a_cell(name) ? "" : "no CSV can hold commas, line breaks or outer blanks";
+      });
   command->add_option("--takeoff-agl", options->takeoff_agl_m,
                       "How many metres the take-off lay above the ground in the pictures; default: 0");
   command->callback([options] { run_frames(*options); });

@@ -78,8 +78,24 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
   EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("bare.jpg is left out: its file does not tell its place"),
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
-                                HasSubstr("a,b.jpg is left out: no CSV can hold the comma"),
+                                HasSubstr("a,b.jpg is left out: no CSV can hold the commas"),
                                 HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
+}
+
+TEST_F(FramesCommand, WritesNoTableThatItsNamesBreak) {
+  picture("0001.jpg", tags(118.0));
+  const auto flight = folder / "north, a" / "flight, b";
+  std::filesystem::create_directory(folder / "north, a");
+  std::filesystem::rename(folder / "flight 1", flight);
+  const auto table = [&](const std::filesystem::path& csv, const std::string& more) {
+    return frames(fmt::format("'{}' --csv '{}' {}", flight.string(), csv.string(), more));
+  };
+  EXPECT_THAT(table(folder / "north, a" / "frames.csv", "--sequence b").err,
+              HasSubstr("of 'flight, b/0001.jpg': rename it, or write the table into its folder"));
+  EXPECT_THAT(table(flight / "frames.csv", "").err, HasSubstr("'flight, b': name the flight with --sequence"));
+  EXPECT_EQ(table(flight / "frames.csv", "--sequence 'a, b'").code, 2);
+  ASSERT_EQ(table(flight / "frames.csv", "--sequence b").code, 0);
+  EXPECT_EQ(bench::parse_frames_csv(text_of(flight / "frames.csv")).at(0).file, "0001.jpg");
 }
 
 TEST_F(FramesCommand, LeavesOutWhatWasMadeSmallerByAProgramThatDidNotSaySo) {

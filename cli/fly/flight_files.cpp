@@ -5,8 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
 #include "core/locate/ellipse.hpp"
+#include "server/api/geojson.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -22,35 +24,28 @@ PositionCovariance covariance_of(const TrackCluster& cluster) {
   return position_covariance({sigma[0] * sigma[0], sigma[1] * sigma[1]}, cluster.ellipse_heading);
 }
 
-json place(GridPoint point, const UtmZone& zone) {
-  const LatLon at = zone.unproject(point);
-  return {at.lon_deg, at.lat_deg};
-}
-
 json ellipse(const Record& record, const UtmZone& zone) {
   constexpr int kCorners = 36;
   const auto& sigma = record.estimate.clusters.front().sigma_m;
   const Angle axis = axis_of(record, zone);
-  json ring = json::array();
+  std::vector<LatLon> ring;
   for (int i = 0; i <= kCorners; ++i) {
     // Against the clock, as GeoJSON wants its outer rings.
     const double t = -2.0 * std::numbers::pi * (i % kCorners) / kCorners;
     const double along = kSigmasOf95 * sigma[0] * std::cos(t);
     const double across = kSigmasOf95 * sigma[1] * std::sin(t);
-    ring.push_back(place({record.best.position.east_m + along * sin(axis) + across * cos(axis),
-                          record.best.position.north_m + along * cos(axis) - across * sin(axis)},
-                         zone));
+    ring.push_back(zone.unproject({record.best.position.east_m + along * sin(axis) + across * cos(axis),
+                                   record.best.position.north_m + along * cos(axis) - across * sin(axis)}));
   }
-  return {{"type", "Polygon"}, {"coordinates", json::array({ring})}};
+  return api::polygon_json(ring);
 }
 
 json feature(json geometry, json properties) {
   return {{"type", "Feature"}, {"geometry", std::move(geometry)}, {"properties", std::move(properties)}};
 }
 
-json line(const json& places, const std::string& what, const std::string& filter, const Run& run) {
-  return feature({{"type", "LineString"}, {"coordinates", places}},
-                 {{"what", what}, {"filter", filter}, {"seed", run.seed}});
+json line(const std::vector<LatLon>& places, const std::string& what, const std::string& filter, const Run& run) {
+  return feature(api::line_json(places), {{"what", what}, {"filter", filter}, {"seed", run.seed}});
 }
 
 }  // namespace
@@ -83,12 +78,12 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
 
 json geojson_features(const std::string& filter, const Run& run, const UtmZone& zone) {
   json features = json::array();
-  json truth = json::array();
-  json claimed = json::array();
+  std::vector<LatLon> truth;
+  std::vector<LatLon> claimed;
   for (const Record& record : run.records) {
-    truth.push_back(place(record.truth.position, zone));
+    truth.push_back(zone.unproject(record.truth.position));
     if (!record.estimate.converged) continue;
-    claimed.push_back(place(record.best.position, zone));
+    claimed.push_back(zone.unproject(record.best.position));
     features.push_back(feature(ellipse(record, zone), {{"what", "ellipse95"},
                                                        {"filter", filter},
                                                        {"seed", run.seed},

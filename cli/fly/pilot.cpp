@@ -110,9 +110,12 @@ std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const U
     for (const auto& feature : document.at("features")) {
       const auto& geometry = feature.at("geometry");
       if (geometry.at("type") == "Point") add(geometry.at("coordinates"));
-      if (geometry.at("type") != "LineString") continue;
+      const bool is_cut = geometry.at("type") == "MultiLineString";  // at 180 degrees
+      if (!is_cut && geometry.at("type") != "LineString") continue;
       points.clear();
-      for (const auto& place : geometry.at("coordinates")) add(place);
+      for (const auto& part : is_cut ? geometry.at("coordinates") : nlohmann::json{geometry.at("coordinates")}) {
+        for (const auto& place : part) add(place);
+      }
       break;
     }
   } catch (const nlohmann::json::exception& problem) {

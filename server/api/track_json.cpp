@@ -1,9 +1,11 @@
 #include "server/api/track_json.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "core/units/error.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/geojson.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -88,7 +90,7 @@ json stored_json(const std::string& text) {
 
 json history_json(std::span<const std::string> answers) {
   json features = json::array();
-  json line = json::array();
+  std::vector<LatLon> line;
   for (const std::string& text : answers) {
     const json answer = stored_json(text);
     json properties{
@@ -98,16 +100,15 @@ json history_json(std::span<const std::string> answers) {
       for (const char* name : {"sigma_m", "ellipse_heading_deg", "heading_sigma_deg"})
         properties[name] = answer.at(name);
       properties["heading_deg"] = answer.at("pose").at("heading_deg");
-      line.push_back(answer.at("geometry").at("coordinates"));
+      const json& place = answer.at("geometry").at("coordinates");
+      line.push_back({place.at(1).get<double>(), place.at(0).get<double>()});
     }
     features.push_back({{"type", "Feature"},
                         {"geometry", placed ? answer.at("geometry") : json()},
                         {"properties", std::move(properties)}});
   }
   if (line.size() > 1) {
-    features.push_back({{"type", "Feature"},
-                        {"geometry", {{"type", "LineString"}, {"coordinates", std::move(line)}}},
-                        {"properties", json::object()}});
+    features.push_back({{"type", "Feature"}, {"geometry", line_json(line)}, {"properties", json::object()}});
   }
   return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
 }

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/geojson.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -64,12 +67,11 @@ GridPoint corner(const Window& window, double col, double row) {
 json footprint(const Window& window) {
   const double cols = window.cells.cells.cols();
   const double rows = window.cells.cells.rows();
-  json ring = json::array();
+  std::vector<LatLon> ring;
   for (const auto& [col, row] : {std::pair{0.0, 0.0}, {0.0, rows}, {cols, rows}, {cols, 0.0}, {0.0, 0.0}}) {
-    const LatLon at = window.zone.unproject(corner(window, col, row));
-    ring.push_back({at.lon_deg, at.lat_deg});
+    ring.push_back(window.zone.unproject(corner(window, col, row)));
   }
-  return {{"type", "Polygon"}, {"coordinates", json::array({ring})}};
+  return polygon_json(ring);
 }
 
 }  // namespace

@@ -197,6 +197,11 @@ TEST(Pilots, WaypointsComeFromALineOfGeoJsonAndBadFilesAreRefused) {
       read(R"({"features":[{"geometry":{"type":"LineString","coordinates":[[21,57.5],[21.01,57.5]]}}]})");
   ASSERT_EQ(points.size(), 2u);
   EXPECT_NEAR(points[0].east_m, 500'000.0, 1e-3);
+  EXPECT_EQ(
+      read(
+          R"({"features":[{"geometry":{"type":"MultiLineString","coordinates":[[[21,57.5],[21.01,57.5]],[[21.02,57.5]]]}}]})")
+          .size(),
+      3u);
   EXPECT_EQ(code_of([&] { read("not json"); }), "waypoints-unreadable");
   EXPECT_EQ(code_of([&] { read(R"({"features":[]})"); }), "waypoints-unreadable");
   EXPECT_EQ(code_of([&] { read(R"({"features":[{"geometry":{"type":"Point","coordinates":[21]}}]})"); }),

@@ -100,6 +100,19 @@ TEST(FlightFiles, GiveALineForEachStepAndTheEllipseOfEachClaim) {
   EXPECT_EQ(features[3]["geometry"]["coordinates"].size(), 2u);
 }
 
+TEST(FlightFiles, CutWhatLiesOnBothSidesOf180Degrees) {
+  const UtmZone zone = UtmZone::from_epsg(32760).value();
+  fly::Run run = run_with({-5.0, -5.0});
+  run.records[0].truth = run.records[0].best = {zone.project({-17.0, 179.999}), {}};
+  run.records[1].truth = run.records[1].best = {zone.project({-17.0, 180.0}), {}};
+  run.records[1].truth.position.east_m += 100.0;
+  const auto features = geojson_features("default", run, zone);
+  ASSERT_EQ(features.size(), 4u);
+  EXPECT_EQ(features[0]["geometry"]["type"], "Polygon");
+  EXPECT_EQ(features[1]["geometry"]["type"], "MultiPolygon");
+  EXPECT_EQ(features[2]["geometry"]["type"], "MultiLineString");
+}
+
 TEST(FlightFiles, GiveTheCovarianceToTrueEastAndNorthAsTheEllipse) {
   const UtmZone zone = UtmZone::from_epsg(32634).value();
   fly::Run run = run_with({-5.0});

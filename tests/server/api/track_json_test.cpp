@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tests/support/code_of.hpp"
 
@@ -72,6 +74,28 @@ TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
     damaged[name] = 7e111;
     EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
   }
+}
+
+std::string answer_at(double lon_deg) {
+  return nlohmann::json{{"sequence", 1},
+                        {"time_us", 1},
+                        {"status", "converged"},
+                        {"geometry", {{"type", "Point"}, {"coordinates", {lon_deg, -17.0}}}},
+                        {"pose", {{"heading_deg", 90.0}}},
+                        {"sigma_m", {1.0, 1.0}},
+                        {"ellipse_heading_deg", 0.0},
+                        {"heading_sigma_deg", 1.0}}
+      .dump();
+}
+
+TEST(TrackHistory, EndsWithTheFlightAsALineThatIsCutAt180Degrees) {
+  const auto line_of = [](const std::vector<std::string>& answers) {
+    return history_json(answers)["features"].back()["geometry"];
+  };
+  EXPECT_EQ(line_of({answer_at(178.5), answer_at(179.5)}),
+            nlohmann::json::parse(R"({"type": "LineString", "coordinates": [[178.5, -17.0], [179.5, -17.0]]})"));
+  EXPECT_EQ(line_of({answer_at(179.5), answer_at(-179.5)}), nlohmann::json::parse(R"({"type": "MultiLineString",
+      "coordinates": [[[179.5, -17.0], [180.0, -17.0]], [[-180.0, -17.0], [-179.5, -17.0]]]})"));
 }
 
 }  // namespace

@@ -106,5 +106,14 @@ TEST(Window, TellsItsGroundInJson) {
   EXPECT_EQ(described["map"]["version"], "v1");
 }
 
+TEST(Window, HasAFootprintOfTwoPartsOnBothSidesOf180Degrees) {
+  Window window = cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {});
+  window.zone = *UtmZone::from_epsg(32760);
+  window.grid_pose.position = window.zone.project({-17.0, 180.0});
+  const auto footprint = to_json(window)["footprint"];
+  EXPECT_EQ(footprint["type"], "MultiPolygon");
+  EXPECT_EQ(footprint["coordinates"].size(), 2U);
+}
+
 }  // namespace
 }  // namespace roadfix::api

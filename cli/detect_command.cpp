@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -109,8 +110,10 @@ void run_detect(const DetectOptions& options) {
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map);
   write_file(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
-  remove_side_files(options.target);
-  if (picture.place) write_place(options.target, *picture.place, options.cell_m);
+  if (std::filesystem::is_regular_file(options.target) && !is_standard_output(options.target)) {
+    remove_side_files(options.target);
+    if (picture.place) write_place(options.target, *picture.place, options.cell_m);
+  }
   nlohmann::json answer{{"feature_map", options.target},
                         {"cell_m", options.cell_m},
                         {"cols", cells.cols()},
@@ -122,16 +125,17 @@ void run_detect(const DetectOptions& options) {
                         {"detector", detector->describe()},
                         {"time_ms", time.count()}};
   if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
+  std::FILE* out = is_standard_output(options.target) ? stderr : stdout;
   if (options.json) {
-    fmt::print("{}\n", json_text(answer));
+    fmt::print(out, "{}\n", json_text(answer));
   } else {
-    fmt::print(
-        "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
-        "UAV above column {:.1f}, row {:.1f}{}\n{}\n",
-        options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(), mean_probability(cells),
-        time.count(), map.nadir.col, map.nadir.row,
-        map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
-        detector->describe());
+    fmt::print(out,
+               "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
+               "UAV above column {:.1f}, row {:.1f}{}\n{}\n",
+               options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(),
+               mean_probability(cells), time.count(), map.nadir.col, map.nadir.row,
+               map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
+               detector->describe());
   }
 }
 

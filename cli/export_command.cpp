@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "cli/bbox_option.hpp"
 #include "cli/command.hpp"
@@ -43,8 +44,22 @@ ExportFormat format_of(const ExportArguments& options) {
                                  options.target));
 }
 
+/// An export that fails leaves the file of before, since it is written beside it and renamed: no device takes that.
+void require_file(const std::string& target) {
+  namespace fs = std::filesystem;
+  const bool is_device = fs::absolute(target).lexically_normal().string().starts_with("/dev/");
+  std::error_code none;  // where it does not exist yet
+  const bool is_other = fs::exists(target, none) && !fs::is_regular_file(target, none);
+  if (target != "-" && !is_device && !is_other) return;
+  throw InvalidInput("target-not-file",
+                     fmt::format("{} is no file, and an export goes into a file only: name one (./- if that is its "
+                                 "name)",
+                                 target));
+}
+
 void run_export(const ExportArguments& options) {
   const std::stop_token stop = stop_on_signals();
+  require_file(options.target);
   const MapReader map(options.map);
   require_apart({options.target}, {options.map});
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};

@@ -33,6 +33,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 void require_apart(std::initializer_list<fs::path> outputs, std::initializer_list<fs::path> inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    if (*output == "-") {
+      throw InvalidInput("target-is-dash",
+                         "- stands for no output here: name a file (./- for one of this name) or /dev/stdout");
+    }
     const auto is_it = [&](const fs::path& other) { return same_file(*output, other); };
     if (std::any_of(inputs.begin(), inputs.end(), is_it)) {
       throw InvalidInput("target-is-source",
@@ -56,6 +60,11 @@ void write_file(const fs::path& file, std::string_view bytes) {
   std::error_code ignored;  // the first failure is the one to tell of
   if (fs::is_regular_file(file, ignored)) fs::remove(file, ignored);
   unwritable(file, reason);
+}
+
+bool is_standard_output(const fs::path& file) {
+  std::error_code none;  // where the file does not exist yet
+  return fs::equivalent(file, "/dev/stdout", none);
 }
 
 void require_writable(std::initializer_list<fs::path> files) {

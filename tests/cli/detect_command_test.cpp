@@ -70,6 +70,16 @@ TEST_F(DetectCommand, WritesNoPngUnderTheNameOfAnotherFormat) {
   }
 }
 
+TEST_F(DetectCommand, WritesNothingButThePngToStandardOutput) {
+  const std::string frame = "detect --detector tree " + (folder / "frame.png").string() + " --gsd 0.5 ";
+  const ProgramResult result = run_program(folder.path(), frame + "/dev/stdout");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("50 x 30 cells"));
+  EXPECT_EQ(run_program(folder.path(), frame + (folder / "roads.png").string()).code, 0);
+  EXPECT_EQ(result.out, text_of(folder / "roads.png"));
+  EXPECT_THAT(run_program(folder.path(), frame + "-").err, HasSubstr("[target-is-dash]"));
+}
+
 TEST_F(DetectCommand, TurnsAFrameOfKnownScaleIntoCells) {
   const ProgramResult result = detect("--gsd 0.5 --json");
   ASSERT_EQ(result.code, 0) << result.err;

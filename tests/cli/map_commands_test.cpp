@@ -132,6 +132,10 @@ TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {
   EXPECT_EQ(begin_of("a.out", "--format png"), "\x89PNG");
   EXPECT_THAT(roadfix("export " + path.string() + " a.jpg").err, HasSubstr("[export-format-unknown]"));
   EXPECT_EQ(roadfix("export " + path.string() + " a.tif --format jpg").code, 2);
+  for (const std::string& target : {std::string("-"), std::string("/dev/null"), folder.path().string()}) {
+    EXPECT_THAT(roadfix("export " + path.string() + " " + target + " --format png").err,
+                HasSubstr("[target-not-file]"));
+  }
   EXPECT_THAT(roadfix("export " + path.string() + " " + path.string() + " --format png").err,
               HasSubstr("[target-is-source]"));
 }

@@ -54,6 +54,8 @@ TEST(OutputFile, IsNeitherWrittenOverWhatIsReadNorOverAnotherResult) {
   EXPECT_EQ(refusal(json, folder.path() / "out.csv"), "no error");
   EXPECT_EQ(refusal("", ""), "no error");
   EXPECT_EQ(refusal("/dev/null", "/dev/null"), "no error");
+  EXPECT_EQ(refusal(json, "-"), "target-is-dash");
+  EXPECT_EQ(refusal(json, "./-"), "no error");
   EXPECT_EQ(refusal(json, folder.path() / "none" / ".." / "map.gpkg"), "target-is-source");
   EXPECT_EQ(refusal(folder.path() / "link", json), "target-is-source");
   EXPECT_EQ(refusal(json, folder.path() / "." / "out.json"), "target-given-twice");

@@ -16,6 +16,7 @@
 #include "cli/json_text.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
+#include "core/geodesy/geo_box.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -74,6 +75,8 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
   fly::ServicePlan plan;
   plan.base = options.server;
   plan.map = options.served_map.empty() ? std::filesystem::path(options.map).stem().string() : options.served_map;
+  // The whole map is served: what lies around the square is not hidden from the track, but its start.
+  if (options.area_m > 0.0) plan.area = geo_box_around(map.zone, map.extent);
   plan.particles = options.particles;
   plan.measure_every = options.measure_every;
   plan.vehicle = vehicle_of(options);

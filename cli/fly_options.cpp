@@ -59,7 +59,9 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
   };
   add("--course", o.course, "random, survey, or a GeoJSON file of waypoints")->type_name("COURSE");
   add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(positive());
-  add("--area-m", o.area_m, "Only the square of this side in the middle of the map; 0 = all")->check(not_negative());
+  add("--area-m", o.area_m,
+      "Only the square of this side in the middle of the map, with --server as the bbox where tracks begin; 0 = all")
+      ->check(not_negative());
   command.add_option("--steps", o.steps, "Steps of a flight, at most; default: 100, of a recorded flight all")
       ->group(kGroup)
       ->check(CLI::Range(1, 100'000));

@@ -2,16 +2,19 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <stop_token>
 #include <string>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/locate/tracker.hpp"
 
 namespace roadfix::fly {
 
 struct ServicePlan {
-  std::string base;  ///< "http://HOST:PORT"
-  std::string map;   ///< its name there
+  std::string base;            ///< "http://HOST:PORT"
+  std::string map;             ///< its name there
+  std::optional<GeoBox> area;  ///< where tracks begin, if not anywhere on the map
   int particles = 10'000;
   int measure_every = 1;
   VehicleNoise vehicle;

@@ -88,6 +88,10 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
                {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
                {"wind_walk", plan.vehicle.wind.walk},
                {"scale_range", plan.vehicle.scale_range}};
+  if (const auto& area = plan.area) {
+    request["bbox"] = {area->south_west.lon_deg, area->south_west.lat_deg, area->north_east.lon_deg,
+                       area->north_east.lat_deg};
+  }
   if (plan.vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
     request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;

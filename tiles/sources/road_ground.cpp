@@ -24,8 +24,10 @@ double min_side_m(std::span<const RoadLine> lines) {
   return side_m;
 }
 
-/// No map holds what lies on two sides of the Earth, and roads on both sides of the 180th meridian seem to.
-void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+/// No map holds what lies on two sides of the Earth, and roads on both sides of the 180th meridian seem to. `strays` is
+/// what is to be said of where most of them lie, or empty.
+void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path,
+                                   const std::string& strays) {
   const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
   std::array<double, 2> lon{box.MinX, box.MaxX};
   std::array<double, 2> lat{(box.MinY + box.MaxY) / 2.0, (box.MinY + box.MaxY) / 2.0};
@@ -34,8 +36,8 @@ void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialRefer
   throw InvalidInput(
       "roads-around-the-earth",
       fmt::format("{}: it reaches from longitude {:.2f} to {:.2f}, and no map holds both. Name the ground of the map "
-                  "with --extent W,S,E,N; across the 180th meridian W is larger than E, as in 179.5,-17,-179.5,-16",
-                  path, lon[0], lon[1]));
+                  "with --extent W,S,E,N; across the 180th meridian W is larger than E, as in 179.5,-17,-179.5,-16{}{}",
+                  path, lon[0], lon[1], strays.empty() ? "" : ". ", strays));
 }
 
 }  // namespace
@@ -81,14 +83,16 @@ void add_covered(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadPar
       box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), file.path());
   if (layer.classified() || tile) parts.classified.covered.push_back(covered);
   if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
-  if (tile || parts.strays_noted) return;
+  if (tile) return;
   RoadNetwork& network = parts.network_of(layer);
-  if (const auto note = note_on_stray_roads(network, lines, covered.box(), zone)) {
-    network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
+  const auto strays = note_on_stray_roads(network, lines, covered.box(), zone);
+  require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path(), strays.value_or(""));
+  if (parts.strays_noted) return;
+  if (strays) {
+    network.notes.push_back(fmt::format("{}: {}", file.path(), *strays));
     parts.strays_noted = true;
     return;
   }
-  require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path());
   if (parts.bare_rim_noted) return;
   if (const auto note = note_on_bare_rim(network, lines)) {
     network.notes.push_back(fmt::format("{}: {}", file.path(), *note));

@@ -183,6 +183,20 @@ TEST_F(RoadLines, AcrossThe180thMeridianAskForAnExtent) {
   EXPECT_EQ(read("179.5,-17,-179.5,-16").lines.size(), 2U);
 }
 
+TEST_F(RoadLines, OfATownAcrossThe180thMeridianAskForTheExtentOfTheTown) {
+  std::vector<std::string> roads;
+  for (int i = 0; i < 40; ++i) {
+    const double lon = 179.99 + 0.0005 * i;
+    roads.push_back(fmt::format(
+        R"({{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[{0},-16.5],[{0},-16.49]]}}}})",
+        lon > 180.0 ? lon - 360.0 : lon));
+  }
+  const std::string path = geojson(roads);
+  const auto read = [&] { read_road_network({path}, {}, RoadRules(), *UtmZone::from_epsg(32760)); };
+  EXPECT_EQ(code_of(read), "roads-around-the-earth");
+  EXPECT_THAT(message_of(read), HasSubstr("--extent 179.9"));
+}
+
 TEST_F(RoadLines, OfDegreesThatAreDeclaredAsMetresAreRefused) {
   const std::string road = feature(R"("highway":"primary")", at(-50, -50), at(50, 50));
   for (const char* crs : {"EPSG:32637", "EPSG:3857", "EPSG:2263"}) {

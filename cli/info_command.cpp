@@ -31,7 +31,7 @@ json source_json(const SourceStatus& source) {
           {"attribution", r.attribution},
           {"method", r.method},
           {"registration_sigma_m", r.registration_sigma_m},
-          {"complete", source.complete},
+          {"complete", source.complete && !source.is_damaged()},
           {"blocks_total", source.blocks_total},
           {"blocks_done", source.blocks_done},
           {"ingested_at", source.ingested_at}};
@@ -75,13 +75,13 @@ void print_extent(const MapInfo& info) {
 }
 
 std::string state_of(const SourceStatus& source) {
-  const std::int64_t lost = source.blocks_total - source.blocks_done;
   if (!source.complete) {
     return fmt::format("incomplete: {} of {} blocks. Repeat the ingest to go on", source.blocks_done,
                        source.blocks_total);
   }
-  if (lost > 0) {
-    return fmt::format("damaged: {} of {} blocks are lost. Ingest it again with --replace", lost, source.blocks_total);
+  if (source.is_damaged()) {
+    return fmt::format("damaged: {} of {} blocks are lost. Ingest it again with --replace",
+                       source.blocks_total - source.blocks_done, source.blocks_total);
   }
   return fmt::format("ingested {}", source.ingested_at);
 }

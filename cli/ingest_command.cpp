@@ -60,7 +60,7 @@ std::string directions_of(const SourceShift& shift) {
 void note_shift(MapWriter& writer, const SourceRecord& record) {
   constexpr std::int64_t kTiles = 64;
   const auto shift =
-      shift_of(writer.testimonies(record.name, kTiles), writer.settings().cell_m, record.registration_sigma_m);
+      shift_of(writer.shared_evidence(record.name, kTiles), writer.settings().cell_m, record.registration_sigma_m);
   if (!shift) return;
   fmt::print(
       stderr,

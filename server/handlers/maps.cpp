@@ -11,11 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Blocks of a source in force that are missing, as verify --repair leaves it.
-bool is_damaged(const SourceStatus& source) { return source.complete && source.blocks_done < source.blocks_total; }
-
 const char* status_of(const MapInfo& info) {
-  if (std::ranges::any_of(info.sources, is_damaged)) return "damaged";
+  if (std::ranges::any_of(info.sources, &SourceStatus::is_damaged)) return "damaged";
   if (info.extent.empty()) return "empty";
   return info.pending > 0 ? "incomplete" : "ready";
 }
@@ -29,7 +26,7 @@ json source_json(const SourceStatus& source) {
               {"attribution", r.attribution},
               {"method", r.method},
               {"registration_sigma_m", r.registration_sigma_m},
-              {"complete", source.complete && !is_damaged(source)},
+              {"complete", source.complete && !source.is_damaged()},
               {"blocks_total", source.blocks_total},
               {"blocks_done", source.blocks_done}};
   if (source.complete) answer["ingested_at"] = source.ingested_at;

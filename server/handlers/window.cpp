@@ -22,9 +22,9 @@ constexpr std::array<api::Media, 3> kFormats{
 http::Response rendered(const api::Window& window, const MapInfo& info, std::string_view format) {
   const std::string credits = credits_of(info);
   if (format == "json") {
-    auto json = api::to_json(window);
-    json["attribution"] = credits;
-    return json_response(json);
+    auto answer = api::to_json(window);
+    answer["attribution"] = credits;
+    return json_response(answer);
   }
   if (format == "tiff") {
     return {200, "image/tiff", window_tiff(window.cells.cells, window.zone, api::geotransform(window), info)};

@@ -40,7 +40,7 @@ struct Planes {
 /// The sums of a correlation for every shift of the source: rows to the south, columns to the east.
 class ShiftSums {
  public:
-  void add(const Testimonies::Tile& tile) {
+  void add(const SharedEvidence::Tile& tile) {
     const Planes own(tile.own);
     const Planes others(tile.others);
     const auto sum = [](const cv::Mat1f& a, const cv::Mat1f& b, cv::Mat1d& into) {
@@ -82,7 +82,7 @@ class ShiftSums {
 
 }  // namespace
 
-std::optional<SourceShift> shift_of(const Testimonies& testimonies, double cell_m, double own_sigma_m) {
+std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m, double own_sigma_m) {
   constexpr double kMinCorrelation = 0.15;
   constexpr double kMinGain = 1.3;
   constexpr double kMinSteps = 1.5;
@@ -90,7 +90,7 @@ std::optional<SourceShift> shift_of(const Testimonies& testimonies, double cell_
   constexpr double kMinSquares = 4000.0;  // in place; fewer say nothing of how well the sources fit
   constexpr double kMinShare = 0.5;       // of them elsewhere: a narrow overlap fits somewhere by chance
   ShiftSums sums;
-  for (const Testimonies::Tile& tile : testimonies.tiles) sums.add(tile);
+  for (const SharedEvidence::Tile& tile : shared_evidence.tiles) sums.add(tile);
   const double in_place = sums.squares(kMaxShift, kMaxShift);
   if (in_place < kMinSquares) return std::nullopt;
   SourceShift best;
@@ -107,7 +107,7 @@ std::optional<SourceShift> shift_of(const Testimonies& testimonies, double cell_
     }
   }
   const double explained_m =
-      std::max(kMinSteps * step_m, kSigmas * std::hypot(own_sigma_m, testimonies.others_sigma_m));
+      std::max(kMinSteps * step_m, kSigmas * std::hypot(own_sigma_m, shared_evidence.others_sigma_m));
   const double rim_m = step_m * kMaxShift;
   const bool at_rim = std::max(std::abs(best.east_m), std::abs(best.north_m)) == rim_m;
   const bool elsewhere = !at_rim && std::hypot(best.east_m, best.north_m) > explained_m &&

@@ -54,8 +54,8 @@ std::vector<std::string> EvidenceTable::twins_of(const std::string& source) {
   return names;
 }
 
-Testimonies EvidenceTable::testimonies(const std::string& source, std::int64_t count) {
-  Testimonies result;
+SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::int64_t count) {
+  SharedEvidence result;
   Statement shared(map_,
                    "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1), tiles AS (SELECT "
                    "e.tile_row, e.tile_column, row_number() OVER (ORDER BY e.tile_row, e.tile_column) - 1 AS place, "
@@ -69,7 +69,7 @@ Testimonies EvidenceTable::testimonies(const std::string& source, std::int64_t c
                      "roadfix_sources s ON s.id = e.source_id WHERE s.in_force = 1 AND e.tile_row = ?2 AND "
                      "e.tile_column = ?3");
   for (shared.with(source, count); shared.step();) {
-    Testimonies::Tile tile;
+    SharedEvidence::Tile tile;
     std::vector<CellArray> others;
     for (evidence.with(source, shared.integer(0), shared.integer(1)); evidence.step();) {
       CellArray cells = decode_tile(evidence.blob(0), TileDepth::kEvidence);

@@ -49,7 +49,7 @@ struct SourceRecord {
 };
 
 /// What one source says of some tiles, and what the others in force say of them together.
-struct Testimonies {
+struct SharedEvidence {
   struct Tile {
     CellArray own;
     CellArray others;
@@ -65,6 +65,9 @@ struct SourceStatus {
   std::int64_t blocks_total = 0;
   std::int64_t blocks_done = 0;
   std::string ingested_at = {};  ///< RFC 3339, empty while incomplete
+
+  /// Blocks of it are missing, as verify --repair leaves it.
+  bool is_damaged() const { return complete && blocks_done < blocks_total; }
 };
 
 struct MapInfo {

@@ -189,8 +189,8 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
 
 std::vector<std::string> MapWriter::twins_of(const std::string& source) { return state_->evidence.twins_of(source); }
 
-Testimonies MapWriter::testimonies(const std::string& source, std::int64_t count) {
-  return state_->evidence.testimonies(source, count);
+SharedEvidence MapWriter::shared_evidence(const std::string& source, std::int64_t count) {
+  return state_->evidence.shared_evidence(source, count);
 }
 
 void MapWriter::remove_if_new_and_empty() {

@@ -60,7 +60,7 @@ class MapWriter {
   std::vector<std::string> twins_of(const std::string& source);
 
   /// Of up to `count` tiles, spread evenly over those that the source shares with others in force.
-  Testimonies testimonies(const std::string& source, std::int64_t count);
+  SharedEvidence shared_evidence(const std::string& source, std::int64_t count);
 
   /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
   /// leaves no map. Nothing but the destructor may be called afterwards.

@@ -11,16 +11,16 @@ namespace {
 constexpr double kCellM = 2.0;
 
 /// Nine tiles of a town, and what a source says of them whose georeference lies so many cells too far east and south.
-Testimonies testimonies(int east, int south, std::uint64_t others_seed = 5) {
+SharedEvidence shared_evidence(int east, int south, std::uint64_t others_seed = 5) {
   constexpr int kTown = 3 * kTileCells + 200;
   const CellArray own = testing::street_map(5, {kCellM, {0, 0}, kTown, kTown}).cells;
   const CellArray others = testing::street_map(others_seed, {kCellM, {0, 0}, kTown, kTown}).cells;
-  Testimonies result;
+  SharedEvidence result;
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col) {
       const int west = 100 + kTileCells * col;
       const int north = 100 + kTileCells * row;
-      Testimonies::Tile tile{CellArray(kTileCells, kTileCells), CellArray(kTileCells, kTileCells)};
+      SharedEvidence::Tile tile{CellArray(kTileCells, kTileCells), CellArray(kTileCells, kTileCells)};
       paste(own, tile.own, east - west, south - north);
       paste(others, tile.others, -west, -north);
       result.tiles.push_back(std::move(tile));
@@ -30,7 +30,7 @@ Testimonies testimonies(int east, int south, std::uint64_t others_seed = 5) {
 }
 
 TEST(SourceShift, IsWhereASourceFitsTheOthers) {
-  const auto shift = shift_of(testimonies(12, -8), kCellM, 0.0);
+  const auto shift = shift_of(shared_evidence(12, -8), kCellM, 0.0);
   ASSERT_TRUE(shift);
   EXPECT_EQ(shift->east_m, -24.0);
   EXPECT_EQ(shift->north_m, -16.0);
@@ -39,22 +39,22 @@ TEST(SourceShift, IsWhereASourceFitsTheOthers) {
 }
 
 TEST(SourceShift, IsNoneWhereTheyAgreeOrHaveNothingInCommon) {
-  EXPECT_FALSE(shift_of(testimonies(0, 0), kCellM, 0.0));
-  EXPECT_FALSE(shift_of(testimonies(1, -1), kCellM, 0.0)) << "no more than a step";
-  EXPECT_FALSE(shift_of(testimonies(0, 0, 6), kCellM, 0.0)) << "another town";
+  EXPECT_FALSE(shift_of(shared_evidence(0, 0), kCellM, 0.0));
+  EXPECT_FALSE(shift_of(shared_evidence(1, -1), kCellM, 0.0)) << "no more than a step";
+  EXPECT_FALSE(shift_of(shared_evidence(0, 0, 6), kCellM, 0.0)) << "another town";
   EXPECT_FALSE(shift_of({}, kCellM, 0.0));
 }
 
 TEST(SourceShift, IsNoneThatTheRegistrationErrorsExplain) {
-  Testimonies both = testimonies(12, 0);
+  SharedEvidence both = shared_evidence(12, 0);
   both.others_sigma_m = 8.0;
   EXPECT_TRUE(shift_of(both, kCellM, 8.0)) << "24 m, 2 sigma are 23 m";
   EXPECT_FALSE(shift_of(both, kCellM, 9.0));
 }
 
 TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
-  Testimonies half = testimonies(12, 0);
-  for (Testimonies::Tile& tile : half.tiles) {
+  SharedEvidence half = shared_evidence(12, 0);
+  for (SharedEvidence::Tile& tile : half.tiles) {
     for (int row = 0; row < kTileCells; ++row) {
       for (int col = 0; col < kTileCells / 2; ++col) tile.own.at(col, row) = kUnobserved;
     }
@@ -66,9 +66,9 @@ TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
 }
 
 /// The source observed the west of the town, the others the east, and both a strip of so many columns.
-Testimonies overlapping(int cols, int east, int south) {
+SharedEvidence overlapping(int cols, int east, int south) {
   constexpr int kWest = 300;  // columns of the source
-  Testimonies result = testimonies(east, south);
+  SharedEvidence result = shared_evidence(east, south);
   for (std::size_t i = 0; i < result.tiles.size(); ++i) {
     const int first = static_cast<int>(i % 3) * kTileCells;
     for (int row = 0; row < kTileCells; ++row) {

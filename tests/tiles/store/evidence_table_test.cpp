@@ -37,11 +37,11 @@ TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
   const TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", settings_37n());
   ingest(writer, {"a", 1, some_blocks(3)});
-  EXPECT_TRUE(writer.testimonies("a", 9).tiles.empty()) << "there is no other";
+  EXPECT_TRUE(writer.shared_evidence("a", 9).tiles.empty()) << "there is no other";
   ingest(writer, {"b", 2, some_blocks(3, 1)});
   ingest(writer, {"c", 3, some_blocks(1, 1)});
   writer.begin_source(TestSource{"unfinished", 4, some_blocks(1)}.record(), some_blocks(1), false);
-  const Testimonies all = writer.testimonies("a", 9);
+  const SharedEvidence all = writer.shared_evidence("a", 9);
   const std::vector<TileIndex> shared = some_blocks(2, 1);
   ASSERT_EQ(all.tiles.size(), shared.size());
   EXPECT_EQ(all.others_sigma_m, 2.5);
@@ -49,13 +49,13 @@ TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
     std::vector<CellArray> others{random_cells(2, block)};
     if (block == some_blocks(1, 1).front()) others.push_back(random_cells(3, block));
     EXPECT_TRUE(std::ranges::any_of(all.tiles,
-                                    [&](const Testimonies::Tile& tile) {
+                                    [&](const SharedEvidence::Tile& tile) {
                                       return tile.own == random_cells(1, block) && tile.others == fused(others);
                                     }))
         << block.col << ' ' << block.row;
   }
-  EXPECT_EQ(writer.testimonies("a", 2).tiles.size(), 2U);
-  EXPECT_TRUE(writer.testimonies("none", 2).tiles.empty());
+  EXPECT_EQ(writer.shared_evidence("a", 2).tiles.size(), 2U);
+  EXPECT_TRUE(writer.shared_evidence("none", 2).tiles.empty());
 }
 
 }  // namespace

@@ -2,26 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "core/png/png_text.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
+#include "tests/support/encoded.hpp"
 
 namespace roadfix {
 namespace {
 
 using testing::code_of;
+using testing::encoded;
 
-constexpr std::int64_t kMany = 1'000'000;
-
-std::vector<std::uint8_t> encoded(const char* extension, const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, image, bytes);
-  return bytes;
-}
+constexpr std::int64_t kEnough = 1'000'000;
 
 TEST(FeatureMapCodec, HasNoMoreColumnsThanLibpngReads) {
   EXPECT_NO_THROW(encode_feature_map(CellArray(1'000'000, 1, kNoRoad)));
@@ -31,27 +26,27 @@ TEST(FeatureMapCodec, HasNoMoreColumnsThanLibpngReads) {
 TEST(FeatureMapCodec, EveryCellValueComesBack) {
   CellArray cells(16, 16);
   for (int i = 0; i < 256; ++i) cells.at(i % 16, i / 16) = static_cast<Cell>(i);
-  EXPECT_EQ(decode_feature_map(encode_feature_map(cells), kMany).cells, cells);
+  EXPECT_EQ(decode_feature_map(encode_feature_map(cells), kEnough).cells, cells);
 }
 
 TEST(FeatureMapCodec, AMaskOf255IsRoad) {
   const cv::Mat mask = (cv::Mat_<uchar>(1, 2) << 0, 255);
-  const CellArray cells = decode_feature_map(encoded(".png", mask), kMany).cells;
+  const CellArray cells = decode_feature_map(encoded(".png", mask), kEnough).cells;
   EXPECT_EQ(cells.at(0, 0), kNoRoad);
   EXPECT_EQ(cells.at(1, 0), kRoad);
 }
 
 TEST(FeatureMapCodec, SixteenBitsScaleLinearly) {
   const cv::Mat deep = (cv::Mat_<ushort>(1, 3) << 0, 32768, 65535);
-  const CellArray cells = decode_feature_map(encoded(".png", deep), kMany).cells;
+  const CellArray cells = decode_feature_map(encoded(".png", deep), kEnough).cells;
   EXPECT_NEAR(probability(cells.at(1, 0)), 0.5, 0.005);
   EXPECT_EQ(cells.at(2, 0), kRoad);
 }
 
 TEST(FeatureMapCodec, RefusesAFrameThatWasTakenForAFeatureMap) {
   cv::Mat frame(40, 40, CV_8UC3, cv::Scalar(90, 120, 100));
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", frame), kMany); }), "feature-map-coloured");
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".jpg", frame), kMany); }), "feature-map-coloured");
+  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", frame), kEnough); }), "feature-map-coloured");
+  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".jpg", frame), kEnough); }), "feature-map-coloured");
 }
 
 TEST(FeatureMapCodec, TakesGreyInAnyGuise) {
@@ -61,14 +56,14 @@ TEST(FeatureMapCodec, TakesGreyInAnyGuise) {
   cv::cvtColor(mask, colour, cv::COLOR_GRAY2BGR);
   for (const cv::Mat& picture : {mask, colour}) {
     for (const char* extension : {".png", ".jpg"}) {
-      EXPECT_EQ(code_of([&] { decode_feature_map(encoded(extension, picture), kMany); }), "no error") << extension;
+      EXPECT_EQ(code_of([&] { decode_feature_map(encoded(extension, picture), kEnough); }), "no error") << extension;
     }
   }
   cv::Mat unseen;
   cv::cvtColor(colour, unseen, cv::COLOR_BGR2BGRA);
   unseen(cv::Rect(0, 0, 40, 20))
       .setTo(cv::Scalar(200, 10, 30, 0));  // editors leave any colour below what is transparent
-  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", unseen), kMany); }), "no error");
+  EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", unseen), kEnough); }), "no error");
 }
 
 /// Of 12 x 9 cells, seen by a camera that leans: the point below the UAV lies behind its last row.
@@ -82,33 +77,33 @@ FeatureMap leaning() {
 TEST(FeatureMapCodec, AFeatureMapComesBackWithItsCellSizeAndNadir) {
   const auto png = encode_feature_map(leaning());
   EXPECT_TRUE(is_feature_map(png));
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {}), leaning());
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {1.7, 6.25, 20.125}), leaning());
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kEnough), {}), leaning());
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kEnough), {1.7, 6.25, 20.125}), leaning());
 }
 
 TEST(FeatureMapCodec, APictureOfAnotherProgramIsCentredInTheCellsThatAreTold) {
   const auto png = encode_feature_map(leaning().cells);
   EXPECT_FALSE(is_feature_map(png));
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {3.0, {}, {}}), FeatureMap::centred(leaning().cells, 3.0));
-  EXPECT_EQ(feature_map_of(decode_feature_map(png, kMany), {3.0, {}, 40.0}).nadir.row, 40.0);
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kEnough), {3.0, {}, {}}), FeatureMap::centred(leaning().cells, 3.0));
+  EXPECT_EQ(feature_map_of(decode_feature_map(png, kEnough), {3.0, {}, 40.0}).nadir.row, 40.0);
 }
 
 TEST(FeatureMapCodec, RefusesWhatContradictsThePicture) {
-  const auto picture = decode_feature_map(encode_feature_map(leaning()), kMany);
+  const auto picture = decode_feature_map(encode_feature_map(leaning()), kEnough);
   EXPECT_EQ(code_of([&] { feature_map_of(picture, {2.0, {}, {}}); }), "cell-size-contradictory");
   EXPECT_EQ(code_of([&] { feature_map_of(picture, {1.7, 6.0, 4.5}); }), "nadir-contradictory");
   EXPECT_EQ(code_of([&] { feature_map_of(picture, {{}, 6.0, {}}); }), "nadir-contradictory");
 }
 
 TEST(FeatureMapCodec, RefusesAFeatureMapThatIsGivenAsAFrame) {
-  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning()), kMany); }), "frame-is-feature-map");
-  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning().cells), kMany); }), "no error");
+  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning()), kEnough); }), "frame-is-feature-map");
+  EXPECT_EQ(code_of([&] { decode_frame(encode_feature_map(leaning().cells), kEnough); }), "no error");
 }
 
 /// The picture as a program leaves it that keeps the texts.
 std::string refused_with(const std::string& text, const CellArray& cells) {
   const auto png = with_text(encode_feature_map(cells), "Roadfix feature map", text);
-  return code_of([&] { decode_feature_map(png, kMany); });
+  return code_of([&] { decode_feature_map(png, kEnough); });
 }
 
 TEST(FeatureMapCodec, RefusesAFeatureMapThatWasCutOrScaledSinceItWasMade) {

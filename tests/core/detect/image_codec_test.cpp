@@ -12,19 +12,15 @@
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
+#include "tests/support/encoded.hpp"
 
 namespace roadfix {
 namespace {
 
 using testing::code_of;
+using testing::encoded;
 
 constexpr std::int64_t kMany = 1'000'000;
-
-std::vector<std::uint8_t> encoded(const char* extension, const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, image, bytes);
-  return bytes;
-}
 
 TEST(FrameCodec, PicturesComeBackAsTheyWereWithWhatWasNotSeen) {
   for (const int type : {CV_8UC1, CV_8UC3}) {

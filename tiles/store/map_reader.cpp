@@ -177,15 +177,15 @@ std::vector<TileIndex> MapReader::tiles(int level) const {
 std::optional<double> MapReader::registration_sigma_m(const GridBox& box) const {
   const int zoom = state_->zoom(0);
   const std::vector<TileIndex> tiles = tiles_covering(GridGeometry::covering(box, info().settings.cell_m));
-  const auto [west, east] = std::ranges::minmax(tiles, {}, &TileIndex::col);
-  const auto [north, south] = std::ranges::minmax(tiles, {}, &TileIndex::row);
+  const auto cols = std::ranges::minmax(tiles, {}, &TileIndex::col);
+  const auto rows = std::ranges::minmax(tiles, {}, &TileIndex::row);
   return state_->with_channel([&](Channel& channel) -> std::optional<double> {
     Statement largest(
         *channel.map,
         "SELECT s.registration_sigma_m FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id "
         "WHERE s.in_force = 1 AND e.tile_column BETWEEN ?1 AND ?2 AND e.tile_row BETWEEN ?3 AND ?4 ORDER BY "
         "s.registration_sigma_m DESC LIMIT 1");
-    largest.with(west.col, east.col, tile_row(north, zoom), tile_row(south, zoom));
+    largest.with(cols.min.col, cols.max.col, tile_row(rows.min, zoom), tile_row(rows.max, zoom));
     return largest.step() ? std::optional(largest.real(0)) : std::nullopt;
   });
 }

@@ -42,9 +42,10 @@ TEST(PngText, IsNoneWhereItIsDamagedOrCutOff) {
   const auto png = with_text(picture(), "Title", "a town");
   const std::string text = "a town";
   auto damaged = png;
-  *std::ranges::search(damaged, text).begin() = 'A';
+  *std::search(damaged.begin(), damaged.end(), text.begin(), text.end()) = 'A';
   EXPECT_EQ(text_in(damaged, "Title"), std::nullopt);
-  const auto end = static_cast<std::size_t>(std::ranges::search(png, text).end() - png.begin());
+  const auto found = std::search(png.begin(), png.end(), text.begin(), text.end());
+  const auto end = static_cast<std::size_t>(found - png.begin()) + text.size();
   for (std::size_t size = 0; size < end; ++size) {
     EXPECT_EQ(text_in(std::span(png).first(size), "Title"), std::nullopt) << size;
   }

@@ -113,7 +113,8 @@ std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const U
       const bool is_cut = geometry.at("type") == "MultiLineString";  // at 180 degrees
       if (!is_cut && geometry.at("type") != "LineString") continue;
       points.clear();
-      for (const auto& part : is_cut ? geometry.at("coordinates") : nlohmann::json{geometry.at("coordinates")}) {
+      for (const auto& part :
+           is_cut ? geometry.at("coordinates") : nlohmann::json::array({geometry.at("coordinates")})) {
         for (const auto& place : part) add(place);
       }
       break;

@@ -2,23 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "core/detect/frame_image.hpp"
-#include "core/detect/ground_scale.hpp"
 #include "core/detect/jpeg_decoder.hpp"
 #include "core/detect/png_decoder.hpp"
+#include "core/png/png_text.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
-
-constexpr std::array<std::uint8_t, 8> kPngSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
 std::int64_t big_endian(Bytes bytes) {
   std::int64_t value = 0;
@@ -28,7 +23,7 @@ std::int64_t big_endian(Bytes bytes) {
 
 std::optional<ImageHeader> png_header(Bytes bytes) {
   constexpr std::size_t kHeaderEnd = 24;  // signature, chunk length and name, width, height
-  if (bytes.size() < kHeaderEnd || !std::ranges::equal(bytes.first(8), kPngSignature)) return std::nullopt;
+  if (bytes.size() < kHeaderEnd || !is_png(bytes)) return std::nullopt;
   return ImageHeader{ImageHeader::Format::kPng, big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4))};
 }
 

@@ -50,6 +50,10 @@ bool is_type(std::span<const std::uint8_t> type, std::string_view name) { return
 
 }  // namespace
 
+bool is_png(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= kSignature.size() && std::ranges::equal(bytes.first(kSignature.size()), kSignature);
+}
+
 std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::string_view keyword,
                                     std::string_view text) {
   return with_chunk(png, "tEXt", keyword, {"\0", 1}, text);
@@ -62,7 +66,7 @@ std::vector<std::uint8_t> with_utf8_text(std::span<const std::uint8_t> png, std:
 }
 
 std::optional<std::string> text_in(std::span<const std::uint8_t> png, std::string_view keyword) {
-  if (png.size() < kSignature.size() || !std::ranges::equal(png.first(kSignature.size()), kSignature)) return {};
+  if (!is_png(png)) return {};
   std::span<const std::uint8_t> rest = png.subspan(kSignature.size());
   while (rest.size() >= kAroundData && number_at(rest) <= rest.size() - kAroundData) {
     const std::size_t size = number_at(rest);

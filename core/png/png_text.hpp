@@ -10,6 +10,9 @@
 
 namespace roadfix {
 
+/// Whether the bytes begin as every PNG does (5.2).
+bool is_png(std::span<const std::uint8_t> bytes);
+
 /// The PNG with the text before its pixels. `keyword` has 1 to 79 printable characters, `text` none that is 0.
 std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::string_view keyword, std::string_view text);
 

@@ -44,7 +44,7 @@ cv::Rect2d seen_ground(const FrameCamera& camera, const Lens& lens, cv::Size siz
         "frame-sees-no-ground",
         fmt::format(
             "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the frame shows no ground within {:.0f} m",
-            camera.roll.value_or(Angle()).degrees(), camera.pitch.value_or(Angle()).degrees(), max_range_m));
+            camera.assumed_roll().degrees(), camera.assumed_pitch().degrees(), max_range_m));
   }
   return {low, high};
 }

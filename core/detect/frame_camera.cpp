@@ -46,8 +46,8 @@ void validate(const FrameCamera& camera, cv::Size frame) {
       "fov_deg", "(0, 180) degrees");
   require_camera(!camera.focal_px || (*camera.focal_px > 0.0 && *camera.focal_px < 1e9), "focal_px", "(0, 1e9) pixels");
   require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
-  require_camera(std::abs(camera.roll.value_or(Angle()).degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
-  require_camera(std::abs(camera.pitch.value_or(Angle()).degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
+  require_camera(std::abs(camera.assumed_roll().degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
+  require_camera(std::abs(camera.assumed_pitch().degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
   const bool calibrated = camera.principal_px || camera.lens != LensModel::kPerspective || !camera.distortion.empty();
   if (calibrated && !camera.focal_px) {
     throw InvalidInput("frame-camera",
@@ -66,10 +66,10 @@ Lens lens_of(const FrameCamera& camera, cv::Size frame) {
 }
 
 cv::Matx33d level_from_camera(const FrameCamera& camera) {
-  const double cp = cos(camera.pitch.value_or(Angle()));
-  const double sp = sin(camera.pitch.value_or(Angle()));
-  const double cr = cos(camera.roll.value_or(Angle()));
-  const double sr = sin(camera.roll.value_or(Angle()));
+  const double cp = cos(camera.assumed_pitch());
+  const double sp = sin(camera.assumed_pitch());
+  const double cr = cos(camera.assumed_roll());
+  const double sr = sin(camera.assumed_roll());
   // Pitch about the right axis: the optical axis swings forward (-y). Roll about the forward axis: it swings left (-x).
   const cv::Matx33d pitch(1, 0, 0, 0, cp, -sp, 0, sp, cp);
   const cv::Matx33d roll(cr, 0, -sr, 0, 1, 0, sr, 0, cr);
@@ -90,7 +90,7 @@ void require_looking_down(const FrameCamera& camera) {
       fmt::format(
           "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the camera looks at the horizon or the sky; "
           "both are measured from straight down: the -90 of a gimbal is a pitch of 0",
-          camera.roll.value_or(Angle()).degrees(), camera.pitch.value_or(Angle()).degrees()));
+          camera.assumed_roll().degrees(), camera.assumed_pitch().degrees()));
 }
 
 double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {

@@ -33,6 +33,9 @@ struct FrameCamera {
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
   std::optional<Angle> roll;       ///< nullopt = nobody told it; it is only taken to be zero
   std::optional<Angle> pitch;
+
+  Angle assumed_roll() const { return roll.value_or(Angle()); }
+  Angle assumed_pitch() const { return pitch.value_or(Angle()); }
 };
 
 /// What was told of roll and pitch.

@@ -84,8 +84,8 @@ FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t>
 
 nlohmann::json to_json(const FrameCamera& camera) {
   nlohmann::json answer{{"agl_m", camera.agl_m},
-                        {"roll_deg", camera.roll.value_or(Angle()).degrees()},
-                        {"pitch_deg", camera.pitch.value_or(Angle()).degrees()}};
+                        {"roll_deg", camera.assumed_roll().degrees()},
+                        {"pitch_deg", camera.assumed_pitch().degrees()}};
   if (camera.focal_px) answer["focal_px"] = *camera.focal_px;
   if (camera.principal_px) answer["principal_px"] = {camera.principal_px->x, camera.principal_px->y};
   if (!camera.distortion.empty()) answer["distortion"] = camera.distortion;

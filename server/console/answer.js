@@ -1,6 +1,6 @@
 // The answer to the question where a picture was taken. It stands only for the picture, the numbers and the map that it
 // was asked with: when one of them is another, it stays to be read, as an old one.
-import { attempt, drawModes, LastQuestion, moveTo, request, showFix, showOld, showStatus } from './show.js';
+import { attempt, drawModes, LastQuestion, moveTo, request, reveal, showFix, showOld, showStatus } from './show.js';
 
 /// A browser gives no bytes of a file that was written anew since it was chosen.
 async function bytesOf(picture) {
@@ -9,6 +9,11 @@ async function bytesOf(picture) {
   } catch {
     throw { title: 'The picture cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
   }
+}
+
+/// Over a slow link it is the sending that takes long.
+function sizeText({ size }) {
+  return size > 300_000 ? `${(size / 1e6).toFixed(1)} MB are sent for it` : '';
 }
 
 export class Answer {
@@ -24,7 +29,7 @@ export class Answer {
   async ask(url, picture) {
     this.forget();
     const signal = this.#questions.next();
-    showStatus(this.output, 'searching …', []);
+    showStatus(this.output, 'searching …', [sizeText(picture)]);
     await attempt(this.output, async () => {
       const body = await bytesOf(picture);
       this.#fix = await request(url, { method: 'POST', body, headers: { 'Content-Type': picture.type }, signal });
@@ -33,6 +38,7 @@ export class Answer {
       const { pose } = this.#fix;
       if (pose) moveTo(this.view, pose, 16);
     });
+    if (!signal.aborted) reveal(this.output);
   }
 
   forget() {

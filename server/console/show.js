@@ -3,10 +3,18 @@ import { arrow, ellipse95, towards } from './geometry.js';
 
 export const COLOURS = { fix: '#7ee0a1', ambiguous: '#f4c95d', no_fix: '#f28b82' };
 
+/// Without its status: a proxy that knows of no page says nothing of what the service knows of.
+function problemOfProxy({ status }) {
+  const detail = status === 413 ? 'it lets no picture of this size through: send a smaller one' : 'the service behind it may be away: try again';
+  return { title: `A proxy before the service answered ${status}`, detail };
+}
+
 /// The JSON of an answer, never one that a cache kept; throws the problem (RFC 9457) of any other.
 export async function request(url, options) {
   const answer = await fetch(url, { cache: 'no-cache', ...options });
-  const body = await answer.json();
+  const body = await answer.json().catch((error) => {
+    throw error instanceof SyntaxError ? problemOfProxy(answer) : error;
+  });
   if (!answer.ok) throw body;
   return body;
 }
@@ -115,16 +123,29 @@ function cameraRows({ camera }) {
   return [['camera', `${camera.agl_m.toFixed(0)} m above ground, ${tilt}, focal length ${camera.focal_px.toFixed(0)} px`]];
 }
 
+/// With its zone: logs and people elsewhere say UTC.
+const timeText = (date) => date.toLocaleTimeString([], { timeZoneName: 'short' });
+
+function timeNeeded({ detect, search }) {
+  const parts = [[detect, 'to detect'], [search, 'to search']].filter(([time]) => time !== undefined);  // a feature map is detected already
+  return parts.map(([time, what]) => `${Math.round(time)} ms ${what}`).join(', ');
+}
+
+/// Into sight: below a long form it would be missed.
+export function reveal(output) {
+  output.scrollIntoView({ block: 'nearest' });
+}
+
 export function showFix(output, fix, picture) {
   showStatus(output, fix.status, [fix.explanation ?? fix.reason]);
-  const rows = [['picture', picture], ...cameraRows(fix), ['answered', new Date().toLocaleTimeString()], ['probability', fix.probability.toFixed(4)]];
+  const rows = [['picture', picture], ...cameraRows(fix), ['answered', timeText(new Date())], ['probability', fix.probability.toFixed(4)]];
   if (fix.pose) {
-    rows.push(['position', place(fix.pose)], ['heading', headingText(fix.pose, fix.heading_sigma_deg)]);
-    rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m']);
+    rows.push(['lat, lon', place(fix.pose)], ['heading, true', headingText(fix.pose, fix.heading_sigma_deg)]);
+    rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m; drawn: 95 %']);
   } else if (fix.modes.length) {
     rows.push(['hints', `${fix.modes.length}, not to be flown on`]);
   }
   rows.push(['searched', `${fix.searched.area_km2.toFixed(1)} km², ${fix.searched.headings} headings`]);
-  rows.push(['time', `${Math.round(fix.time_ms.detect)} ms to detect, ${Math.round(fix.time_ms.search)} ms to search`]);
+  rows.push(['time', timeNeeded(fix.time_ms)]);
   output.append(table(rows));
 }

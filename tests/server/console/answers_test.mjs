@@ -34,6 +34,28 @@ await run({
     assert.ok(!isOld());
     assert.deepEqual(view.moved, [37, 38]);
   },
+  async 'an answer is brought into sight, and one that was given up for another question moves nothing'() {
+    output.revealed = false;
+    service.answers = { '/fix': () => new Promise(() => {}) };
+    answer.ask('/fix', picture('a.png'));
+    answer.questionChanged();
+    await new Promise(setImmediate);
+    assert.ok(!output.revealed);
+    await ask();
+    assert.ok(output.revealed);
+  },
+  async 'a feature map takes no time to detect'() {
+    service.answers = { '/fix': { ...fix, time_ms: { search: 7.4 } } };
+    await answer.ask('/fix', picture('roads.png'));
+    assert.match(output.textContent, /\b7 ms to search/);
+    assert.doesNotMatch(output.textContent, /detect|NaN/);
+  },
+  async 'the error page of a proxy is told from an answer of the service'() {
+    service.answers = { '/fix': '413' };
+    await answer.ask('/fix', picture('a.png'));
+    assert.match(output.textContent, /proxy before the service answered 413/);
+    assert.match(output.textContent, /send a smaller one/);
+  },
   async 'a fix is an old one as soon as the question is another one'() {
     await ask();
     answer.questionChanged();

@@ -70,6 +70,7 @@ class Node {
   insertRow() { const row = new Node(); this.append(row); return row; }
   insertCell() { return this.insertRow(); }
   addEventListener() {}
+  scrollIntoView() { this.revealed = true; }
   add(option) { this.options.push(option); option.remove = () => { this.options = this.options.filter((one) => one !== option); }; }
 }
 export const node = () => new Node();
@@ -78,13 +79,15 @@ globalThis.document = { createElement: node, addEventListener() {} };
 globalThis.Option = class { constructor(text, value) { Object.assign(this, { text, value }); } };
 globalThis.setInterval = () => {};
 
-/// Answers by path, or by a function of the request; null: the service cannot be reached.
+/// Answers by path, or by a function of the request; null: the service cannot be reached; a text: the
+/// status of a proxy's error page.
 export const service = { answers: {} };
 globalThis.fetch = async (url, options) => {
   const answer = service.answers?.[url.split('?')[0]];
   const body = await (typeof answer === 'function' ? answer(url, options) : answer);
   options?.signal?.throwIfAborted();
   if (!body) throw new TypeError('fetch failed');
+  if (typeof body === 'string') return { status: Number(body), ok: false, json: async () => JSON.parse('<html>') };
   const status = typeof body.status === 'number' ? body.status : 200;
   return { status, ok: status < 300, json: async () => structuredClone(body) };
 };

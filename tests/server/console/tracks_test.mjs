@@ -48,6 +48,15 @@ await run({
     assert.ok(!isOld());
     assert.deepEqual(colours(), [GREEN, YELLOW]);
   },
+  async 'the error page of a proxy ends no track'() {
+    service.answers = { '/v1/tracks/one': '404' };
+    await tracks.look();
+    assert.match(output.textContent, /proxy before the service answered 404/);
+    assert.ok(isOld());
+    answer(track('one', converged));
+    await tracks.look();
+    assert.ok(!isOld());
+  },
   async 'an estimate grows old also while an answer is awaited'() {
     service.answers = { '/v1/tracks/one': () => new Promise(() => {}) };
     tracks.look();

@@ -21,6 +21,7 @@ let lines = '';    // of the list of maps, as JSON
 let tiles = null;
 let listsAsked = 0;
 let wished = null;  // the map that the next list is to show, if it is served
+const circle = L.circle([0, 0], { radius: 0, color: '#8ab4f8', weight: 2, dashArray: '2 6', fill: false, interactive: false });
 const tracks = new Tracks(view, by('tracks'), by('track'), by('details'), { shown: () => shown, wish: wishMap });
 
 const mapUrl = () => `/v1/maps/${encodeURIComponent(by('maps').value)}`;
@@ -138,6 +139,24 @@ function openAddress() {
   if (named.get('track')) tracks.follow(named.get('track'));
 }
 
+/// Names in the address what the page shows, so that loading it again shows the same.
+function keepAddress() {
+  const [name, value] = by('tracks').value ? ['track', by('tracks').value] : ['map', by('maps').value];
+  history.replaceState(null, '', `#${new URLSearchParams([[name, value]])}`);
+}
+
+function follow(id) {
+  tracks.follow(id);
+  keepAddress();
+}
+
+/// The circle that a search of "around the middle of the view" is about.
+function drawPrior() {
+  const { prior, radius_m: radius } = by('ask').elements;
+  circle.remove();
+  if (prior.value === 'circle') circle.setLatLng(view.getCenter()).setRadius(Number(radius.value)).addTo(view);
+}
+
 function askPlace(latlng) {
   if (tiles) places.ask(mapUrl(), latlng);
 }
@@ -157,8 +176,10 @@ function acceptDrops(zone, input) {
 
 by('maps').addEventListener('change', () => {
   wished = null;
+  keepAddress();
   attempt(by('about'), openMap);
 });
+by('tracks').addEventListener('change', () => follow(by('tracks').value));
 by('ask').addEventListener('submit', (event) => {
   event.preventDefault();
   const form = new FormData(event.target);
@@ -166,8 +187,10 @@ by('ask').addEventListener('submit', (event) => {
 });
 by('ask').addEventListener('input', () => {
   enableChosen(by('ask'));
+  drawPrior();
   answer.questionChanged();
 });
+view.on('move', drawPrior);
 enableChosen(by('ask'));
 view.on('click', ({ latlng }) => askPlace(latlng));
 view.on('keypress', ({ originalEvent }) => {
@@ -178,7 +201,7 @@ by('footprint').addEventListener('input', () => places.forget());
 acceptDrops(by('drop'), by('ask').elements.picture);
 by('follow').addEventListener('submit', (event) => {
   event.preventDefault();
-  tracks.follow(event.target.elements.track.value.trim());
+  follow(event.target.elements.track.value.trim());
 });
 openAddress();
 refreshMaps();

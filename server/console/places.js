@@ -1,6 +1,6 @@
 // Whether a frame of a place would give a fix: of the place that is clicked, and of all places of the view as a layer.
 import { square } from './geometry.js';
-import { attempt, COLOURS, drawModes, LastQuestion, request, showStatus } from './show.js';
+import { attempt, COLOURS, drawModes, LastQuestion, request, reveal, showStatus } from './show.js';
 import { askAgain } from './tiles.js';
 
 export class Places {
@@ -30,6 +30,7 @@ export class Places {
       frame.setStyle({ color: COLOURS[place.status] });
       if (place.alike) drawModes(this.view, this.figures, place.alike, 'ambiguous');
     });
+    if (!signal.aborted) reveal(this.output);
   }
 
   /// Of the place that was clicked; the layer stays.

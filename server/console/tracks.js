@@ -38,7 +38,6 @@ export class Tracks {
     this.path = L.polyline([], { color: '#8ab4f8', weight: 2 }).addTo(view);
     this.estimate = L.layerGroup().addTo(view);
     this.chosen = null;
-    list.addEventListener('change', () => this.follow(list.value));
     this.refresh();
     setInterval(() => this.refresh(), LIST_MS);
     setInterval(() => this.look(), LOOK_MS);
@@ -139,8 +138,8 @@ export class Tracks {
     this.details.replaceChildren(table([
       ['last step', chosen.age],
       ...(step.pose ? [
-        ['position', `${step.pose.lat.toFixed(6)}, ${step.pose.lon.toFixed(6)}`],
-        ['heading', headingText(step.pose, step.heading_sigma_deg)],
+        ['lat, lon', `${step.pose.lat.toFixed(6)}, ${step.pose.lon.toFixed(6)}`],
+        ['heading, true', headingText(step.pose, step.heading_sigma_deg)],
       ] : []),
       ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
       ['map', chosen.track.map.name],

@@ -116,11 +116,15 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   print_report(json, report, cell_mp, arguments.json);
 }
 
-/// A map that is its own source would count all that it knows twice.
-void refuse_the_map_itself(const SourceFiles& files, const std::string& map) {
+/// A map that is its own source would count all that it knows twice. That it lies in the folder of its sources is fine.
+void refuse_the_map_itself(SourceFiles& files, const std::string& map) {
+  const auto is_map = [&](const std::string& path) {
+    std::error_code none;  // where the map does not exist yet
+    return std::filesystem::equivalent(path, map, none);
+  };
+  std::erase_if(files.left_out, is_map);
   for (const std::string& path : files.paths) {
-    std::error_code none;
-    if (!std::filesystem::equivalent(path, map, none)) continue;
+    if (!is_map(path)) continue;
     throw InvalidInput("source-is-target",
                        fmt::format("{} is the map itself: name another SOURCE, or another --map", path));
   }

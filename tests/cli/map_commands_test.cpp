@@ -161,11 +161,15 @@ TEST_F(MapCommands, AnAnswerThatFindsNoRoomIsAFailure) {
 
 TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   const auto before = testing::tile_bytes(path);
-  for (const std::string& source : {path.string(), folder.path().string()}) {
-    const ProgramResult result = roadfix("ingest " + source + " --as roads --name again --map " + path.string());
-    EXPECT_EQ(result.code, 1);
-    EXPECT_THAT(result.err, HasSubstr("[source-is-target]"));
-  }
+  const std::string as_roads = " --as roads --name again --map " + path.string();
+  const ProgramResult result = roadfix("ingest " + path.string() + as_roads);
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("[source-is-target]"));
+  EXPECT_THAT(roadfix("ingest " + folder.path().string() + as_roads).err, HasSubstr("[source-empty]"));
+  std::ofstream(folder / "roads.geojson") << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
+  const ProgramResult beside = roadfix("ingest " + folder.path().string() + as_roads + " --dry-run");
+  EXPECT_EQ(beside.code, 0) << beside.err;
+  EXPECT_THAT(beside.err, Not(HasSubstr("left out")));
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 

@@ -62,6 +62,13 @@ std::vector<std::string> layers_of(const std::string& path) {
   return layers;
 }
 
+/// A map of roadfix, or a picture in a GeoPackage: no file of roads, though its name could be one's.
+bool is_geopackage_of_pixels(const std::string& path) {
+  if (ending_of(path) != ".gpkg" || !layers_of(path).empty()) return false;
+  const GdalMessages messages;
+  return DatasetPtr(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)) != nullptr;
+}
+
 /// A description of layers, not of images.
 bool is_vector_vrt(const std::string& path) {
   return ending_of(path) == ".vrt" && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
@@ -137,8 +144,8 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   for (const std::string& file : files) {
     if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
     const std::string ending = ending_of(file);
-    if (is_vector_vrt(file)) {
-      others.push_back(file);  // of the layers beside it, mostly
+    if (is_vector_vrt(file) || is_geopackage_of_pixels(file)) {
+      others.push_back(file);  // a VRT is of the layers beside it, mostly
       continue;
     }
     if (one_of(kImageEndings, ending)) images.push_back(file);

@@ -57,6 +57,22 @@ TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
   }
 }
 
+TEST_F(SourceFilesTest, AMapInAFolderIsLeftOutAndNamed) {
+  const std::string map = (folder / "map.gpkg").string();
+  {
+    const DatasetPtr picture = open_dataset(image("a.tif"), GDAL_OF_RASTER);
+    const DatasetPtr made(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(map.c_str(), picture.get(), FALSE,
+                                                                                      nullptr, nullptr, nullptr));
+  }
+  std::filesystem::remove(folder / "a.tif");
+  const auto found = [&] { return find_source(folder.path().string(), SourceMeaning::kAuto); };
+  EXPECT_THAT(testing::message_of(found), ::testing::HasSubstr("to ingest " + map + ", name it itself"));
+  const std::string lines = (folder / "lines.geojson").string();
+  std::ofstream(lines) << kLine;
+  EXPECT_THAT(found().paths, ElementsAre(lines));
+  EXPECT_THAT(found().left_out, ElementsAre(map));
+}
+
 TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {
   const std::string path = (folder / "lines.geojson").string();
   std::ofstream(path) << kLine;

@@ -24,7 +24,7 @@ bool is_iso_date(const std::string& text) {
 
 CLI::Validator iso_date() {
   return {[](std::string& text) -> std::string {
-            if (is_iso_date(text)) return {};
+            if (text.empty() || is_iso_date(text)) return {};
             return fmt::format("must be a date like 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z (ISO 8601), not {}",
                                text);
           },

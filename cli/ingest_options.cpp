@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
@@ -49,13 +51,18 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option("--width", a.width_m, "Width of all roads in metres")->check(CLI::Range(0.5, 100.0));
 }
 
+/// Whose empty text is one, too.
+CLI::Option* add_text(CLI::App& command, const char* name, std::optional<std::string>& text, const char* what) {
+  return command.add_option_function<std::string>(
+      name, [&text](const std::string& said) { text = said; }, what);
+}
+
 void add_provenance_options(CLI::App& command, IngestArguments& a) {
-  command
-      .add_option("--date", a.told.date,
-                  "Date of the content, ISO 8601: 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z")
+  add_text(command, "--date", a.told.date,
+           "Date of the content, ISO 8601: 2023, 2023-02, 2023-02-06 or 2023-02-06T10:30Z; \"\": none")
       ->check(iso_date());
-  command.add_option("--licence", a.told.licence, "Licence of the content");
-  command.add_option("--attribution", a.told.attribution, "Attribution that the licence asks for");
+  add_text(command, "--licence", a.told.licence, "Licence of the content; \"\": none");
+  add_text(command, "--attribution", a.told.attribution, "Attribution that the licence asks for; \"\": none");
   command
       .add_option(
           "--registration-sigma", a.told.registration_sigma_m,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
-#include "core/units/provenance.hpp"
+#include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
 
@@ -29,7 +29,7 @@ struct IngestArguments {
   double width_m = 0.0;
   VectorOptions vectors;
   DetectorChoice detector;
-  Provenance told;
+  UserProvenance told;
   IngestOptions options;
   bool dry_run = false;
   bool json = false;

@@ -173,6 +173,18 @@ TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
+TEST_F(MapCommands, IngestTakesOutWhatWasToldOfASource) {
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
+  const std::string map = folder / "n.gpkg";
+  const std::string ingest = "ingest " + lines + " --map " + map;
+  ASSERT_EQ(roadfix(ingest + " --licence ODbL --date 2023").code, 0);
+  const ProgramResult again = roadfix(ingest + " --licence ''");
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, HasSubstr("'roads' now has licence none instead of 'ODbL'"));
+  EXPECT_THAT(roadfix("info " + map).out, ::testing::AllOf(HasSubstr("2023"), Not(HasSubstr("ODbL"))));
+}
+
 TEST_F(MapCommands, IngestTellsOfASourceFarFromAllThatTheMapHolds) {
   const auto told_of_roads_at = [&](double degrees_east) {
     const std::vector<double> box = nlohmann::json::parse(roadfix("info --json " + path.string()).out)["bbox"];

@@ -14,22 +14,24 @@ struct Text {
   const char* name;
   const char* option;
   std::string SourceRecord::*of_record;
-  std::string Provenance::*told;
+  std::string Provenance::*own;
+  std::optional<std::string> UserProvenance::*told;
 };
 
 constexpr std::array<Text, 3> kTexts{
-    {{"date", "--date", &SourceRecord::date, &Provenance::date},
-     {"licence", "--licence", &SourceRecord::licence, &Provenance::licence},
-     {"attribution", "--attribution", &SourceRecord::attribution, &Provenance::attribution}}};
+    {{"date", "--date", &SourceRecord::date, &Provenance::date, &UserProvenance::date},
+     {"licence", "--licence", &SourceRecord::licence, &Provenance::licence, &UserProvenance::licence},
+     {"attribution", "--attribution", &SourceRecord::attribution, &Provenance::attribution,
+      &UserProvenance::attribution}}};
 
 void keep(SourceRecord& record, const SourceRecord& before) {
   for (const Text& text : kTexts) record.*text.of_record = before.*text.of_record;
   record.registration_sigma_m = before.registration_sigma_m;
 }
 
-void tell(SourceRecord& record, const Provenance& told) {
+void tell(SourceRecord& record, const UserProvenance& told) {
   for (const Text& text : kTexts) {
-    if (!(told.*text.told).empty()) record.*text.of_record = told.*text.told;
+    if (const auto& said = told.*text.told) record.*text.of_record = *said;
   }
   if (told.registration_sigma_m > 0.0) record.registration_sigma_m = told.registration_sigma_m;
 }
@@ -37,12 +39,12 @@ void tell(SourceRecord& record, const Provenance& told) {
 std::string shown(const std::string& text) { return text.empty() ? "none" : "'" + text + "'"; }
 
 /// Of what the source tells of itself and nobody otherwise.
-std::optional<std::string> note_on_own(const SourceRecord& record, const Provenance& own, const Provenance& told) {
+std::optional<std::string> note_on_own(const SourceRecord& record, const Provenance& own, const UserProvenance& told) {
   std::vector<std::string> facts;
   std::vector<std::string> options;
-  for (const auto& [name, option, of_record, text] : kTexts) {
-    if ((own.*text).empty() || !(told.*text).empty()) continue;
-    facts.push_back(fmt::format("{} {}", name, shown(own.*text)));
+  for (const auto& [name, option, of_record, of_source, of_user] : kTexts) {
+    if ((own.*of_source).empty() || told.*of_user) continue;
+    facts.push_back(fmt::format("{} {}", name, shown(own.*of_source)));
     options.emplace_back(option);
   }
   if (own.registration_sigma_m > 0.0 && told.registration_sigma_m == 0.0) {
@@ -61,13 +63,13 @@ struct Change {
   bool asked_for;
 };
 
-std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& now, const Provenance& told) {
+std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& now, const UserProvenance& told) {
   std::vector<Change> changes;
-  for (const auto& [name, option, of_record, of_user] : kTexts) {
+  for (const auto& [name, option, of_record, of_source, of_user] : kTexts) {
     if (before.*of_record == now.*of_record) continue;
     changes.push_back({option,
                        fmt::format("{} {} instead of {}", name, shown(now.*of_record), shown(before.*of_record)),
-                       !(told.*of_user).empty()});
+                       (told.*of_user).has_value()});
   }
   if (before.registration_sigma_m != now.registration_sigma_m) {
     changes.push_back({"--registration-sigma",
@@ -80,7 +82,7 @@ std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& n
 
 }  // namespace
 
-std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const Provenance& told,
+std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const UserProvenance& told,
                                          std::span<const SourceRecord> before, bool replace) {
   const auto same = std::ranges::find(before, record.fingerprint, &SourceRecord::fingerprint);
   const bool goes_on = same != before.end() && !replace;
@@ -88,7 +90,7 @@ std::vector<std::string> describe_source(SourceRecord& record, const Provenance&
   if (goes_on) {
     keep(record, *same);
   } else {
-    for (const Text& text : kTexts) record.*text.of_record = own.*text.told;
+    for (const Text& text : kTexts) record.*text.of_record = own.*text.own;
     if (auto note = note_on_own(record, own, told)) notes.push_back(std::move(*note));
   }
   tell(record, told);

@@ -2,6 +2,7 @@
 // map was told before of the same content, then the source itself.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,12 +12,20 @@
 
 namespace roadfix {
 
+/// What the user says; an empty text says that there is none.
+struct UserProvenance {
+  std::optional<std::string> date = {};
+  std::optional<std::string> licence = {};
+  std::optional<std::string> attribution = {};
+  double registration_sigma_m = 0.0;  ///< 0: not said
+};
+
 /// Completes `record`, which has the registration error of the source, and may state it otherwise. `own` is what the
 /// source tells of itself, `told` what the user does. `before` are the records of this
 /// name in the map, the one in force first: those of the same fingerprint keep what was told of them, unless `replace`
 /// describes the source anew. Returns notes for the user on what is taken from the source, what changes, and what
 /// replacing loses.
-std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const Provenance& told,
+std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const UserProvenance& told,
                                          std::span<const SourceRecord> before, bool replace);
 
 }  // namespace roadfix

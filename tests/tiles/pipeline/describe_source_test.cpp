@@ -59,6 +59,19 @@ TEST(DescribeSource, RepeatedWithOptionsItChangesInTheseAlone) {
   EXPECT_EQ(again, expected);
 }
 
+TEST(DescribeSource, AnEmptyTextTakesOutWhatWasToldOrWhatTheSourceSaysOfItself) {
+  const std::vector before{credited("1")};
+  SourceRecord again = record("1");
+  EXPECT_THAT(
+      describe_source(again, {}, {.date = "", .licence = ""}, before, false),
+      ElementsAre("'roads' now has date none instead of '2020'", "'roads' now has licence none instead of 'CC-BY'"));
+  EXPECT_EQ(again.licence, "");
+  EXPECT_EQ(again.attribution, "X");
+  SourceRecord fresh = record("2");
+  EXPECT_THAT(describe_source(fresh, {.licence = "of the file"}, {.licence = ""}, {}, false), IsEmpty());
+  EXPECT_EQ(fresh.licence, "");
+}
+
 TEST(DescribeSource, AnInterruptedOneGoesOnAsItWasBegun) {
   const std::vector before{record("old"), credited("1")};
   SourceRecord again = record("1");

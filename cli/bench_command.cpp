@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -117,12 +118,12 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
 }
 
 void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
-           const std::vector<bench::SetResult>& results) {
+           const std::vector<bench::SetResult>& results, std::FILE* out) {
   const Calibration& in_force =
       arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
   const bench::CalibrationReport report = bench::learn_calibration(bench::road_outcomes(results), in_force);
   write_json(bench::to_json(report, origin_of(arguments, manifest)), arguments.calibrate_file);
-  fmt::print("learned from {} answers, {} of them right: {}\n", report.examples, report.right,
+  fmt::print(out, "learned from {} answers, {} of them right: {}\n", report.examples, report.right,
              arguments.calibrate_file);
 }
 
@@ -150,15 +151,16 @@ void run_bench(BenchArguments& arguments) {
   std::vector<std::string> left_out;
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
-  fmt::print("detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
+  std::FILE* out = printed_beside({arguments.json_file, arguments.calibrate_file});
+  fmt::print(out, "detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
              bench::to_table(results));
   const bench::Honesty honesty = bench::honesty_of(bench::road_outcomes(results));
-  fmt::print("\n{}", bench::to_text(honesty));
+  fmt::print(out, "\n{}", bench::to_text(honesty));
   if (!arguments.json_file.empty()) {
     write_json(document(arguments, detector->describe(), results, left_out), arguments.json_file);
   }
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
-  if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results);
+  if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results, out);
   if (!left_out.empty()) {
     throw InvalidInput(bench::kNoPlaceForQuery,
                        fmt::format("{} of {} sets of queries could not be asked:\n  {}", left_out.size(),

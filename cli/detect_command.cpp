@@ -125,7 +125,7 @@ void run_detect(const DetectOptions& options) {
                         {"detector", detector->describe()},
                         {"time_ms", time.count()}};
   if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
-  std::FILE* out = is_standard_output(options.target) ? stderr : stdout;
+  std::FILE* out = printed_beside({options.target});
   if (options.json) {
     fmt::print(out, "{}\n", json_text(answer));
   } else {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -116,7 +117,8 @@ void run_fly(const FlyOptions& options) {
   const fly::Events events{plan.kidnapping, plan.outage};
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));
-  fmt::print("{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.seed, map.extent.width_m() / 1e3,
+  std::FILE* out = printed_beside({options.json_file, options.csv_file, options.geojson_file});
+  fmt::print(out, "{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.seed, map.extent.width_m() / 1e3,
              map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
   if (!options.json_file.empty()) {

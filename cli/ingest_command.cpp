@@ -14,6 +14,7 @@
 #include "cli/ingest_options.hpp"
 #include "cli/ingest_report.hpp"
 #include "cli/ingest_zone.hpp"
+#include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
@@ -132,6 +133,7 @@ void refuse_the_map_itself(SourceFiles& files, const std::string& map) {
 
 void run(const IngestArguments& arguments, bool cell_given) {
   const std::stop_token stop = stop_on_signals();
+  require_name(arguments.map);
   if (!is_map_cell_size(arguments.cell_m)) {
     throw InvalidInput("cell-size-unknown", fmt::format("--cell {}: cells are a power of two of metres from {} to {}",
                                                         arguments.cell_m, kMinCellM, kMaxCellM));

@@ -31,12 +31,17 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
+void require_name(const fs::path& output) {
+  if (output != "-") return;
+  throw InvalidInput(
+      "target-is-dash",
+      "- stands for no output here: name a file or folder (./- for one of this name), or /dev/stdout for "
+      "a text");
+}
+
 void require_apart(std::initializer_list<fs::path> outputs, std::initializer_list<fs::path> inputs) {
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
-    if (*output == "-") {
-      throw InvalidInput("target-is-dash",
-                         "- stands for no output here: name a file (./- for one of this name) or /dev/stdout");
-    }
+    require_name(*output);
     const auto is_it = [&](const fs::path& other) { return same_file(*output, other); };
     if (std::any_of(inputs.begin(), inputs.end(), is_it)) {
       throw InvalidInput("target-is-source",
@@ -65,6 +70,10 @@ void write_file(const fs::path& file, std::string_view bytes) {
 bool is_standard_output(const fs::path& file) {
   std::error_code none;  // where the file does not exist yet
   return fs::equivalent(file, "/dev/stdout", none);
+}
+
+std::FILE* printed_beside(std::initializer_list<fs::path> outputs) {
+  return std::any_of(outputs.begin(), outputs.end(), is_standard_output) ? stderr : stdout;
 }
 
 void require_writable(std::initializer_list<fs::path> files) {

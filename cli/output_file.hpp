@@ -1,6 +1,7 @@
 // Files that a command leaves behind.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <initializer_list>
 #include <string_view>
@@ -17,8 +18,14 @@ void write_file(const std::filesystem::path& file, std::string_view bytes);
 void require_apart(std::initializer_list<std::filesystem::path> outputs,
                    std::initializer_list<std::filesystem::path> inputs);
 
+/// Throws InvalidInput "target-is-dash" for "-", of which a file or folder would be made.
+void require_name(const std::filesystem::path& output);
+
 /// Whether what goes there goes where the command prints, so that it must print elsewhere.
 bool is_standard_output(const std::filesystem::path& file);
+
+/// Where a command prints that writes these files: standard error if one of them is standard output.
+std::FILE* printed_beside(std::initializer_list<std::filesystem::path> outputs);
 
 /// What takes long looks first whether its answers can be written: throws as write_file. Changes nothing; empty paths
 /// are files that nobody wants.

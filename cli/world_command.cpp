@@ -26,6 +26,7 @@ void render(const WorldArguments& options) {
   world::WorldSettings settings = options.settings;
   settings.width_m = options.size_km[0] * 1000.0;
   settings.height_m = options.size_km[1] * 1000.0;
+  require_name(options.folder);
   require_apart({std::filesystem::path(options.folder) / "roads.geojson"}, {settings.roads});
   if (!options.centre.empty()) settings.centre = LatLon{options.centre[0], options.centre[1]};
   const std::stop_token stop = stop_on_signals();

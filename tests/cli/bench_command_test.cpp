@@ -34,5 +34,17 @@ TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
   EXPECT_EQ(nlohmann::json::parse(text_of(file), nullptr, false).value("results", nlohmann::json::array()).size(), 1U);
 }
 
+TEST(BenchCommand, WritesNothingButItsFiguresToStandardOutput) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 1, "footprint_m": [300, 300], "prior": {"radius_m": 200}}]})";
+  const ProgramResult bench =
+      run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +
+                                     (folder / "cache").string() + " --json /dev/stdout");
+  ASSERT_EQ(bench.code, 0) << bench.err;
+  EXPECT_TRUE(nlohmann::json::accept(bench.out)) << bench.out;
+}
+
 }  // namespace
 }  // namespace roadfix

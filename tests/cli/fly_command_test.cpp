@@ -62,6 +62,14 @@ TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
   EXPECT_GT(std::filesystem::file_size(file("film.gif")), 1000u);
 }
 
+TEST_F(FlyCommand, WritesNothingButItsFiguresToStandardOutput) {
+  const ProgramResult flown =
+      roadfix("fly " + map() + " --footprint-m 200 --steps 2 --particles 300 --json /dev/stdout");
+  ASSERT_EQ(flown.code, 0) << flown.err;
+  EXPECT_TRUE(nlohmann::json::accept(flown.out)) << flown.out;
+  EXPECT_THAT(flown.err, HasSubstr("default"));
+}
+
 TEST_F(FlyCommand, ReplaysARecordedFlight) {
   const std::string replay = "fly " + map() + " --over " + file("town/frames/frames.csv") +
                              " --detector tree --tree-roots 500 --particles 500";

@@ -173,6 +173,10 @@ TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
+TEST_F(MapCommands, AMapHasAName) {
+  EXPECT_THAT(roadfix("ingest " + path.string() + " --map -").err, HasSubstr("[target-is-dash]"));
+}
+
 TEST_F(MapCommands, IngestTakesOutWhatWasToldOfASource) {
   const std::string lines = folder / "roads.geojson";
   std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";

@@ -27,6 +27,11 @@ TEST(WorldCommand, LeavesAManifestThatBenchRunsAsItIs) {
   }
 }
 
+TEST(WorldCommand, ItsFolderHasAName) {
+  const testing::TemporaryFolder folder;
+  EXPECT_THAT(run_program(folder.path(), "world -").err, HasSubstr("[target-is-dash]"));
+}
+
 TEST(WorldCommand, KeepsTheRoadsThatItIsGiven) {
   const testing::TemporaryFolder folder;
   const std::string roads = (folder / "roads.geojson").string();

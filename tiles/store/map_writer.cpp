@@ -42,20 +42,24 @@ Connection open_with(const std::filesystem::path& path, const MapSettings& setti
   return map;
 }
 
+/// An update of roadfix brings another detector, or takes a file for what it was not before: the same command is
+/// refused then, and should say why.
+std::string what_roadfix_changed(const SourceTable::Entry& before, const SourceRecord& now) {
+  if (before.kind != now.kind) return fmt::format(" (as {}; now it is {})", before.kind, now.kind);
+  if (now.kind != "imagery" || before.method == now.method) return "";
+  return fmt::format(" (made by {}; now it is {})", before.method, now.method);
+}
+
 void refuse_other_content(const Connection& map, SourceTable& sources, const SourceRecord& record) {
   const auto in_force = sources.find(record.name, true);
   const auto unfinished = sources.find(record.name, false);
   const auto same = [&](const auto& entry) { return entry && entry->fingerprint == record.fingerprint; };
   if ((!in_force && !unfinished) || same(in_force) || same(unfinished)) return;
-  // An update of roadfix brings another detector: the same command is refused then, and should say why.
-  const std::string& made_by = (unfinished ? unfinished : in_force)->method;
-  const bool detected_otherwise = record.kind == "imagery" && made_by != record.method;
-  throw InvalidInput(
-      "source-exists",
-      fmt::format("{}: a source named '{}' with other content or settings is in the map already{}. "
-                  "Replace it with --replace, or give this one another name",
-                  map.path().string(), record.name,
-                  detected_otherwise ? fmt::format(" (made by {}; now it is {})", made_by, record.method) : ""));
+  throw InvalidInput("source-exists",
+                     fmt::format("{}: a source named '{}' with other content or settings is in the map already{}. "
+                                 "Replace it with --replace, or give this one another name",
+                                 map.path().string(), record.name,
+                                 what_roadfix_changed(unfinished ? *unfinished : *in_force, record)));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class SourceTable {
   struct Entry {
     std::int64_t id = 0;
     std::string fingerprint;
+    std::string kind;
     std::string method;
   };
   /// At most one source of a name is in force, and at most one is on its way to be.

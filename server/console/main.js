@@ -69,6 +69,7 @@ async function openMap() {
 /// Keeps the list as the service has it and the choice as the operator left it.
 async function showMaps({ maps }) {
   const chosen = choiceOf(maps, by('maps').value, wished);
+  const missed = wished === chosen ? null : wished;
   wished = null;
   const wanted = linesOf(maps, chosen);
   if (lines !== JSON.stringify(wanted)) {
@@ -90,6 +91,7 @@ async function showMaps({ maps }) {
     await drawMap();
     await drawLayer();
   }
+  if (missed) by('about').prepend(element('div', `there is no map ${missed} to show`, 'why'));
 }
 
 /// A service that does not answer now is said to be so, and asked again.
@@ -168,7 +170,9 @@ function acceptDrops(zone, input) {
       event.preventDefault();
       zone.classList.toggle('over', name === 'dragover');
       if (name !== 'drop' || !event.dataTransfer.files.length) return;
-      input.files = event.dataTransfer.files;
+      const first = new DataTransfer();  // of several, so that its name stands in the field
+      first.items.add(event.dataTransfer.files[0]);
+      input.files = first.files;
       input.dispatchEvent(new Event('input', { bubbles: true }));
     });
   }

@@ -18,13 +18,13 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
-#include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
 namespace {

@@ -14,11 +14,11 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/frame_options.hpp"
-#include "cli/json_text.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "tiles/export/side_files.hpp"
 #include "tiles/sources/read_orthoimage.hpp"

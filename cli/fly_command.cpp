@@ -14,10 +14,10 @@
 #include "cli/fly/flight_pictures.hpp"
 #include "cli/fly/service_localizer.hpp"
 #include "cli/fly_ground.hpp"
-#include "cli/json_text.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/geodesy/geo_box.hpp"
+#include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/json_text.hpp"
 #include "core/geodesy/geo_box.hpp"
+#include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/store/map_reader.hpp"
 

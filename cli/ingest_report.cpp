@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "cli/json_text.hpp"
+#include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
 

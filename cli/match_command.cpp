@@ -11,12 +11,12 @@
 
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
-#include "cli/json_text.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "server/api/fix_json.hpp"
 #include "tiles/view/map_file_view.hpp"

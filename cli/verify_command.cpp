@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/json_text.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
 #include "tiles/store/map_verifier.hpp"
 #include "tiles/store/map_writer.hpp"
 

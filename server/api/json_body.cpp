@@ -63,6 +63,4 @@ json parse_json(std::string_view text, const JsonLimits& limits) {
   }
 }
 
-std::string json_text(const json& json) { return json.dump(-1, ' ', false, json::error_handler_t::replace); }
-
 }  // namespace roadfix::api

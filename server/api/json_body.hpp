@@ -1,9 +1,8 @@
-// JSON from outside, with its depth and size bounded before anything is built from it; and JSON as text.
+// JSON from outside, with its depth and size bounded before anything is built from it.
 #pragma once
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
 
 namespace roadfix::api {
@@ -16,8 +15,5 @@ struct JsonLimits {
 /// Throws InvalidField ("bad-json" with the byte, "json-too-deep", "duplicate-parameter" with the name) or
 /// LimitExceeded ("too-many-poses"), the only thing that makes a request's JSON that long.
 nlohmann::json parse_json(std::string_view text, const JsonLimits& limits);
-
-/// On one line. What is no UTF-8, as a name of a file may be, is replaced: an answer is not lost for it.
-std::string json_text(const nlohmann::json& json);
 
 }  // namespace roadfix::api

@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-#include "server/api/json_body.hpp"
+#include "core/units/json_text.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {

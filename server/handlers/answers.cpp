@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <functional>
 
-#include "server/api/json_body.hpp"
+#include "core/units/json_text.hpp"
 
 namespace roadfix::server {
 
-http::Response json_response(const nlohmann::json& body) { return {200, "application/json", api::json_text(body)}; }
+http::Response json_response(const nlohmann::json& body) { return {200, "application/json", json_text(body)}; }
 
 std::string base_url(const http::Request& request) {
   const std::string& host = request.header("host");

@@ -7,6 +7,7 @@
 
 #include "core/filter/particle_bytes.hpp"
 #include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/track_json.hpp"
@@ -276,8 +277,8 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   json answer = api::to_json(result.estimate);
   answer["track"] = id;
-  std::string text = api::json_text(answer);
-  const StoredState state{api::json_text(api::counters_json(result.state)), to_bytes(result.state.filter),
+  std::string text = json_text(answer);
+  const StoredState state{json_text(api::counters_json(result.state)), to_bytes(result.state.filter),
                           result.state.recent.to_bytes()};
   turn.doubt();
   if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {

@@ -1,9 +1,9 @@
-#include "cli/json_text.hpp"
+#include "core/units/json_text.hpp"
 
-namespace roadfix::cli {
+namespace roadfix {
 
 std::string json_text(const nlohmann::json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-}  // namespace roadfix::cli
+}  // namespace roadfix

@@ -22,15 +22,16 @@ struct InfoArguments {
 
 json source_json(const SourceStatus& source) {
   const SourceRecord& r = source.record;
+  const Provenance& p = r.provenance;
   return {{"name", r.name},
           {"kind", r.kind},
           {"location", r.location},
           {"fingerprint", r.fingerprint},
-          {"date", r.date},
-          {"licence", r.licence},
-          {"attribution", r.attribution},
+          {"date", p.date},
+          {"licence", p.licence},
+          {"attribution", p.attribution},
           {"method", r.method},
-          {"registration_sigma_m", r.registration_sigma_m},
+          {"registration_sigma_m", p.registration_sigma_m},
           {"complete", source.complete && !source.is_damaged()},
           {"blocks_total", source.blocks_total},
           {"blocks_done", source.blocks_done},
@@ -88,14 +89,15 @@ std::string state_of(const SourceStatus& source) {
 
 void print_source(const SourceStatus& source) {
   const SourceRecord& r = source.record;
+  const Provenance& p = r.provenance;
   const std::string state = state_of(source);
   fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name, r.kind, state,
              r.location, r.method);
   for (const auto& [label, value] :
-       {std::pair{"date", r.date}, std::pair{"licence", r.licence}, std::pair{"attribution", r.attribution}}) {
+       {std::pair{"date", p.date}, std::pair{"licence", p.licence}, std::pair{"attribution", p.attribution}}) {
     if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);
   }
-  fmt::print("  position      {:.2g} m (1 sigma)\n", r.registration_sigma_m);
+  fmt::print("  position      {:.2g} m (1 sigma)\n", p.registration_sigma_m);
 }
 
 void print_text(const std::string& path, const MapInfo& info) {

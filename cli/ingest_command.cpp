@@ -26,18 +26,6 @@
 namespace roadfix::cli {
 namespace {
 
-/// As the source itself has it.
-SourceRecord record_of(const IngestArguments& arguments, const SourceRequest& request, const SourceSummary& summary) {
-  SourceRecord record;
-  record.name = request.files.name;
-  record.kind = summary.kind;
-  record.location = request.files.location;
-  record.fingerprint = fmt::format("{}-seed{}", summary.fingerprint, arguments.options.seed);
-  record.method = summary.method;
-  record.registration_sigma_m = summary.registration_sigma_m;
-  return record;
-}
-
 /// Under another name, the same file would be taken for another witness.
 void note_twins(MapWriter& writer, const std::string& source, const std::string& map) {
   for (const std::string& twin : writer.twins_of(source)) {
@@ -60,8 +48,8 @@ std::string directions_of(const SourceShift& shift) {
 /// A map of two sources that lie beside each other has each street twice.
 void note_shift(MapWriter& writer, const SourceRecord& record) {
   constexpr std::int64_t kTiles = 64;
-  const auto shift =
-      shift_of(writer.shared_evidence(record.name, kTiles), writer.settings().cell_m, record.registration_sigma_m);
+  const auto shift = shift_of(writer.shared_evidence(record.name, kTiles), writer.settings().cell_m,
+                              record.provenance.registration_sigma_m);
   if (!shift) return;
   fmt::print(
       stderr,
@@ -77,7 +65,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   SourceSummary summary = summary_of(*source, request.files);
   std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
   if (auto note = note_on_distance(*source, arguments.map)) summary.notes.push_back(std::move(*note));
-  SourceRecord record = record_of(arguments, request, summary);
+  SourceRecord record = record_of(request.files, summary, arguments.options.seed);
   std::ranges::move(describe_source(record, summary.told, arguments.told,
                                     MapWriter::records_of(arguments.map, record.name), arguments.options.replace),
                     std::back_inserter(summary.notes));

@@ -58,14 +58,9 @@ struct OpenedSource {
 OpenedSource open(const SourceRequest& request, int number, const MapSettings& settings, const MapBuilding& building) {
   OpenedSource source;
   source.cells = open_source(request, settings, building.detector);
-  const SourceSummary summary = source.cells->summary();
+  source.record = record_of(request.files, source.cells->summary(), building.seed);
   // Numbered, since files of several folders may share a stem.
   source.record.name = fmt::format("{} {}", number, request.files.name);
-  source.record.kind = summary.kind;
-  source.record.location = request.files.location;
-  source.record.fingerprint = fmt::format("{}-seed{}", summary.fingerprint, building.seed);
-  source.record.method = summary.method;
-  source.record.registration_sigma_m = summary.registration_sigma_m;
   return source;
 }
 

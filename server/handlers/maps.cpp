@@ -19,13 +19,14 @@ const char* status_of(const MapInfo& info) {
 
 json source_json(const SourceStatus& source) {
   const SourceRecord& r = source.record;
+  const Provenance& p = r.provenance;
   json answer{{"name", r.name},
               {"kind", r.kind},
-              {"date", r.date},
-              {"licence", r.licence},
-              {"attribution", r.attribution},
+              {"date", p.date},
+              {"licence", p.licence},
+              {"attribution", p.attribution},
               {"method", r.method},
-              {"registration_sigma_m", r.registration_sigma_m},
+              {"registration_sigma_m", p.registration_sigma_m},
               {"complete", source.complete && !source.is_damaged()},
               {"blocks_total", source.blocks_total},
               {"blocks_done", source.blocks_done}};

@@ -17,11 +17,8 @@ inline void write_map_file(const std::filesystem::path& path, const RoadGrid& gr
                             .kind = "roads",
                             .location = "town.geojson",
                             .fingerprint = "town",
-                            .date = {},
-                            .licence = "CC0",
-                            .attribution = {},
                             .method = "drawn",
-                            .registration_sigma_m = registration_sigma_m};
+                            .provenance = {.licence = "CC0", .registration_sigma_m = registration_sigma_m}};
   for (const TileIndex block : writer.begin_source(record, tiles_covering(grid.geometry), false)) {
     const GridGeometry geometry = tile_geometry(block, grid.geometry.cell_m);
     RoadGrid tile = RoadGrid::unobserved(geometry);

@@ -13,38 +13,31 @@ namespace {
 struct Text {
   const char* name;
   const char* option;
-  std::string SourceRecord::*of_record;
-  std::string Provenance::*own;
+  std::string Provenance::*text;
   std::optional<std::string> UserProvenance::*told;
 };
 
 constexpr std::array<Text, 3> kTexts{
-    {{"date", "--date", &SourceRecord::date, &Provenance::date, &UserProvenance::date},
-     {"licence", "--licence", &SourceRecord::licence, &Provenance::licence, &UserProvenance::licence},
-     {"attribution", "--attribution", &SourceRecord::attribution, &Provenance::attribution,
-      &UserProvenance::attribution}}};
+    {{"date", "--date", &Provenance::date, &UserProvenance::date},
+     {"licence", "--licence", &Provenance::licence, &UserProvenance::licence},
+     {"attribution", "--attribution", &Provenance::attribution, &UserProvenance::attribution}}};
 
-void keep(SourceRecord& record, const SourceRecord& before) {
-  for (const Text& text : kTexts) record.*text.of_record = before.*text.of_record;
-  record.registration_sigma_m = before.registration_sigma_m;
-}
-
-void tell(SourceRecord& record, const UserProvenance& told) {
-  for (const Text& text : kTexts) {
-    if (const auto& said = told.*text.told) record.*text.of_record = *said;
+void tell(Provenance& provenance, const UserProvenance& told) {
+  for (const Text& each : kTexts) {
+    if (const auto& said = told.*each.told) provenance.*each.text = *said;
   }
-  if (told.registration_sigma_m > 0.0) record.registration_sigma_m = told.registration_sigma_m;
+  if (told.registration_sigma_m > 0.0) provenance.registration_sigma_m = told.registration_sigma_m;
 }
 
 std::string shown(const std::string& text) { return text.empty() ? "none" : "'" + text + "'"; }
 
 /// Of what the source tells of itself and nobody otherwise.
-std::optional<std::string> note_on_own(const SourceRecord& record, const Provenance& own, const UserProvenance& told) {
+std::optional<std::string> note_on_own(const std::string& location, const Provenance& own, const UserProvenance& told) {
   std::vector<std::string> facts;
   std::vector<std::string> options;
-  for (const auto& [name, option, of_record, of_source, of_user] : kTexts) {
-    if ((own.*of_source).empty() || told.*of_user) continue;
-    facts.push_back(fmt::format("{} {}", name, shown(own.*of_source)));
+  for (const auto& [name, option, text, of_user] : kTexts) {
+    if ((own.*text).empty() || told.*of_user) continue;
+    facts.push_back(fmt::format("{} {}", name, shown(own.*text)));
     options.emplace_back(option);
   }
   if (own.registration_sigma_m > 0.0 && told.registration_sigma_m == 0.0) {
@@ -52,7 +45,7 @@ std::optional<std::string> note_on_own(const SourceRecord& record, const Provena
     options.emplace_back("--registration-sigma");
   }
   if (facts.empty()) return std::nullopt;
-  return fmt::format("{} says of itself: {}. That is taken over; {} would say otherwise", record.location,
+  return fmt::format("{} says of itself: {}. That is taken over; {} would say otherwise", location,
                      fmt::join(facts, ", "), fmt::join(options, ", "));
 }
 
@@ -63,12 +56,11 @@ struct Change {
   bool asked_for;
 };
 
-std::vector<Change> changes_of(const SourceRecord& before, const SourceRecord& now, const UserProvenance& told) {
+std::vector<Change> changes_of(const Provenance& before, const Provenance& now, const UserProvenance& told) {
   std::vector<Change> changes;
-  for (const auto& [name, option, of_record, of_source, of_user] : kTexts) {
-    if (before.*of_record == now.*of_record) continue;
-    changes.push_back({option,
-                       fmt::format("{} {} instead of {}", name, shown(now.*of_record), shown(before.*of_record)),
+  for (const auto& [name, option, text, of_user] : kTexts) {
+    if (before.*text == now.*text) continue;
+    changes.push_back({option, fmt::format("{} {} instead of {}", name, shown(now.*text), shown(before.*text)),
                        (told.*of_user).has_value()});
   }
   if (before.registration_sigma_m != now.registration_sigma_m) {
@@ -88,14 +80,15 @@ std::vector<std::string> describe_source(SourceRecord& record, const Provenance&
   const bool goes_on = same != before.end() && !replace;
   std::vector<std::string> notes;
   if (goes_on) {
-    keep(record, *same);
+    record.provenance = same->provenance;
   } else {
-    for (const Text& text : kTexts) record.*text.of_record = own.*text.own;
-    if (auto note = note_on_own(record, own, told)) notes.push_back(std::move(*note));
+    for (const Text& each : kTexts) record.provenance.*each.text = own.*each.text;
+    if (auto note = note_on_own(record.location, own, told)) notes.push_back(std::move(*note));
   }
-  tell(record, told);
+  tell(record.provenance, told);
   if (!goes_on && (!replace || before.empty())) return notes;
-  for (const auto& [option, text, asked_for] : changes_of(goes_on ? *same : before.front(), record, told)) {
+  const Provenance& old = goes_on ? same->provenance : before.front().provenance;
+  for (const auto& [option, text, asked_for] : changes_of(old, record.provenance, told)) {
     notes.push_back(asked_for ? fmt::format("'{}' now has {}", record.name, text)
                               : fmt::format("--replace describes '{}' anew: {}. Where the old still holds, repeat this "
                                             "with {}",

@@ -1,5 +1,7 @@
 #include "tiles/pipeline/open_source.hpp"
 
+#include <fmt/format.h>
+
 #include <cassert>
 
 #include "core/units/error.hpp"
@@ -40,6 +42,15 @@ SourceSummary summary_of(const CellSource& source, const SourceFiles& files) {
   }
   if (summary.told.registration_sigma_m > 0.0) summary.registration_sigma_m = summary.told.registration_sigma_m;
   return summary;
+}
+
+SourceRecord record_of(const SourceFiles& files, const SourceSummary& summary, std::uint64_t seed) {
+  return {.name = files.name,
+          .kind = summary.kind,
+          .location = files.location,
+          .fingerprint = fmt::format("{}-seed{}", summary.fingerprint, seed),
+          .method = summary.method,
+          .provenance = {.registration_sigma_m = summary.registration_sigma_m}};
 }
 
 MapSettings settings_of_new_map(const SourceRequest& first, double cell_m, const RoadDetector* detector) {

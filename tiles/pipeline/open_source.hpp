@@ -1,6 +1,7 @@
 // One way to open any kind of source for a map.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "core/detect/road_detector.hpp"
@@ -31,6 +32,10 @@ std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapS
 
 /// What the source says of itself; of another map also what it was told of its own sources.
 SourceSummary summary_of(const CellSource& source, const SourceFiles& files);
+
+/// As the source itself has it, but for what `summary.told` holds. `seed` is that of the ingest, which changes the
+/// cells.
+SourceRecord record_of(const SourceFiles& files, const SourceSummary& summary, std::uint64_t seed);
 
 /// A new map gets the zone of its first source; around the equator the southern one, whose cells go on for 485 km
 /// beyond it, where those of the northern one end.

@@ -205,7 +205,7 @@ MapInfo read_info(Connection& map) {
   info.tiles = tiles.integer(0);
   info.pending = pragma(map, "SELECT count(*) FROM roadfix_pending");
   Statement sources(map,
-                    "SELECT name, kind, location, fingerprint, date, licence, attribution, method, "
+                    "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "
                     "registration_sigma_m, in_force, ingested_at, "
                     "(SELECT count(*) FROM roadfix_blocks b WHERE b.source_id = s.id), "
                     "(SELECT total(done) FROM roadfix_blocks b WHERE b.source_id = s.id) "
@@ -215,11 +215,11 @@ MapInfo read_info(Connection& map) {
                                    .kind = sources.text(1),
                                    .location = sources.text(2),
                                    .fingerprint = sources.text(3),
-                                   .date = sources.text(4),
-                                   .licence = sources.text(5),
-                                   .attribution = sources.text(6),
-                                   .method = sources.text(7),
-                                   .registration_sigma_m = sources.real(8)}};
+                                   .method = sources.text(4),
+                                   .provenance = {.date = sources.text(5),
+                                                  .licence = sources.text(6),
+                                                  .attribution = sources.text(7),
+                                                  .registration_sigma_m = sources.real(8)}}};
     status.complete = sources.integer(9) != 0;
     status.ingested_at = sources.text(10);
     status.blocks_total = sources.integer(11);

@@ -30,8 +30,7 @@ namespace {
 std::vector<Provenance> parts_of(const MapInfo& info) {
   std::vector<Provenance> parts;
   for (const SourceStatus& source : info.sources) {
-    const SourceRecord& r = source.record;
-    if (source.complete) parts.push_back({r.date, r.licence, r.attribution, r.registration_sigma_m});
+    if (source.complete) parts.push_back(source.record.provenance);
   }
   return parts;
 }

@@ -36,14 +36,11 @@ struct MapSettings {
 /// An ingested source and where it came from. `name` is its key: ingesting the same name again replaces it.
 struct SourceRecord {
   std::string name;
-  std::string kind;         ///< "imagery" or "roads"
-  std::string location;     ///< path or connection string as given
+  std::string kind;           ///< "imagery" or "roads"
+  std::string location = {};  ///< path or connection string as given
   std::string fingerprint;  ///< changes when the content or any setting that changes the cells does; guards resumption
-  std::string date;         ///< of the content, ISO 8601, empty if unknown
-  std::string licence;
-  std::string attribution;
-  std::string method;  ///< detector or drawing rules with all parameters
-  double registration_sigma_m = 0.0;
+  std::string method = {};  ///< detector or drawing rules with all parameters
+  Provenance provenance = {};
 
   friend bool operator==(const SourceRecord&, const SourceRecord&) = default;
 };

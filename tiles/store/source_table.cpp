@@ -28,10 +28,11 @@ std::int64_t SourceTable::insert(const SourceRecord& record) {
 }
 
 void SourceTable::describe(std::int64_t id, const SourceRecord& r) {
+  const Provenance& p = r.provenance;
   Statement(map_,
             "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
             "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
-      .with(id, r.kind, r.location, r.date, r.licence, r.attribution, r.method, r.registration_sigma_m)
+      .with(id, r.kind, r.location, p.date, p.licence, p.attribution, r.method, p.registration_sigma_m)
       .run();
 }
 

@@ -68,7 +68,7 @@ TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame
   {
     MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
     SourceRecord record = registry.find("city")->reader->info().sources.front().record;
-    record.registration_sigma_m = 12.0;
+    record.provenance.registration_sigma_m = 12.0;
     const auto blocks = roadfix::testing::some_blocks(1);
     ASSERT_TRUE(writer.begin_source(record, blocks, false).empty()) << "nothing is to be done but to describe it";
   }

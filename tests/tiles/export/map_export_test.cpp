@@ -240,8 +240,8 @@ TEST_F(MapExport, SaysWhoseTheContentIs) {
                                                    {"e", "", "CC0"}}) {
     MapWriter writer(path, settings_37n());
     SourceRecord record = testing::TestSource{name, 1, {}}.record();
-    record.attribution = attribution;
-    record.licence = licence;
+    record.provenance.attribution = attribution;
+    record.provenance.licence = licence;
     for (const TileIndex block : writer.begin_source(record, some_blocks(1), false)) {
       testing::put_block(writer, name, block, testing::random_cells(1, block));
     }

@@ -10,19 +10,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-SourceRecord record(const std::string& fingerprint, double sigma_m = 2.5) {
-  SourceRecord result;
-  result.name = "roads";
-  result.fingerprint = fingerprint;
-  result.registration_sigma_m = sigma_m;
-  return result;
+SourceRecord record(const std::string& fingerprint) {
+  return {.name = "roads", .kind = "roads", .fingerprint = fingerprint, .provenance = {.registration_sigma_m = 2.5}};
 }
 
 SourceRecord credited(const std::string& fingerprint) {
-  SourceRecord result = record(fingerprint, 30.0);
-  result.date = "2020";
-  result.licence = "CC-BY";
-  result.attribution = "X";
+  SourceRecord result = record(fingerprint);
+  result.provenance = {.date = "2020", .licence = "CC-BY", .attribution = "X", .registration_sigma_m = 30.0};
   return result;
 }
 
@@ -34,9 +28,9 @@ TEST(DescribeSource, ANewOneIsWhatTheUserSaysAndOtherwiseWhatItSaysItself) {
       describe_source(fresh, own, {.licence = "CC0", .registration_sigma_m = 10.0}, {}, false),
       ElementsAre("a.tif says of itself: date '2020', attribution 'X'. That is taken over; --date, --attribution "
                   "would say otherwise"));
-  EXPECT_EQ(fresh.licence, "CC0");
-  EXPECT_EQ(fresh.registration_sigma_m, 10.0);
-  EXPECT_EQ(fresh.attribution, "X");
+  EXPECT_EQ(fresh.provenance.licence, "CC0");
+  EXPECT_EQ(fresh.provenance.registration_sigma_m, 10.0);
+  EXPECT_EQ(fresh.provenance.attribution, "X");
 }
 
 TEST(DescribeSource, RepeatedWithoutOptionsItKeepsWhatWasTold) {
@@ -54,8 +48,8 @@ TEST(DescribeSource, RepeatedWithOptionsItChangesInTheseAlone) {
       ElementsAre("'roads' now has licence 'CC0' instead of 'CC-BY'",
                   "'roads' now has position within 10 m instead of 30 m (1 sigma)"));
   SourceRecord expected = before.front();
-  expected.licence = "CC0";
-  expected.registration_sigma_m = 10.0;
+  expected.provenance.licence = "CC0";
+  expected.provenance.registration_sigma_m = 10.0;
   EXPECT_EQ(again, expected);
 }
 
@@ -89,8 +83,8 @@ TEST(DescribeSource, ReplacingDescribesAnewAndSaysWhatIsLost) {
                     AllOf(HasSubstr("--replace describes 'roads' anew: attribution none instead of 'X'"),
                           HasSubstr("with --attribution")),
                     AllOf(HasSubstr("position within 2.5 m instead of 30 m"), HasSubstr("with --registration-sigma"))));
-    EXPECT_EQ(anew.registration_sigma_m, 2.5);
-    EXPECT_EQ(anew.attribution, "");
+    EXPECT_EQ(anew.provenance.registration_sigma_m, 2.5);
+    EXPECT_EQ(anew.provenance.attribution, "");
   }
 }
 

@@ -52,11 +52,9 @@ struct TestSource {
             .kind = "imagery",
             .location = name + ".tif",
             .fingerprint = name + std::to_string(seed),
-            .date = "2023-02-06",
-            .licence = "CC BY 4.0",
-            .attribution = "someone",
             .method = "tree",
-            .registration_sigma_m = 2.5};
+            .provenance = {
+                .date = "2023-02-06", .licence = "CC BY 4.0", .attribution = "someone", .registration_sigma_m = 2.5}};
   }
 };
 

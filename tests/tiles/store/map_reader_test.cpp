@@ -51,7 +51,7 @@ TEST_F(MapReaderTest, PastesAWindowOutOfSeveralTilesAndBeyondTheMap) {
 
 TEST_F(MapReaderTest, TellsTheLargestRegistrationErrorOfTheSourcesThatObservedABox) {
   SourceRecord coarse = TestSource{"coarse", 2, {}}.record();
-  coarse.registration_sigma_m = 40.0;
+  coarse.provenance.registration_sigma_m = 40.0;
   const TileIndex beside{849, -8164};  // a tile to the east of the source's south-eastern one
   for (const TileIndex block : writer.begin_source(coarse, std::vector{beside}, false)) {
     testing::put_block(writer, coarse.name, block, random_cells(2, block));

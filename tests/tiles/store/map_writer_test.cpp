@@ -41,8 +41,8 @@ TEST(MapWriter, WhatWasPutCanBeRead) {
   const SourceStatus& status = reader.info().sources.front();
   EXPECT_TRUE(status.complete);
   EXPECT_EQ(status.blocks_done, 4);
-  EXPECT_EQ(status.record.licence, "CC BY 4.0");
-  EXPECT_EQ(status.record.registration_sigma_m, 2.5);
+  EXPECT_EQ(status.record.provenance.licence, "CC BY 4.0");
+  EXPECT_EQ(status.record.provenance.registration_sigma_m, 2.5);
   EXPECT_FALSE(status.ingested_at.empty());
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-journal"));
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-writer"));

@@ -39,11 +39,8 @@ TEST(MapFileView, ASourceCountsForTheAccuracyOfTheGroundAroundItOnly) {
                               .kind = "roads",
                               .location = "coarse.geojson",
                               .fingerprint = "coarse",
-                              .date = {},
-                              .licence = {},
-                              .attribution = {},
                               .method = "drawn",
-                              .registration_sigma_m = 40.0};
+                              .provenance = {.registration_sigma_m = 40.0}};
     const GridGeometry far{2.0, {310'000, -3'200'050}, 1, 1};
     for (const TileIndex block : writer.begin_source(coarse, tiles_covering(far), false)) {
       testing::put_block(writer, coarse.name, block, CellArray(kTileCells, kTileCells, kNoRoad));

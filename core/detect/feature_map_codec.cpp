@@ -14,6 +14,7 @@
 
 #include "core/detect/frame_image.hpp"
 #include "core/detect/ground_scale.hpp"
+#include "core/grid/cell_size.hpp"
 #include "core/png/png_text.hpp"
 #include "core/units/error.hpp"
 
@@ -94,8 +95,7 @@ FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
 }
 
 void require_agreement(const FeatureMap& map, const ToldScale& told) {
-  constexpr double kSame = 1e-6;
-  if (told.cell_m && std::abs(*told.cell_m / map.cell_m - 1.0) > kSame) {
+  if (told.cell_m && !is_same_cell_size(*told.cell_m, map.cell_m)) {
     throw InvalidInput("cell-size-contradictory",
                        fmt::format("the picture says that its cells have {} m, not {} m: leave the cell size out",
                                    map.cell_m, *told.cell_m));

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/grid/cell_size.hpp"
 #include "core/grid/log_odds.hpp"
 #include "core/grid/sampling.hpp"
 #include "core/units/error.hpp"
@@ -83,10 +84,9 @@ void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, Log
 
 /// Feature maps that say their cell size themselves need not agree.
 void require_cells_of(double cell_m, std::span<const PlacedFeatures> parts) {
-  constexpr double kSame = 1e-6;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const double other_m = parts[i].features.cell_m;
-    if (std::abs(other_m / cell_m - 1.0) <= kSame) continue;
+    if (is_same_cell_size(other_m, cell_m)) continue;
     throw InvalidInput("cell-size-contradictory",
                        fmt::format("of {} frames the first has cells of {} m, number {} has cells of {} m: make all "
                                    "feature maps in cells of one size",

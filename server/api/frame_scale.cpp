@@ -40,7 +40,8 @@ FrameCamera told_camera(const Fields& fields) {
   if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
     camera.horizontal_fov = Angle::degrees(*fov);
   camera.focal_px = fields.optional_number("focal_px", kPositive);
-  if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
+  if (camera.horizontal_fov) refuse(fields, {"focal_px"}, "fov_deg: the focal length tells how wide the lens sees");
+  if (!camera.horizontal_fov && !camera.focal_px) {
     throw InvalidField("missing-parameter", "fov_deg",
                        "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px, or exif=true where its file "
                        "tells the camera");

@@ -53,7 +53,7 @@ TEST(FrameScale, NeedsAHeightAndEitherAFieldOfViewOrAFocalLength) {
   EXPECT_EQ(refused_scale(json::object()), "missing-parameter fov_deg");
   EXPECT_EQ(refused_scale({{"agl_m", 120}}), "missing-parameter fov_deg");
   EXPECT_EQ(refused_scale({{"fov_deg", 60}}), "missing-parameter agl_m");
-  EXPECT_NE(refused_scale(told({{"focal_px", 900}})), "nothing") << "which of both would count?";
+  EXPECT_EQ(refused_scale(told({{"focal_px", 900}})), "bad-parameter focal_px") << "which of both would count?";
   const FrameCamera by_view = camera_of({{"fov_deg", 60}, {"agl_m", 120}});
   EXPECT_NEAR(by_view.horizontal_fov.value().degrees(), 60.0, 1e-12);
   EXPECT_FALSE(by_view.focal_px);

@@ -10,15 +10,13 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
+#include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
 #include "core/grid/combine.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
 namespace {
-
-constexpr double kMaxCells = 25e6;
-constexpr std::size_t kMaxFrames = 64;
 
 struct Another {
   std::string path;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_image.hpp"

@@ -1,7 +1,6 @@
 // A frame on the command line: what its pixels measure on the ground, said directly or by the camera.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +10,6 @@
 #include "core/detect/frame.hpp"
 
 namespace roadfix::cli {
-
-inline constexpr std::int64_t kMaxPixels = 400'000'000;
 
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera

@@ -5,16 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "cli/limits.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
 namespace roadfix::bench {
-namespace {
-
-constexpr std::int64_t kMaxPixels = 400'000'000;
-
-}  // namespace
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
   const auto text = read_file(csv);
@@ -27,12 +23,12 @@ GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& fr
   if (!file) throw InvalidInput("image-unreadable", fmt::format("{}: cannot be opened", frame.file.string()));
   const std::vector<std::uint8_t> bytes(file->begin(), file->end());
   return said_of(frame.file.string(),
-                 [&] { return frame_image(decode_frame(bytes, kMaxPixels), frame.gsd_m, border); });
+                 [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), frame.gsd_m, border); });
 }
 
 GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector) {
   return said_of(frame.file.string(),
-                 [&] { return ground_seen(picture, frame.camera, detector, static_cast<double>(kMaxPixels)); });
+                 [&] { return ground_seen(picture, frame.camera, detector, static_cast<double>(cli::kMaxPixels)); });
 }
 
 Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/bench/agreement_picture.hpp"
+#include "cli/limits.hpp"
 #include "core/detect/frame.hpp"
 #include "core/grid/combine.hpp"
 #include "core/locate/match_poses.hpp"
@@ -55,8 +56,7 @@ class RoadsMethod : public Method {
   }
 
   static FeatureMap together(const std::vector<PlacedFeatures>& parts) {
-    constexpr double kMaxCells = 25e6;
-    return parts.size() == 1 ? parts.front().features : combined(parts, kMaxCells);
+    return parts.size() == 1 ? parts.front().features : combined(parts, cli::kMaxCells);
   }
 
   const MapView& map_;

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <vector>
 
-#include "cli/bench/panels.hpp"
+#include "cli/evaluation/panels.hpp"
 #include "core/grid/resample.hpp"
 
 namespace roadfix::bench {
 namespace {
+
+using evaluation::Panel;
+using evaluation::strongest_of;
 
 constexpr int kPanelPx = 320;
 

@@ -8,12 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "cli/bench/nees.hpp"
+#include "cli/evaluation/nees.hpp"
+#include "cli/evaluation/statistics.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::bench {
 namespace {
 
+using evaluation::quantile;
 using nlohmann::json;
 
 constexpr std::size_t kFigures = kCountedFigures.size();
@@ -50,7 +52,7 @@ Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force)
   }
   if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
   const auto bounded = [](double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); };
-  return {bounded(in_force.position_sigma_scale * scale_of(position, 2.0, kChiSquare95)),
+  return {bounded(in_force.position_sigma_scale * scale_of(position, 2.0, evaluation::kChiSquare95)),
           bounded(in_force.heading_sigma_scale * scale_of(heading, 1.0, kChiSquare95OfHeading))};
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/bench/nees.hpp"
+#include "cli/evaluation/nees.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -65,7 +65,7 @@ Honesty honesty_of(std::span<const Outcome> outcomes) {
     if (!outcome.position_nees || outcome.answer.probability < kConfident || false_fix(outcome)) continue;
     ++honesty.nees_n;
     honesty.mean_nees += *outcome.position_nees;
-    honesty.within_95 += *outcome.position_nees <= kChiSquare95 ? 1 : 0;
+    honesty.within_95 += *outcome.position_nees <= evaluation::kChiSquare95 ? 1 : 0;
   }
   if (honesty.nees_n > 0) honesty.mean_nees /= honesty.nees_n;
   return honesty;

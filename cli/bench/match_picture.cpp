@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "cli/bench/panels.hpp"
+#include "cli/evaluation/panels.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -34,7 +34,7 @@ cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m
                            all;
     if (place.empty()) continue;
     cv::Mat shown;
-    cv::resize(coloured(ortho.image.pixels), shown, place.size(), 0, 0, cv::INTER_AREA);
+    cv::resize(evaluation::coloured(ortho.image.pixels), shown, place.size(), 0, 0, cv::INTER_AREA);
     shown.copyTo(canvas(place));
   }
   return canvas;
@@ -64,7 +64,7 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundView& vie
   const double frame_scale = static_cast<double>(kHeightPx) / view.image.pixels.rows;
   cv::Mat before = mosaic(imagery, box, m_per_px);
   cv::Mat after;
-  cv::resize(coloured(view.image.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
+  cv::resize(evaluation::coloured(view.image.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
   cv::resize(before, before, {before.cols, after.rows});
   std::vector<bool> right(matches.map_m.size(), false);
   if (truth) right = right_matches(matches, origin, view, *truth, kRightMatchM);
@@ -79,10 +79,10 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundView& vie
     const cv::Point2d to(before.cols + seen.x * frame_scale, seen.y * frame_scale);
     cv::line(both, from, to, right[i] ? kRight : kWrong, 1, cv::LINE_AA);
   }
-  return side_by_side({{fmt::format("{} matches, {} of them right within {} m", right.size(),
-                                    std::ranges::count(right, true), kRightMatchM),
-                        both}},
-                      both.rows);
+  return evaluation::side_by_side({{fmt::format("{} matches, {} of them right within {} m", right.size(),
+                                                std::ranges::count(right, true), kRightMatchM),
+                                    both}},
+                                  both.rows);
 }
 
 }  // namespace roadfix::bench

@@ -6,14 +6,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/bench/frame_files.hpp"
 #include "cli/bench/query_poses.hpp"
+#include "cli/evaluation/frame_files.hpp"
+#include "cli/evaluation/random.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::bench {
 namespace {
+
+using evaluation::FrameTruth;
+using evaluation::Random;
+using evaluation::stream;
 
 /// The whole map at its finest level; benches run on maps of a city.
 RoadGrid whole(const MapView& map) { return map.read(GridGeometry::covering(map.extent, map.cell_m)); }
@@ -191,7 +196,7 @@ void require_any_on_map(const std::vector<FrameTruth>& frames, const QuerySet& s
 
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
                                const QueryDrawing& drawing) {
-  const auto frames = read_frames_csv(set.path);
+  const auto frames = evaluation::read_frames_csv(set.path);
   require_any_on_map(frames, set, map);
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {

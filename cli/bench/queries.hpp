@@ -7,7 +7,6 @@
 
 #include "cli/bench/manifest.hpp"
 #include "cli/bench/query.hpp"
-#include "cli/bench/random.hpp"
 
 namespace roadfix::bench {
 

@@ -35,7 +35,7 @@ GridBox without(const GridBox& box, const Exclusion& exclude) {
           {box.max.east_m - exclude.right * box.width_m(), box.max.north_m - exclude.top * box.height_m()}};
 }
 
-std::optional<GridPose> draw_pose(const PoseSampling& sampling, Random& random) {
+std::optional<GridPose> draw_pose(const PoseSampling& sampling, evaluation::Random& random) {
   constexpr int kTries = 20'000;
   const GridBox& box = sampling.region;
   if (box.empty()) return std::nullopt;

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "cli/bench/manifest.hpp"
-#include "cli/bench/random.hpp"
+#include "cli/evaluation/random.hpp"
 #include "core/units/planar.hpp"
 
 namespace roadfix::bench {
@@ -23,6 +23,6 @@ struct PoseSampling {
 GridBox without(const GridBox& box, const Exclusion& exclude);
 
 /// nullopt when 20,000 draws found no such pose.
-std::optional<GridPose> draw_pose(const PoseSampling& sampling, Random& random);
+std::optional<GridPose> draw_pose(const PoseSampling& sampling, evaluation::Random& random);
 
 }  // namespace roadfix::bench

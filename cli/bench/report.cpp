@@ -6,16 +6,18 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "cli/bench/honesty.hpp"
-#include "cli/bench/nees.hpp"
+#include "cli/evaluation/nees.hpp"
+#include "cli/evaluation/statistics.hpp"
 #include "core/locate/calibration.hpp"
 #include "server/api/fix_json.hpp"
 
 namespace roadfix::bench {
 namespace {
 
+using evaluation::mean;
+using evaluation::quantile;
 using nlohmann::json;
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -62,7 +64,7 @@ json outcome_json(const Outcome& outcome) {
           {"time_ms", answer.time_ms}};
 }
 
-GridEllipse ellipse_of(const FixMode& mode, const UtmZone& zone) {
+evaluation::GridEllipse ellipse_of(const FixMode& mode, const UtmZone& zone) {
   const GridPoint at = zone.project(mode.pose.position);
   return {at, zone.grid_from_true(mode.ellipse_heading, at), mode.sigma_m};
 }
@@ -92,20 +94,6 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
     outcome.position_nees = truth ? nees(ellipse_of(*mode, zone), zone.project(truth->position)) : kNowhere;
   }
   return outcome;
-}
-
-std::optional<double> mean(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-std::optional<double> quantile(std::vector<double> values, double p) {
-  if (values.empty()) return std::nullopt;
-  std::ranges::sort(values);
-  const double place = p * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const auto above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], place - static_cast<double>(below));
 }
 
 Summary summary_of(const std::vector<Outcome>& outcomes) {

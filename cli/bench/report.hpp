@@ -45,11 +45,6 @@ struct Summary {
 
 Summary summary_of(const std::vector<Outcome>& outcomes);
 
-/// nullopt for no values.
-std::optional<double> mean(const std::vector<double>& values);
-/// p in [0, 1]; linear between order statistics; nullopt for no values.
-std::optional<double> quantile(std::vector<double> values, double p);
-
 struct SetResult {
   std::string method;
   std::string map;

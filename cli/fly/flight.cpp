@@ -11,8 +11,8 @@
 namespace roadfix::fly {
 namespace {
 
-using bench::Random;
-using bench::stream;
+using evaluation::Random;
+using evaluation::stream;
 
 constexpr int kTries = 10'000;
 

@@ -59,11 +59,11 @@ struct FlightStep {
 using Flight = std::vector<FlightStep>;
 
 /// Streams of a flight's seed: what is drawn for the motion, and for the camera at each step.
-bench::Random motion_stream(std::uint64_t seed);
-bench::Random camera_stream(std::uint64_t seed, int step);
+evaluation::Random motion_stream(std::uint64_t seed);
+evaluation::Random camera_stream(std::uint64_t seed, int step);
 
 /// Whether the plan has a frame at this step, some of them lost at random.
-bool frame_comes(const FlightPlan& plan, int step, bench::Random& random);
+bool frame_comes(const FlightPlan& plan, int step, evaluation::Random& random);
 
 /// Equal arguments give equal flights; what the steps see does not depend on the other steps. `seen` is called after
 /// each step. Throws InvalidInput "no-place-to-fly", "kidnapping-too-far".

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <utility>
 
-#include "cli/bench/nees.hpp"
+#include "cli/evaluation/nees.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::fly {
@@ -55,7 +55,8 @@ Record judged(const FlightStep& step, TrackEstimate estimate, const UtmZone& zon
   const GridPoint at = record.best.position;
   record.error_m = distance_m(at, step.truth.position);
   record.heading_error_deg = angular_distance(record.best.heading, step.truth.heading).degrees();
-  record.nees = bench::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, step.truth.position);
+  record.nees =
+      evaluation::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, step.truth.position);
   return record;
 }
 

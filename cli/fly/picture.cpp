@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "cli/bench/panels.hpp"
+#include "cli/evaluation/panels.hpp"
 #include "core/locate/ellipse.hpp"
 
 namespace roadfix::fly {
@@ -82,7 +82,7 @@ RoadGrid overview(const MapView& map, double m_per_px) {
 
 cv::Mat shades(const RoadGrid& grid) {
   constexpr double kGround = 235.0;
-  const double darkest = bench::strongest_of(grid.cells);
+  const double darkest = evaluation::strongest_of(grid.cells);
   cv::Mat grey(grid.cells.rows(), grid.cells.cols(), CV_8UC1);
   for (int row = 0; row < grey.rows; ++row) {
     for (int col = 0; col < grey.cols; ++col) {
@@ -101,7 +101,7 @@ void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
   const double x = (backdrop.box.min.east_m - imagery.north_west.east_m) / imagery.image.gsd_m;
   const double y = (imagery.north_west.north_m - backdrop.box.max.north_m) / imagery.image.gsd_m;
   const cv::Matx23d source_from_target(scale, 0.0, x + 0.5 * scale - 0.5, 0.0, scale, y + 0.5 * scale - 0.5);
-  const cv::Mat colour = bench::coloured(imagery.image.pixels);
+  const cv::Mat colour = evaluation::coloured(imagery.image.pixels);
   cv::Mat smooth;  // not in place: the vehicle looks at these pixels
   const int side = scale > 1.0 ? 1 + static_cast<int>(scale) : 1;
   cv::blur(colour, smooth, cv::Size(side, side));

@@ -13,7 +13,7 @@
 namespace roadfix::fly {
 namespace {
 
-using bench::Random;
+using evaluation::Random;
 
 Angle bearing(GridPoint from, GridPoint to) {
   return Angle::radians(std::atan2(to.east_m - from.east_m, to.north_m - from.north_m));

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli/bench/random.hpp"
+#include "cli/evaluation/random.hpp"
 #include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
 
@@ -22,9 +22,9 @@ struct Handling {
 class Pilot {
  public:
   virtual ~Pilot() = default;
-  virtual GridPose start(bench::Random& random) = 0;
+  virtual GridPose start(evaluation::Random& random) = 0;
   /// Turn of the next step, clockwise; nullopt when the plan is flown.
-  virtual std::optional<Angle> steer(const GridPose& pose, bench::Random& random) = 0;
+  virtual std::optional<Angle> steer(const GridPose& pose, evaluation::Random& random) = 0;
 };
 
 /// Wanders within the box: the rate of turn changes at random, and near the rim it heads back to the middle.

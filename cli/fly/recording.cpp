@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/bench/frame_files.hpp"
+#include "cli/evaluation/frame_files.hpp"
 #include "cli/fly/vehicle.hpp"
 #include "core/detect/frame.hpp"
 #include "core/units/error.hpp"
@@ -14,7 +14,7 @@
 namespace roadfix::fly {
 namespace {
 
-using bench::FrameTruth;
+using evaluation::FrameTruth;
 
 struct Sequence {
   std::string name;
@@ -53,17 +53,17 @@ std::vector<double> times_of(const Sequence& sequence, double step_s) {
 
 RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& truth, double time_s, const UtmZone& zone,
                        const RecordingOptions& options) {
-  const GroundImage picture = bench::read_frame(folder, truth, options.border);
+  const GroundImage picture = evaluation::read_frame(folder, truth, options.border);
   RecordedFrame frame;
   frame.truth = on_grid(truth.pose, zone);
   frame.time_s = time_s;
-  frame.footprint = bench::footprint_of(picture, truth);
+  frame.footprint = evaluation::footprint_of(picture, truth);
   if (options.detector != nullptr) {
-    const GroundView view = bench::view_of(picture, truth, *options.detector);
+    const GroundView view = evaluation::view_of(picture, truth, *options.detector);
     frame.observation.features = detect_features(*options.detector, view, options.cell_m, options.seed);
   } else {
     frame.observation.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
-      return CameraFrame{bench::read_frame(folder, truth, border), truth.camera, cell_m, seed};
+      return CameraFrame{evaluation::read_frame(folder, truth, border), truth.camera, cell_m, seed};
     };
   }
   return frame;
@@ -74,7 +74,7 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
                                        const RecordingOptions& options,
                                        const std::function<void(std::int64_t, std::int64_t)>& seen) {
-  const std::vector<Sequence> sequences = sequences_of(bench::read_frames_csv(csv), options.max_frames);
+  const std::vector<Sequence> sequences = sequences_of(evaluation::read_frames_csv(csv), options.max_frames);
   std::int64_t total = 0;
   for (const Sequence& sequence : sequences) total += std::ssize(sequence.frames);
   std::vector<Recording> recordings;
@@ -93,13 +93,13 @@ std::vector<Recording> read_recordings(const std::filesystem::path& csv, const U
 
 Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t seed,
               const std::function<void()>& seen) {
-  bench::Random motion = motion_stream(seed);
+  evaluation::Random motion = motion_stream(seed);
   const OdometrySensor odometry(plan.odometry, motion);
   Flight flight;
   const RecordedFrame* before = nullptr;
   for (const RecordedFrame& frame : recording.frames) {
     const int step = static_cast<int>(flight.size());
-    bench::Random camera = camera_stream(seed, step);
+    evaluation::Random camera = camera_stream(seed, step);
     Report input;
     input.sequence = step;
     input.time_us = std::llround(1e6 * frame.time_s);

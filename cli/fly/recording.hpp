@@ -34,9 +34,9 @@ struct RecordingOptions {
   std::uint64_t seed = 1;                  ///< of the detector
 };
 
-/// The flights of a CSV as bench::read_frames_csv reads it, one for each sequence, in its order. Each frame has its
-/// roads detected once; `seen` is called with (done, of all). Throws as bench::read_frames_csv and bench::read_frame,
-/// and InvalidInput "recording-time" where a sequence's times run backwards.
+/// The flights of a CSV as evaluation::read_frames_csv reads it, one for each sequence, in its order. Each frame has
+/// its roads detected once; `seen` is called with (done, of all). Throws as evaluation::read_frames_csv and
+/// evaluation::read_frame, and InvalidInput "recording-time" where a sequence's times run backwards.
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
                                        const RecordingOptions& options,
                                        const std::function<void(std::int64_t, std::int64_t)>& seen);

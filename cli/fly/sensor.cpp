@@ -23,7 +23,7 @@ class Camera {
   Camera(const Orthoimage& imagery, const Footprint& footprint, const CameraErrors& errors, double cell_m)
       : imagery_(imagery), footprint_(footprint), errors_(errors), cell_m_(cell_m) {}
 
-  Shot aim(const GridPose& pose, double scale, bench::Random& random) const {
+  Shot aim(const GridPose& pose, double scale, evaluation::Random& random) const {
     // A small tilt moves what is seen; that it also stretches it by a share of that is left out.
     const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
@@ -53,7 +53,7 @@ class ImagingSensor : public Sensor {
  public:
   ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
 
-  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     CameraFrame frame = camera_.take(camera_.aim(pose, scale, random));
     return {detect_features(detector_, rectified(std::move(frame.image)), frame.cell_m, frame.seed), {}};
   }
@@ -69,7 +69,7 @@ class CameraSensor : public Sensor {
  public:
   explicit CameraSensor(const Camera& camera) : camera_(camera) {}
 
-  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] { return camera.take(shot); }};
   }
 
@@ -84,7 +84,7 @@ class SimulatedSensor : public Sensor {
   SimulatedSensor(const MapView& map, const Footprint& footprint, const FeatureQuality& quality)
       : ground_(map.read(GridGeometry::covering(map.extent, map.cell_m))), footprint_(footprint), quality_(quality) {}
 
-  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     const double cell_m = ground_.geometry.cell_m;
     const auto cells = [&](double metres) { return static_cast<int>(std::lround(scale * metres / cell_m)); };
     FeatureMap features =

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "cli/bench/random.hpp"
+#include "cli/evaluation/random.hpp"
 #include "core/detect/frame_camera.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/detect/road_detector.hpp"
@@ -39,7 +39,7 @@ class Sensor {
   virtual ~Sensor() = default;
   /// `scale`: the ground that is seen is so many times as large as the observation says. Safe to call from several
   /// threads with generators of their own.
-  virtual Observation observe(const GridPose& pose, double scale, bench::Random& random) const = 0;
+  virtual Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const = 0;
   /// Whether the middle of the frame would show ground.
   virtual bool shows(GridPoint point) const = 0;
 };

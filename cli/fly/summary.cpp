@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/bench/nees.hpp"
-#include "cli/bench/report.hpp"
+#include "cli/evaluation/nees.hpp"
+#include "cli/evaluation/statistics.hpp"
 
 namespace roadfix::fly {
 namespace {
 
-using bench::mean;
-using bench::quantile;
+using evaluation::mean;
+using evaluation::quantile;
 
 constexpr double kMaxWeight = 0.5;
 
@@ -88,7 +88,7 @@ void condense(const Samples& samples, Summary& summary) {
   summary.final_error_p90_m = quantile(samples.final_errors, 0.9);
   summary.claim_updates_median = quantile(samples.claim_updates, 0.5);
   summary.nees_mean = mean(samples.nees);
-  summary.within_95 = share_below(samples.nees, bench::kChiSquare95);
+  summary.within_95 = share_below(samples.nees, evaluation::kChiSquare95);
   summary.step_ms_median = quantile(samples.step_ms, 0.5);
   summary.step_ms_p95 = quantile(samples.step_ms, 0.95);
   summary.particles_mean = mean(samples.particles);

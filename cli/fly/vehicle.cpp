@@ -16,12 +16,13 @@ Odometry arc(double length_m, Angle turn) {
 
 }  // namespace
 
-OdometrySensor::OdometrySensor(const OdometryErrors& errors, bench::Random& random)
+OdometrySensor::OdometrySensor(const OdometryErrors& errors, evaluation::Random& random)
     : errors_(errors), scale_(1.0 + errors.scale * normal(random)), turn_drift_(normal(random) * errors.turn_drift) {
   if (errors.wind_m_s > 0.0) wind_m_s_ = {errors.wind_m_s * normal(random), errors.wind_m_s * normal(random)};
 }
 
-Odometry OdometrySensor::measure(const Odometry& moved, double length_m, double seconds, bench::Random& random) const {
+Odometry OdometrySensor::measure(const Odometry& moved, double length_m, double seconds,
+                                 evaluation::Random& random) const {
   const double spread = errors_.share * length_m;
   return {scale_ * moved.forward_m + spread * normal(random), scale_ * moved.right_m + spread * normal(random),
           moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn};
@@ -32,10 +33,11 @@ GridPose OdometrySensor::drifted(const GridPose& pose, double seconds) const {
           pose.heading};
 }
 
-Vehicle::Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random)
+Vehicle::Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors,
+                 evaluation::Random& random)
     : pose_(start), handling_(handling), odometry_(errors, random) {}
 
-Odometry Vehicle::move(Angle turn, bench::Random& random) {
+Odometry Vehicle::move(Angle turn, evaluation::Random& random) {
   const double length_m = handling_.speed_m_s * handling_.step_s;
   const Odometry step = arc(length_m, turn);
   pose_ = odometry_.drifted(moved(pose_, step), handling_.step_s);

@@ -1,7 +1,7 @@
 // The vehicle's true motion, by equation (4), and what its odometry says of it.
 #pragma once
 
-#include "cli/bench/random.hpp"
+#include "cli/evaluation/random.hpp"
 #include "cli/fly/pilot.hpp"
 #include "core/filter/motion.hpp"
 
@@ -19,10 +19,10 @@ struct OdometryErrors {
 /// Of one flight: what it draws once is drawn when it is made.
 class OdometrySensor {
  public:
-  OdometrySensor(const OdometryErrors& errors, bench::Random& random);
+  OdometrySensor(const OdometryErrors& errors, evaluation::Random& random);
 
   /// What it says of a motion through the air of that length and duration.
-  Odometry measure(const Odometry& moved, double length_m, double seconds, bench::Random& random) const;
+  Odometry measure(const Odometry& moved, double length_m, double seconds, evaluation::Random& random) const;
   /// Where the wind, which it does not feel, carries a vehicle in that time.
   GridPose drifted(const GridPose& pose, double seconds) const;
 
@@ -35,14 +35,14 @@ class OdometrySensor {
 
 class Vehicle {
  public:
-  Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, bench::Random& random);
+  Vehicle(const GridPose& start, const Handling& handling, const OdometryErrors& errors, evaluation::Random& random);
 
   const GridPose& pose() const { return pose_; }
   /// Somewhere else without its odometry noticing.
   void jump_to(const GridPose& pose) { pose_ = pose; }
 
   /// Follows an arc with this turn for one step; returns what the odometry says.
-  Odometry move(Angle turn, bench::Random& random);
+  Odometry move(Angle turn, evaluation::Random& random);
 
  private:
   GridPose pose_;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/bench/frames_csv.hpp"
+#include "cli/evaluation/frames_csv.hpp"
 #include "tests/support/drone_jpeg.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -56,7 +56,7 @@ TEST_F(FramesCommand, MakesATableThatBenchReads) {
   const ProgramResult result = frames(fmt::format("'{}' --csv '{}' --takeoff-agl 10", (folder / "flight 1").string(),
                                                   (folder / "frames.csv").string()));
   ASSERT_EQ(result.code, 0) << result.err;
-  const auto table = bench::parse_frames_csv(text_of(folder / "frames.csv"));
+  const auto table = evaluation::parse_frames_csv(text_of(folder / "frames.csv"));
   ASSERT_EQ(table.size(), 2U);
   EXPECT_EQ(table[0].file, "flight 1/0001.jpg");
   EXPECT_EQ(table[0].sequence, "flight 1");
@@ -95,7 +95,7 @@ TEST_F(FramesCommand, WritesNoTableThatItsNamesBreak) {
   EXPECT_THAT(table(flight / "frames.csv", "").err, HasSubstr("'flight, b': name the flight with --sequence"));
   EXPECT_EQ(table(flight / "frames.csv", "--sequence 'a, b'").code, 2);
   ASSERT_EQ(table(flight / "frames.csv", "--sequence b").code, 0);
-  EXPECT_EQ(bench::parse_frames_csv(text_of(flight / "frames.csv")).at(0).file, "0001.jpg");
+  EXPECT_EQ(evaluation::parse_frames_csv(text_of(flight / "frames.csv")).at(0).file, "0001.jpg");
 }
 
 TEST_F(FramesCommand, LeavesOutWhatWasMadeSmallerByAProgramThatDidNotSaySo) {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "cli/bench/frames_csv.hpp"
 #include "cli/bench/manifest.hpp"
+#include "cli/evaluation/frames_csv.hpp"
 #include "core/units/error.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ void read_manifest(std::string_view text) {
 
 void read_frames(std::string_view text) {
   try {
-    for (const auto& frame : roadfix::bench::parse_frames_csv(text)) {
+    for (const auto& frame : roadfix::evaluation::parse_frames_csv(text)) {
       const double size_m = frame.camera ? frame.camera->agl_m : frame.gsd_m;
       if (frame.file.empty() || !(size_m >= 0.0)) std::abort();
     }

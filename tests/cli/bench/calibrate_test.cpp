@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/bench/random.hpp"
+#include "cli/evaluation/random.hpp"
 #include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 /// Answers that are right with a probability that is a logistic function of the surprise, errors of twice the ellipse.
 std::vector<Outcome> drawn(int n, std::uint64_t seed) {
-  Random random = stream(seed, 0, 0);
+  evaluation::Random random = evaluation::stream(seed, 0, 0);
   std::vector<Outcome> outcomes;
   for (int i = 0; i < n; ++i) {
     Outcome outcome;

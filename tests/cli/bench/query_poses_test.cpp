@@ -7,7 +7,7 @@ namespace {
 
 TEST(DrawPose, KeepsTheWholeFootprintInTheRegionAndOffTheUnobserved) {
   const PoseSampling sampling{{{0, 0}, {100, 100}}, {30, 20}, [](GridPoint p) { return p.east_m > 50.0; }};
-  Random random = stream(1, 0, 0);
+  evaluation::Random random = evaluation::stream(1, 0, 0);
   for (int i = 0; i < 50; ++i) {
     const auto pose = draw_pose(sampling, random);
     ASSERT_TRUE(pose);
@@ -19,13 +19,13 @@ TEST(DrawPose, KeepsTheWholeFootprintInTheRegionAndOffTheUnobserved) {
 }
 
 TEST(DrawPose, GivesUpWhereNothingFits) {
-  Random random = stream(1, 0, 0);
+  evaluation::Random random = evaluation::stream(1, 0, 0);
   EXPECT_FALSE(draw_pose({{{0, 0}, {10, 10}}, {30, 30}, [](GridPoint) { return true; }}, random));
 }
 
 TEST(DrawPose, IsUniformOverTheHeadings) {
   const PoseSampling sampling{{{0, 0}, {1000, 1000}}, {1, 1}, [](GridPoint) { return true; }};
-  Random random = stream(7, 0, 0);
+  evaluation::Random random = evaluation::stream(7, 0, 0);
   int east = 0;
   constexpr int kDraws = 2000;
   for (int i = 0; i < kDraws; ++i) east += draw_pose(sampling, random)->heading.degrees() < 180.0;

@@ -118,12 +118,5 @@ TEST(QuerySet, IsDescribedWithAllThatTellsItFromOthersOverItsMap) {
   EXPECT_EQ(describe(set), "simulated from newer elsewhere 300x200 m, prior 500 m");
 }
 
-TEST(Quantile, LiesBetweenTheOrderStatistics) {
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
-  EXPECT_EQ(quantile({1.0, 2.0}, 0.5), 1.5);
-  EXPECT_EQ(quantile({5.0}, 0.95), 5.0);
-  EXPECT_FALSE(quantile({}, 0.5));
-}
-
 }  // namespace
 }  // namespace roadfix::bench

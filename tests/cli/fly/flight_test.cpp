@@ -21,7 +21,7 @@ const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
 /// Shows everything, sees one cell.
 class Window : public Sensor {
  public:
-  Observation observe(const GridPose&, double, bench::Random& random) const override {
+  Observation observe(const GridPose&, double, evaluation::Random& random) const override {
     return {FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0), {}};
   }
   bool shows(GridPoint) const override { return true; }
@@ -30,7 +30,7 @@ class Window : public Sensor {
 /// Remembers where and how it was looked.
 class Witness : public Window {
  public:
-  Observation observe(const GridPose& pose, double scale, bench::Random& random) const override {
+  Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     places.push_back(pose.position);
     scales.push_back(scale);
     return Window::observe(pose, scale, random);

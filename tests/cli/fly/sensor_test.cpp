@@ -42,8 +42,8 @@ double difference(const cv::Mat& a, const cv::Mat& b) {
 TEST(Camera, TakesThePictureInWhichTheVehicleItselfWouldDetectRoadsAndTheSameOneWheneverItIsAsked) {
   const Orthoimage imagery = noise();
   const DetectorWitness witness;
-  bench::Random one(7);
-  bench::Random other(7);
+  evaluation::Random one(7);
+  evaluation::Random other(7);
   const Observation detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->observe(kPose, 1.0, one);
   const Observation sent = make_camera(imagery, kFootprint, {}, 2.0)->observe(kPose, 1.0, other);
   EXPECT_TRUE(detected.features);

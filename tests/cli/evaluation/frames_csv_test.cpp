@@ -1,10 +1,10 @@
-#include "cli/bench/frames_csv.hpp"
+#include "cli/evaluation/frames_csv.hpp"
 
 #include <gmock/gmock.h>
 
 #include "core/units/error.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 using ::testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
 }
 
 }  // namespace
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

@@ -1,4 +1,4 @@
-#include "cli/bench/frames_csv.hpp"
+#include "cli/evaluation/frames_csv.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 constexpr double kAnyNumber = 1e10;  // Unix times too
@@ -53,7 +53,7 @@ class Row {
     }
     return values;
   }
-  [[noreturn]] void refuse(const std::string& what) const { bench::refuse(line_, what); }
+  [[noreturn]] void refuse(const std::string& what) const { evaluation::refuse(line_, what); }
 
  private:
   double number(std::string_view name, std::string_view text, double low, double high) const {
@@ -145,4 +145,4 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   return frames;
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

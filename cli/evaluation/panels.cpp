@@ -1,10 +1,10 @@
-#include "cli/bench/panels.hpp"
+#include "cli/evaluation/panels.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <opencv2/imgproc.hpp>
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 constexpr int kTitlePx = 22;
@@ -52,4 +52,4 @@ cv::Mat side_by_side(const std::vector<Panel>& panels, int height_px) {
   return result;
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

@@ -1,4 +1,4 @@
-#include "cli/bench/frame_files.hpp"
+#include "cli/evaluation/frame_files.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
   const auto text = read_file(csv);
@@ -38,4 +38,4 @@ Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame) {
   return {size.width * gsd_m, size.height * gsd_m};
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

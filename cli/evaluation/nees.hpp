@@ -7,7 +7,7 @@
 
 #include "core/units/planar.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 /// 95 % of chi^2 with two degrees of freedom lie below.
 inline constexpr double kChiSquare95 = 5.991;
@@ -29,4 +29,4 @@ inline double nees(const GridEllipse& ellipse, GridPoint truth) {
   return along * along + across * across;
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

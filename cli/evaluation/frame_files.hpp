@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "cli/bench/frames_csv.hpp"
+#include "cli/evaluation/frames_csv.hpp"
 #include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/orthoimage.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 /// Throws NotFound "frames-missing", and as parse_frames_csv.
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
@@ -25,4 +25,4 @@ GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const Ro
 /// Of a camera as if it looked straight down through a lens without distortion. Throws likewise.
 Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame);
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

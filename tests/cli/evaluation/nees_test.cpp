@@ -1,8 +1,8 @@
-#include "cli/bench/nees.hpp"
+#include "cli/evaluation/nees.hpp"
 
 #include <gtest/gtest.h>
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 TEST(Nees, CountsTheErrorAlongAndAcrossTheEllipseInItsSigmas) {
@@ -21,4 +21,4 @@ TEST(Nees, OfAnEllipseWithoutAnAreaIsFinite) {
 }
 
 }  // namespace
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

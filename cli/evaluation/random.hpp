@@ -6,7 +6,7 @@
 
 #include "core/units/draws.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 using Random = std::mt19937_64;
 
@@ -15,4 +15,4 @@ inline Random stream(std::uint64_t seed, std::uint64_t set, std::uint64_t query)
   return Random(sequence);
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

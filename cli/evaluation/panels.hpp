@@ -7,7 +7,7 @@
 
 #include "core/grid/cell_array.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 struct Panel {
   std::string title;
@@ -24,4 +24,4 @@ double strongest_of(const CellArray& cells);
 /// All panels brought to one height; at least one.
 cv::Mat side_by_side(const std::vector<Panel>& panels, int height_px);
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

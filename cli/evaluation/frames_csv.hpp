@@ -13,7 +13,7 @@
 #include "core/detect/frame_camera.hpp"
 #include "core/geodesy/geo_pose.hpp"
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 
 struct FrameTruth {
   std::filesystem::path file;         ///< relative to the CSV
@@ -27,4 +27,4 @@ struct FrameTruth {
 /// Throws InvalidInput ("frames-csv") naming line and column.
 std::vector<FrameTruth> parse_frames_csv(std::string_view text);
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

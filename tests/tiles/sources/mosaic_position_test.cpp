@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 #include "core/geodesy/utm.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -35,6 +36,8 @@ struct Crs {
   std::array<double, 6> transform;
   GridPoint (*plane)(double x, double y);  ///< from the raster's own coordinates
   Reference reference = Reference::kTransform;
+
+  friend std::ostream& operator<<(std::ostream& out, const Crs& crs) { return out << crs.name; }
 };
 
 GridPoint from_degrees(double lon, double lat) { return kZone.project({lat, lon}); }

@@ -1,10 +1,24 @@
 // What those who listen to a track are told.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "server/http/errors.hpp"
 #include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
+
+std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string& id, std::int64_t after) {
+  find(id);
+  const std::lock_guard lock(mutex_);
+  if (std::ssize(listeners_) >= limits_.streams) {
+    throw http::Busy(
+        fmt::format("{} event streams are open, the most allowed (serve --max-streams)", listeners_.size()),
+        std::chrono::seconds(5));
+  }
+  return std::make_shared<Listener>(*this, id, after);
+}
 
 TrackRegistry::Listener::Listener(TrackRegistry& registry, std::string id, std::int64_t after)
     : registry_(registry), id_(std::move(id)), after_(after) {

@@ -297,15 +297,4 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   return text;
 }
 
-std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string& id, std::int64_t after) {
-  find(id);
-  const std::lock_guard lock(mutex_);
-  if (std::ssize(listeners_) >= limits_.streams) {
-    throw http::Busy(
-        fmt::format("{} event streams are open, the most allowed (serve --max-streams)", listeners_.size()),
-        std::chrono::seconds(5));
-  }
-  return std::make_shared<Listener>(*this, id, after);
-}
-
 }  // namespace roadfix::server

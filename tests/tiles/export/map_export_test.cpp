@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +14,7 @@
 
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
-#include "tests/tiles/store/map_fixture.hpp"
+#include "tests/tiles/export/map_export_fixture.hpp"
 #include "tiles/sources/exported_roads.hpp"
 
 namespace roadfix {
@@ -24,54 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ingest;
+using testing::MapExport;
 using testing::settings_37n;
 using testing::some_blocks;
-using testing::TemporaryFolder;
-
-class MapExport : public ::testing::Test {
- protected:
-  MapExport() : path(folder / "m.gpkg") {
-    MapWriter writer(path, settings_37n());
-    ingest(writer, {"a", 1, some_blocks(2)});
-    GDALAllRegister();
-  }
-
-  std::string code_of(const fs::path& target, const ExportOptions& options, std::stop_token stop = {}) const {
-    try {
-      export_map(MapReader(path), target, options, {}, stop);
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return "no error";
-  }
-
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
-  }
-
-  TemporaryFolder folder;
-  fs::path path;
-};
-
-/// No file may grow beyond so many bytes, as on a full disk, for as long as this lives.
-class Room {
- public:
-  explicit Room(std::uintmax_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit less{bytes, before_.rlim_max};
-    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &less), 0);
-  }
-  ~Room() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-  Room(const Room&) = delete;
-  Room& operator=(const Room&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 struct Picture {
   explicit Picture(const fs::path& path) : data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER)) {
@@ -274,42 +227,6 @@ TEST_F(MapExport, TellsIngestDateLicenceAttributionAndRegistrationError) {
     const Picture picture(folder / name);
     EXPECT_EQ(provenance_in(*picture.data), (Provenance{"2023-02-06", "CC BY 4.0", "someone", 2.5})) << name;
   }
-}
-
-TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
-  EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");
-  EXPECT_EQ(code_of(folder / "out.tif", {.box = GridBox{{0, 0}, {100, 100}}}), "region-outside-map");
-  EXPECT_EQ(code_of(folder / "no/such/folder/out.tif", {}), "export-failed");
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_EQ(code_of(folder / "out.tif", {}, stop.get_token()), "export-stopped");
-  EXPECT_EQ(files(), 1U);
-  { MapWriter(folder / "empty.gpkg", settings_37n()); }
-  EXPECT_THROW(export_map(MapReader(folder / "empty.gpkg"), folder / "out.tif", {}), InvalidInput);
-}
-
-TEST_F(MapExport, SaysWhenTheLastByteFindsNoRoomAndLeavesNothingBehind) {
-  for (const auto& [name, format] : {std::pair("out.tif", ExportFormat::kCog),
-                                     {"out.tif", ExportFormat::kGeoTiff},
-                                     {"out.png", ExportFormat::kPng},
-                                     {"out.mbtiles", ExportFormat::kMbTiles}}) {
-    const auto target = folder / name;
-    export_map(MapReader(path), target, {.format = format});
-    const std::uintmax_t whole = fs::file_size(target);
-    fs::remove(target);
-    for (const char* beside : {"out.wld", "out.png.aux.xml"}) fs::remove(folder / beside);
-    const Room room(whole - 1);
-    EXPECT_EQ(code_of(target, {.format = format}), "export-failed") << name;
-    EXPECT_EQ(files(), 1U);
-  }
-}
-
-TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
-  testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00'");
-  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng}) {
-    EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
-  }
-  EXPECT_EQ(files(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+// What cannot be exported leaves nothing behind.
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "tests/tiles/export/map_export_fixture.hpp"
+
+namespace roadfix {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::MapExport;
+using testing::settings_37n;
+
+/// No file may grow beyond so many bytes, as on a full disk, for as long as this lives.
+class Room {
+ public:
+  explicit Room(std::uintmax_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit less{bytes, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &less), 0);
+  }
+  ~Room() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
+  EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");
+  EXPECT_EQ(code_of(folder / "out.tif", {.box = GridBox{{0, 0}, {100, 100}}}), "region-outside-map");
+  EXPECT_EQ(code_of(folder / "no/such/folder/out.tif", {}), "export-failed");
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(code_of(folder / "out.tif", {}, stop.get_token()), "export-stopped");
+  EXPECT_EQ(files(), 1U);
+  { MapWriter(folder / "empty.gpkg", settings_37n()); }
+  EXPECT_THROW(export_map(MapReader(folder / "empty.gpkg"), folder / "out.tif", {}), InvalidInput);
+}
+
+TEST_F(MapExport, SaysWhenTheLastByteFindsNoRoomAndLeavesNothingBehind) {
+  for (const auto& [name, format] : {std::pair("out.tif", ExportFormat::kCog),
+                                     {"out.tif", ExportFormat::kGeoTiff},
+                                     {"out.png", ExportFormat::kPng},
+                                     {"out.mbtiles", ExportFormat::kMbTiles}}) {
+    const auto target = folder / name;
+    export_map(MapReader(path), target, {.format = format});
+    const std::uintmax_t whole = fs::file_size(target);
+    fs::remove(target);
+    for (const char* beside : {"out.wld", "out.png.aux.xml"}) fs::remove(folder / beside);
+    const Room room(whole - 1);
+    EXPECT_EQ(code_of(target, {.format = format}), "export-failed") << name;
+    EXPECT_EQ(files(), 1U);
+  }
+}
+
+TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
+  testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00'");
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng}) {
+    EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
+  }
+  EXPECT_EQ(files(), 1U);
+}
+
+}  // namespace
+}  // namespace roadfix

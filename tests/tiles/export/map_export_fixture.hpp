@@ -1,0 +1,39 @@
+// What the tests of exports share.
+#pragma once
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <iterator>
+#include <string>
+
+#include "tests/support/code_of.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/export/map_export.hpp"
+
+namespace roadfix::testing {
+
+class MapExport : public ::testing::Test {
+ protected:
+  MapExport() : path(folder / "m.gpkg") {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"a", 1, some_blocks(2)});
+    GDALAllRegister();
+  }
+
+  std::string code_of(const std::filesystem::path& target, const ExportOptions& options,
+                      std::stop_token stop = {}) const {
+    return testing::code_of([&] { export_map(MapReader(path), target, options, {}, stop); });
+  }
+
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()));
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path path;
+};
+
+}  // namespace roadfix::testing

@@ -31,8 +31,8 @@ struct FlyOptions {
   double turn_noise_deg = 0.3;
   double turn_drift_deg = 0.05;
   bool no_odometry = false;
-  std::vector<int> outage;
-  std::vector<double> kidnap;
+  std::vector<int> outage;               ///< first step without frames and the first with them again; empty = none
+  std::vector<double> kidnap;            ///< step and metres; empty = none
   std::optional<double> registration_m;  ///< default: what the map says of itself
   double attitude_deg = 1.0;
   fly::CameraErrors camera;

@@ -1,0 +1,114 @@
+#include "server/api/position_answer.hpp"
+
+#include <gmock/gmock.h>
+
+#include "server/autopilot/mavlink_frame.hpp"
+#include "tests/server/api/request_fixture.hpp"
+#include "tests/support/code_of.hpp"
+
+namespace roadfix::api {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::Pair;
+using ::testing::StartsWith;
+
+const json kKnown{
+    {"status", "fix"}, {"pose", {{"lat", 37.7632}, {"lon", 38.2571}, {"heading_deg", 131.4}}}, {"sigma_m", {1.5, 2.5}}};
+/// Where several places fit there is no pose at the top, whatever the places below it say.
+const json kNotKnown{{"status", "ambiguous"}, {"modes", {{{"pose", kKnown["pose"]}}}}};
+constexpr PositionTime kTime{1'763'724'896'250'000, std::chrono::milliseconds(250)};
+
+PositionFormat format_of(const json& request, const std::string& accept = {}) {
+  http::Request asked;
+  if (!accept.empty()) asked.headers["accept"] = accept;
+  return parse_position_format(asked, fields_of(request, position_fields()));
+}
+std::string refused_format(const json& request) {
+  return refused([&] { format_of(request); });
+}
+json mavproxy(const json& answer, json request = {}, const PositionTime& time = kTime) {
+  request["format"] = "mavproxy";
+  return json::parse(position_response(answer, format_of(request), time).body);
+}
+
+TEST(PositionFormat, IsJsonUnlessTheFieldOrElseTheHeaderSaysOtherwise) {
+  EXPECT_TRUE(format_of(json::object()).is_json());
+  EXPECT_EQ(format_of(json::object(), "application/x-nmea-0183").name, "nmea");
+  EXPECT_EQ(format_of({{"format", "gps_input"}}, "application/x-nmea-0183").type, "application/x-mavlink-gps-input");
+  EXPECT_EQ(refused_format({{"format", "morse"}}), "bad-parameter format");
+  EXPECT_EQ(testing::code_of([] { format_of(json::object(), "text/html"); }), "not-acceptable");
+}
+
+TEST(PositionFormat, TakesWhatTheClientKnowsOfItsVehicle) {
+  const PositionFormat plain = format_of(json::object());
+  EXPECT_FALSE(plain.altitude_msl_m);
+  EXPECT_EQ(plain.camera_yaw.degrees(), 0.0);
+  EXPECT_EQ(plain.satellites, 0);
+  EXPECT_EQ(plain.sender.system, 1);
+  EXPECT_EQ(plain.sender.component, autopilot::MavlinkSender().component);
+  const PositionFormat told =
+      format_of({{"alt_m", 512.5}, {"camera_yaw_deg", -90}, {"satellites", 10}, {"system", 7}, {"component", 42}});
+  EXPECT_EQ(told.altitude_msl_m, 512.5);
+  EXPECT_NEAR(told.camera_yaw.degrees(), -90.0, 1e-9);
+  EXPECT_EQ(told.satellites, 10);
+  EXPECT_EQ(told.sender.system, 7);
+  EXPECT_EQ(told.sender.component, 42);
+  for (const auto& [name, value] :
+       {std::pair("alt_m", 50'001), {"satellites", 100}, {"system", 0}, {"system", 256}, {"component", 0}}) {
+    EXPECT_EQ(refused_format({{name, value}}), std::string("parameter-out-of-range ") + name);
+  }
+}
+
+TEST(PositionAnswer, SaysWhereTheVehicleIsAndWhenItWasThere) {
+  const json told = mavproxy(kKnown, {{"alt_m", 512.5}, {"satellites", 10}});
+  EXPECT_EQ(told["lat"], 377'632'000);
+  EXPECT_EQ(told["lon"], 382'571'000);
+  EXPECT_EQ(told["alt"], 512.5);
+  EXPECT_EQ(told["time_usec"], kTime.captured_us);
+  EXPECT_EQ(told["satellites_visible"], 10);
+  EXPECT_EQ(told["horiz_accuracy"], 2.5) << "the longer axis, whichever it is";
+  EXPECT_EQ(told["yaw"], 13'140);
+}
+
+TEST(PositionAnswer, TurnsTheHeadingOfTheFrameIntoThatOfTheVehicle) {
+  EXPECT_EQ(mavproxy(kKnown, {{"camera_yaw_deg", 90}})["yaw"], 4'140);
+  EXPECT_EQ(mavproxy(kKnown, {{"camera_yaw_deg", -270}})["yaw"], 4'140);
+}
+
+TEST(PositionAnswer, IsInTheFormatAskedForWithItsStatusBeside) {
+  for (const auto& [name, begin] : {std::pair("global_position_sensor", "\xfd"),
+                                    {"command_int", "\xfd"},
+                                    {"gps_input", "\xfd"},
+                                    {"mavproxy", "{"},
+                                    {"nmea", "$GPGGA,"}}) {
+    const PositionFormat format = format_of({{"format", name}});
+    const http::Response response = position_response(kKnown, format, kTime);
+    EXPECT_EQ(response.status, 200) << name;
+    EXPECT_EQ(response.content_type, format.type);
+    EXPECT_THAT(response.body, StartsWith(begin)) << name;
+    EXPECT_THAT(response.headers, Contains(Pair("Roadfix-Status", "fix"))) << name;
+    EXPECT_THAT(response.headers, Contains(Pair("Vary", "Accept"))) << "caches must tell the formats apart";
+  }
+}
+
+TEST(PositionAnswer, OfWhatIsNotKnownTellsNoPosition) {
+  for (const char* name : {"global_position_sensor", "command_int"}) {
+    const http::Response response = position_response(kNotKnown, format_of({{"format", name}}), kTime);
+    EXPECT_EQ(response.status, 204) << name;
+    EXPECT_EQ(response.body, "") << name;
+    EXPECT_THAT(response.headers, Contains(Pair("Roadfix-Status", "ambiguous"))) << name;
+  }
+  EXPECT_EQ(mavproxy(kNotKnown)["fix_type"], 1);
+  EXPECT_EQ(mavproxy(kNotKnown)["lat"], 0);
+}
+
+TEST(PositionAnswer, OfAStepWhoseAgeIsForgottenTellsNoPosition) {
+  const PositionTime forgotten{kTime.captured_us, std::nullopt};
+  EXPECT_EQ(position_response(kKnown, format_of({{"format", "command_int"}}), forgotten).status, 204);
+  EXPECT_EQ(mavproxy(kKnown, {}, forgotten)["fix_type"], 1);
+}
+
+}  // namespace
+}  // namespace roadfix::api

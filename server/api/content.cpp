@@ -1,3 +1,5 @@
+#include "server/api/content.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
-#include "server/api/feature_request.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/multipart.hpp"
 #include "server/http/errors.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -11,23 +10,10 @@
 #include "core/detect/frame_camera.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
-#include "server/api/fields.hpp"
+#include "server/api/content.hpp"
 #include "server/api/limits.hpp"
-#include "server/http/message.hpp"
 
 namespace roadfix::api {
-
-/// The request's fields and the bytes of its picture, wherever they were: in the query and a bare image body, in a JSON
-/// body (the picture as base64 in "image"), or in the parts of a form ("image", and "request" for JSON).
-struct Content {
-  Fields fields;
-  std::vector<std::uint8_t> image;
-  bool has_picture = false;  ///< one was sent, though its bytes may have been lost on their way
-};
-
-/// `known` are the members a JSON body or form may have. Throws InvalidField, LimitExceeded, or InvalidInput
-/// ("unsupported-media-type").
-Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits);
 
 /// Names that may be in the query of a request with a feature map or frame.
 const std::vector<std::string>& feature_fields();
@@ -56,6 +42,7 @@ std::optional<double> told_nadir_sigma_m(const Fields& fields);
 /// ends with Interrupted when a stop is requested.
 Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                      const std::stop_token& stop);
+/// The same of what is a frame for sure, whatever the fields say of a feature map.
 Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
                   const std::stop_token& stop);
 

@@ -92,16 +92,6 @@ CellArray halved(const CellArray& cells) {
   return result;
 }
 
-RoadGrid halved(const RoadGrid& grid) {
-  const GridGeometry coarse = GridGeometry::covering(grid.geometry.box(), 2.0 * grid.geometry.cell_m);
-  const int shift_col = grid.geometry.origin.col - 2 * coarse.origin.col;
-  const int shift_row = grid.geometry.origin.row - 2 * coarse.origin.row;
-  if (shift_col == 0 && shift_row == 0) return {coarse, halved(grid.cells)};
-  CellArray aligned(2 * coarse.cols, 2 * coarse.rows);
-  paste(grid.cells, aligned, shift_col, shift_row);
-  return {coarse, halved(aligned)};
-}
-
 FeatureMap resampled(const FeatureMap& map, double cell_m, double scale) {
   assert(cell_m > 0.0 && scale > 0.0);
   const double step = cell_m / (scale * map.cell_m);

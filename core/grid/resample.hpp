@@ -10,8 +10,6 @@ namespace roadfix {
 /// Mean of the observed cells of each 2 x 2 block. Odd edges are padded with unobserved cells.
 /// Overviews keep a cell as long as one of the four was observed, so that thin borders survive the pyramid.
 CellArray halved(const CellArray& cells);
-/// The same on the lattice: the result covers the grid, aligned to cells of twice the size.
-RoadGrid halved(const RoadGrid& grid);
 
 /// The same ground, `scale` times as large as the map says, in cells of another size: averaged over area when coarser,
 /// bilinear when finer, and the very cells when they need not change.

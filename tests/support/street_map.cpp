@@ -58,6 +58,15 @@ class Brush {
   double radius_;
 };
 
+/// Aligned to cells of twice the size.
+RoadGrid halved(const RoadGrid& grid) {
+  const GridGeometry coarse = GridGeometry::covering(grid.geometry.box(), 2.0 * grid.geometry.cell_m);
+  CellArray aligned(2 * coarse.cols, 2 * coarse.rows);
+  paste(grid.cells, aligned, grid.geometry.origin.col - 2 * coarse.origin.col,
+        grid.geometry.origin.row - 2 * coarse.origin.row);
+  return {coarse, roadfix::halved(aligned)};
+}
+
 }  // namespace
 
 RoadGrid street_map(std::uint64_t seed, const GridGeometry& geometry) {

@@ -21,13 +21,6 @@ TEST(Halved, AveragesOnlyWhatWasObserved) {
             "#2\n#?\n");
 }
 
-TEST(Halved, KeepsTheLatticeOfAnOddOrigin) {
-  RoadGrid grid{{2.0, {3, 5}, 2, 2}, from_ascii("#. ..")};
-  const RoadGrid coarse = halved(grid);
-  EXPECT_EQ(coarse.geometry, (GridGeometry{4.0, {1, 2}, 2, 2}));
-  EXPECT_EQ(to_ascii(coarse.cells), "#.\n..\n");
-}
-
 TEST(Rotated, QuarterTurnEastPutsForwardToTheRight) {
   const FeatureMap map = FeatureMap::centred(from_ascii("### "
                                                         "... "

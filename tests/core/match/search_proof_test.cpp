@@ -58,7 +58,7 @@ TEST(SearchProof, IsOverAllScalesToo) {
 
 TEST(SearchProof, IsByMeansOfItsOwnFinestCellsWhateverWasKept) {
   const RoadGrid finer = street_map(22, {1.0, {300'000, -4'000'000}, 900, 800});
-  RoadGrid map = halved(finer);
+  RoadGrid map = reader_of(finer)({2.0, {150'000, -2'000'000}, 450, 400});
   const GridPose pose{map.geometry.box().centre(), Angle::degrees(31.0)};
   const FeatureMap window = cut_out(map, pose, 270, 270, 2.0);
   paste(CellArray(map.geometry.cols, 60, kNoRoad), map.cells, 0, map.geometry.rows / 2);

@@ -1,34 +1,21 @@
 // What must not change an answer, and does not.
 #include <gtest/gtest.h>
 
-#include "core/locate/fix.hpp"
-#include "tests/support/map_view.hpp"
+#include "tests/core/locate/locate_fixture.hpp"
 #include "tests/support/random_pose.hpp"
-#include "tests/support/street_map.hpp"
 
 namespace roadfix {
 namespace {
 
 using testing::observed_at;
 using testing::pose_within;
-using testing::street_map;
-using testing::view_of;
 
 bool is_same(const GeoPose& a, const GeoPose& b) {
   return a.position.lat_deg == b.position.lat_deg && a.position.lon_deg == b.position.lon_deg &&
          a.heading.radians() == b.heading.radians();
 }
 
-class LocateAlike : public ::testing::Test {
- protected:
-  RoadGrid map_ = street_map(21, {2.0, {300'000, -3'200'000}, 1200, 900});
-  MapView view_ = view_of(map_);
-  std::mt19937_64 random_{22};
-
-  double error_m(const GeoPose& found, const GridPose& truth) const {
-    return distance_m(view_.zone.project(found.position), truth.position);
-  }
-};
+using LocateAlike = testing::Locate;
 
 TEST_F(LocateAlike, ACanvasThatWasNotSeenAroundTheFrameChangesNothing) {
   Prior prior;

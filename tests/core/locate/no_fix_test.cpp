@@ -1,0 +1,200 @@
+// Where nothing can be trusted, and why.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/grid/combine.hpp"
+#include "core/grid/resample.hpp"
+#include "tests/core/locate/locate_fixture.hpp"
+#include "tests/support/code_of.hpp"
+#include "tests/support/random_pose.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::code_of;
+using testing::observed_at;
+using testing::pose_within;
+using testing::street_map;
+using testing::town;
+using testing::view_of;
+
+using NoFix = testing::Locate;
+
+TEST_F(NoFix, ALonePieceOfRoadIsNoFixThoughItFitsOnePlaceFarBetterThanAllOthers) {
+  constexpr int kSide = 100;
+  constexpr int kCol = 500;
+  constexpr int kRow = 400;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) map_.cells.at(kCol + col, kRow + row) = kNoRoad;
+  }
+  for (int i = 0; i < 15; ++i) {
+    for (int width = 0; width < 3; ++width) {
+      map_.cells.at(kCol + 40 + i, kRow + 30 + width) = kRoad;
+      map_.cells.at(kCol + 40 + width, kRow + 30 + i) = kRoad;
+    }
+  }
+  const MapView view = view_of(map_);
+  const GridPose place{map_.geometry.point_at({kCol + kSide / 2.0, kRow + kSide / 2.0}), {}};
+  Prior prior;
+  prior.circle = GeoCircle{on_earth(place, view.zone).position, 500.0};
+  const Fix fix = locate(view, cut_out(map_, place, kSide, kSide, 2.0), prior, {});
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "too-few-roads");
+  EXPECT_LE(fix.probability, 0.5);
+  ASSERT_GE(fix.modes.size(), 2U);
+  EXPECT_LT(error_m(fix.modes[0].pose, place), 2.0);
+  EXPECT_GT(fix.modes[0].rho, 0.95);
+  for (const FixMode& mode : fix.modes) EXPECT_TRUE(mode.rho < 0.85 || error_m(mode.pose, place) < 2.0) << mode.rho;
+  EXPECT_GT(fix.figures->surprise, 4.6);
+}
+
+TEST_F(NoFix, SaysNoFixOverAnotherTown) {
+  const RoadGrid elsewhere = street_map(77, town(2400, 1800));
+  for (int round = 0; round < 2; ++round) {
+    const GridPose pose = pose_within(view_.extent, 300.0, random_);
+    const Fix fix = locate(view_, cut_out(elsewhere, pose, 160, 160, 2.0), {}, {});
+    EXPECT_EQ(fix.status, FixStatus::kNoFix);
+    EXPECT_EQ(fix.reason, "not-above-chance") << "roads enough, but others";
+    EXPECT_LT(fix.probability, 0.9);
+  }
+}
+
+TEST_F(NoFix, SaysAmbiguousInACityOfEqualBlocks) {
+  const RoadGrid city = testing::grid_city(town(1600, 1200), 90.0);
+  const MapView view = view_of(city);
+  const GridPose truth = pose_within(view.extent, 300.0, random_);
+  const Fix fix = locate(view, observed_at(city, truth, 160, 160, 2.0, {0.1, 0.1}, random_), {}, {});
+  EXPECT_EQ(fix.status, FixStatus::kAmbiguous) << fix.reason;
+  EXPECT_EQ(fix.reason, "several-places-fit");
+  EXPECT_LT(fix.probability, 0.5);
+  EXPECT_GT(fix.modes.size(), 3U);
+}
+
+TEST_F(NoFix, SaysWhyAFeatureMapCannotTell) {
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0), {}, {}).reason, "too-few-roads");
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(100, 100, kRoad), 2.0), {}, {}).reason, "too-few-roads");
+  const Fix unseen = locate(view_, FeatureMap::centred(CellArray(100, 100), 2.0), {}, {});
+  EXPECT_EQ(unseen.reason, "footprint-unobserved");
+  EXPECT_EQ(unseen.status, FixStatus::kNoFix);
+  EXPECT_TRUE(unseen.modes.empty());
+}
+
+TEST_F(NoFix, NeverPlacesAPatchOfGroundAsSmallAsAYard) {
+  for (const int side : {1, 4, 5, 10, 20, 29}) {
+    const GridPose pose = pose_within(view_.extent, 300.0, random_);
+    CellArray cells = cut_out(map_, pose, side, side, 2.0).cells;
+    cells.at(0, 0) = kRoad;
+    const Fix fix = locate(view_, FeatureMap::centred(std::move(cells), 2.0), {}, {});
+    EXPECT_EQ(fix.status, FixStatus::kNoFix) << side;
+    EXPECT_EQ(fix.reason, "footprint-too-small") << side;
+  }
+  CellArray mostly_dark(200, 200);
+  paste(cut_out(map_, pose_within(view_.extent, 300.0, random_), 20, 20, 2.0).cells, mostly_dark, 90, 90);
+  EXPECT_EQ(locate(view_, FeatureMap::centred(std::move(mostly_dark), 2.0), {}, {}).reason, "footprint-too-small");
+  EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(30, 30, kRoad), 0.01), {}, {}).reason, "footprint-too-small");
+}
+
+TEST_F(NoFix, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {
+  CellArray field(160, 160, kNoRoad);
+  for (int row = 60; row < 100; ++row) field.at(80, row) = field.at(81, row) = kRoad;
+  const Fix fix = locate(view_, FeatureMap::centred(field, 2.0), {}, {});
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "too-few-roads");
+  EXPECT_FALSE(fix.modes.empty()) << "it was looked for";
+}
+
+TEST_F(NoFix, SaysWhenTheMapHoldsNothingThere) {
+  RoadGrid bare{map_.geometry, CellArray(map_.geometry.cols, map_.geometry.rows, kNoRoad)};
+  const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 120, 120, 2.0);
+  EXPECT_EQ(locate(view_of(bare), window, {}, {}).reason, "map-too-empty");
+}
+
+TEST_F(NoFix, RefusesWhatItCannotUse) {
+  const FeatureMap good = FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0);
+  const auto code = [&](const FeatureMap& features, const Prior& prior = {}, const FixOptions& options = {}) {
+    return code_of([&] { locate(view_, features, prior, options); });
+  };
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(), 2.0)), "feature-map-empty");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), 0.0)), "cell-size-out-of-range");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), std::nan(""))), "cell-size-out-of-range");
+  EXPECT_EQ(code(FeatureMap::centred(CellArray(5, 5), 1e9)), "feature-map-too-large");
+  FeatureMap far = good;
+  far.nadir.col = 1e12;
+  EXPECT_EQ(code(far), "nadir-out-of-range");
+
+  Prior prior;
+  prior.circle = GeoCircle{{50.0, 21.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "prior-outside-map");
+  prior.circle = GeoCircle{{10.0, -100.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "position-outside-zone");
+  const LatLon here = view_.zone.unproject(view_.extent.min);
+  prior.circle = GeoCircle{here, -1.0};
+  EXPECT_EQ(code(good, prior), "prior-radius-out-of-range");
+  prior.circle = GeoCircle{{std::nan(""), 10.0}, 500.0};
+  EXPECT_EQ(code(good, prior), "position-out-of-range");
+  prior = {};
+  prior.box = GeoBox{{58.0, 18.0}, {57.0, 19.0}};
+  EXPECT_EQ(code(good, prior), "prior-box-empty");
+  prior = {};
+  prior.heading = HeadingRange{Angle::degrees(10.0), Angle::degrees(-5.0)};
+  EXPECT_EQ(code(good, prior), "prior-heading-out-of-range");
+  prior.heading = HeadingRange{Angle::degrees(1e300), Angle::degrees(5.0)};
+  EXPECT_EQ(code(good, prior), "prior-heading-out-of-range");
+
+  FixOptions options;
+  options.max_search_km2 = 1.0;
+  EXPECT_EQ(code(good, {}, options), "search-area-too-large");
+  options = {};
+  options.confidence = 1.5;
+  EXPECT_EQ(code(good, {}, options), "confidence-out-of-range");
+  options = {};
+  options.scale_range = 0.31;
+  EXPECT_EQ(code(good, {}, options), "scale-range-out-of-range");
+  MapView empty = view_;
+  empty.extent = {{1.0, 1.0}, {0.0, 0.0}};
+  EXPECT_EQ(code_of([&] { locate(empty, good, {}, {}); }), "map-unobserved");
+}
+
+TEST_F(NoFix, EndsAtItsTimeLimitAndSaysWhatItHas) {
+  FixOptions options;
+  options.time_limit = std::chrono::milliseconds(1);
+  const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 160, 160, 2.0);
+  const Fix fix = locate(view_, window, {}, options);
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "search-time-limit");
+  EXPECT_FALSE(fix.complete);
+  EXPECT_LT(fix.searched_share, 1.0);
+}
+
+TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  const auto seen_from = [&](double ahead_m) {
+    return observed_at(map_, moved(truth, {ahead_m, 0.0, {}}), 100, 100, 2.0, {0.2, 0.2}, random_);
+  };
+  const FeatureMap own = seen_from(0.0);
+  const FeatureMap ahead = seen_from(120.0);
+  const FeatureMap far_ahead = seen_from(240.0);
+  const auto together = [&](double late_m) {
+    const std::vector<PlacedFeatures> parts{
+        {own, {}}, {ahead, {120.0 - late_m, 0.0, {}}}, {far_ahead, {240.0 - late_m, 0.0, {}}}};
+    return combined(parts, 1e6);
+  };
+  const auto answer = [&](double late_m, const std::optional<FeatureMap>& own_frame) {
+    return locate(view_, together(late_m), {}, {.own_frame = own_frame});
+  };
+  const Fix right = answer(0.0, own);
+  EXPECT_EQ(right.status, FixStatus::kFix) << right.explanation;
+  EXPECT_LT(error_m(right.modes.at(0).pose, truth), 4.0);
+  const Fix misled = answer(60.0, {});
+  ASSERT_EQ(misled.status, FixStatus::kFix);
+  ASSERT_GT(error_m(misled.modes.at(0).pose, truth), 50.0);
+  const Fix refused = answer(60.0, own);
+  EXPECT_EQ(refused.status, FixStatus::kNoFix);
+  EXPECT_EQ(refused.reason, "frames-contradict");
+  EXPECT_LE(refused.probability, 0.5);
+  EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -95,6 +95,33 @@ double mean_probability(const CellArray& cells) {
   return cells.observed_count() == 0 ? 0.0 : sum / static_cast<double>(cells.observed_count());
 }
 
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
+nlohmann::json json_of(const DetectOptions& options, const FeatureMap& map, const std::string& detector,
+                       Milliseconds time) {
+  return {{"feature_map", options.target},
+          {"cell_m", options.cell_m},
+          {"cols", map.cells.cols()},
+          {"rows", map.cells.rows()},
+          {"nadir_cell", {map.nadir.col, map.nadir.row}},
+          {"nadir_sigma_m", map.nadir_sigma_m},
+          {"observed_cells", map.cells.observed_count()},
+          {"mean_probability", mean_probability(map.cells)},
+          {"detector", detector},
+          {"time_ms", time.count()}};
+}
+
+std::string text_of(const DetectOptions& options, const FeatureMap& map, const std::string& detector,
+                    Milliseconds time) {
+  return fmt::format(
+      "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
+      "UAV above column {:.1f}, row {:.1f}{}\n{}",
+      options.target, map.cells.cols(), map.cells.rows(), options.cell_m, map.cells.observed_count(),
+      mean_probability(map.cells), time.count(), map.nadir.col, map.nadir.row,
+      map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
+      detector);
+}
+
 void run_detect(const DetectOptions& options) {
   require_apart({options.target}, {options.image});
   require_png_name(options.target);
@@ -103,9 +130,8 @@ void run_detect(const DetectOptions& options) {
   const Picture picture = read_picture(options, *detector);
   const auto start = std::chrono::steady_clock::now();
   const FeatureMap map = detect_features(*detector, picture.view, options.cell_m, options.seed);
-  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  const CellArray& cells = map.cells;
-  if (cells.observed_count() == 0) {
+  const Milliseconds time = std::chrono::steady_clock::now() - start;
+  if (map.cells.observed_count() == 0) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map);
@@ -114,28 +140,13 @@ void run_detect(const DetectOptions& options) {
     remove_side_files(options.target);
     if (picture.place) write_place(options.target, *picture.place, options.cell_m);
   }
-  nlohmann::json answer{{"feature_map", options.target},
-                        {"cell_m", options.cell_m},
-                        {"cols", cells.cols()},
-                        {"rows", cells.rows()},
-                        {"nadir_cell", {map.nadir.col, map.nadir.row}},
-                        {"nadir_sigma_m", map.nadir_sigma_m},
-                        {"observed_cells", cells.observed_count()},
-                        {"mean_probability", mean_probability(cells)},
-                        {"detector", detector->describe()},
-                        {"time_ms", time.count()}};
-  if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
   std::FILE* out = printed_beside({options.target});
   if (options.json) {
+    nlohmann::json answer = json_of(options, map, detector->describe(), time);
+    if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
     fmt::print(out, "{}\n", json_text(answer));
   } else {
-    fmt::print(out,
-               "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
-               "UAV above column {:.1f}, row {:.1f}{}\n{}\n",
-               options.target, cells.cols(), cells.rows(), options.cell_m, cells.observed_count(),
-               mean_probability(cells), time.count(), map.nadir.col, map.nadir.row,
-               map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
-               detector->describe());
+    fmt::print(out, "{}\n", text_of(options, map, detector->describe(), time));
   }
 }
 

@@ -12,7 +12,7 @@
 #include "cli/detector_options.hpp"
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
-#include "core/grid/combine.hpp"
+#include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::cli {
@@ -46,8 +46,8 @@ Another parse_also(const std::string& text) {
 }
 
 /// `detector` is null for feature maps.
-FeatureInput features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
-                         double map_cell_m) {
+FeatureInput input_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
+                      double map_cell_m) {
   if (detector == nullptr) {
     ToldScale told{options.cell_m, {}, {}};
     if (!options.nadir.empty()) told = {options.cell_m, options.nadir[0], options.nadir[1]};
@@ -56,6 +56,13 @@ FeatureInput features_in(const std::string& path, const FeatureInputOptions& opt
   const SeenFrame frame = ground_seen(options.frame, path, *detector);
   return {.features = detect_features(*detector, frame.view, map_cell_m, options.seed),
           .camera_in_file = frame.camera_in_file};
+}
+
+FeatureInput features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
+                         double map_cell_m) {
+  FeatureInput input = input_in(path, options, detector, map_cell_m);
+  if (options.nadir_sigma_m) input.features.nadir_sigma_m = *options.nadir_sigma_m;
+  return input;
 }
 
 FeatureInput all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
@@ -70,7 +77,7 @@ FeatureInput all_features(const FeatureInputOptions& options, const RoadDetector
     const Another another = parse_also(text);
     parts.push_back({features_in(another.path, options, detector, map_cell_m).features, another.offset});
   }
-  first.features = combined(parts, kMaxCells);
+  first.features = laid_together(parts, kMaxCells);
   first.own_frame = std::move(parts.front().features);
   return first;
 }

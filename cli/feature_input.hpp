@@ -16,9 +16,10 @@ namespace roadfix::cli {
 
 struct FeatureInputOptions {
   std::string path;
-  std::vector<std::string> also;  ///< FILE,FORWARD,RIGHT,TURN: more of the same kind, and where they were taken
-  std::optional<double> cell_m;   ///< of feature maps that do not tell it themselves
-  std::vector<double> nadir;      ///< of feature maps, where told: column and row
+  std::vector<std::string> also;        ///< FILE,FORWARD,RIGHT,TURN: more of the same kind, and where they were taken
+  std::optional<double> cell_m;         ///< of feature maps that do not tell it themselves
+  std::vector<double> nadir;            ///< of feature maps, where told: column and row
+  std::optional<double> nadir_sigma_m;  ///< of each, where told: in place of what it says
   FrameOptions frame;
   std::uint64_t seed = 1;
   DetectorChoice detector;

@@ -32,7 +32,6 @@ struct FixArguments {
   std::optional<GeoBox> bbox;
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
-  std::optional<double> nadir_sigma_m;
   std::optional<double> time_limit_s;
   double proof_s = 0.0;
   std::string calibration;
@@ -89,7 +88,6 @@ void print_text(const Fix& fix) {
 void run_fix(const FixArguments& options) {
   const MapView view = view_of_file(options.map);
   FeatureInput input = read_feature_input(options.input, view.cell_m);
-  if (options.nadir_sigma_m) input.features.nadir_sigma_m = *options.nadir_sigma_m;
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.own_frame = std::move(input.own_frame);
@@ -153,7 +151,7 @@ void add_fix_command(CLI::App& app) {
       ->check(CLI::Range(0.0, kMaxScaleRange));
   command
       ->add_option(
-          "--nadir-sigma", o->nadir_sigma_m,
+          "--nadir-sigma", o->input.nadir_sigma_m,
           "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
           "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
           "otherwise 0)")

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "core/grid/combine.hpp"
+#include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
 #include "server/http/errors.hpp"
@@ -82,7 +82,7 @@ Features flight_features_of(const Content& content, const RoadDetector& detector
     parts.push_back({std::move(features.map), offset});
     if (first.detect_time) *first.detect_time += features.detect_time.value();
   }
-  FeatureMap all = combined(parts, static_cast<double>(limits.cells));
+  FeatureMap all = laid_together(parts, static_cast<double>(limits.cells));
   return {std::move(all), first.detect_time, first.camera_in_file, std::move(parts.front().features)};
 }
 

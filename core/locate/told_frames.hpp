@@ -1,0 +1,17 @@
+// Several frames as one, laid together by movements that somebody told.
+#pragma once
+
+#include <span>
+
+#include "core/grid/combine.hpp"
+
+namespace roadfix {
+
+/// Of the way between two frames, 1 sigma: odometry of which a track is told nothing is taken to be that good, too.
+inline constexpr double kToldOffsetShare = 0.05;
+
+/// combined(), its nadir known no better than the offsets: the roads of a frame tell where that one was taken, and its
+/// offset, where the reference was. Each counts by how much road it has to tell places apart.
+FeatureMap laid_together(std::span<const PlacedFeatures> parts, double max_cells);
+
+}  // namespace roadfix

@@ -23,7 +23,7 @@ ParticleMatches match_particles(const MapView& map, const FeatureMap& features, 
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, kBinCells * cell_m).in_quarters();
   const Scales scales = Scales::for_footprint(radius_m, kBinCells * cell_m, scale_range);
   ParticleMatches matches{std::vector<MatchSums>(p.size()), std::vector<double>(p.size(), 1.0)};
-  std::vector<std::vector<BinnedPose>> of_scale(static_cast<std::size_t>(2 * scales.reach() + 1));
+  std::vector<std::vector<BinnedPose>> of_scale(static_cast<std::size_t>(scales.count()));
   for (auto& poses : of_scale) poses.reserve(p.size() / of_scale.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.weight[i] <= 0.0) continue;

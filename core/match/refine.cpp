@@ -5,74 +5,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 
-#include "core/grid/resample.hpp"
 #include "core/match/footprint.hpp"
+#include "core/match/ground_around.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
 #include "core/units/parallel_for.hpp"
 
 namespace roadfix {
 namespace {
-
-/// The ground around a pose, wide enough for the footprint at the poses up to `cells` away.
-GridGeometry window_around(const Level& level, const LatticePose& pose, int cells) {
-  const int reach = level.reach(std::min(pose.scale + 1, level.scales.reach())) + cells;
-  return padded({level.cell_m(), pose.cell, 1, 1}, reach);
-}
-
-std::int64_t cells_of(const GridGeometry& window) { return std::int64_t{window.cols} * window.rows; }
-
-GridGeometry joined(const GridGeometry& a, const GridGeometry& b) {
-  const LatticeIndex first{std::min(a.origin.col, b.origin.col), std::min(a.origin.row, b.origin.row)};
-  return {a.cell_m, first, std::max(a.origin.col + a.cols, b.origin.col + b.cols) - first.col,
-          std::max(a.origin.row + a.rows, b.origin.row + b.rows) - first.row};
-}
-
-/// The map around candidates: one plane for all where they lie so close together that it is no larger than one for
-/// each.
-class GroundAround {
- public:
-  /// `complete()` is false, and the rest must not be used, if time was over before.
-  GroundAround(const Level& level, int cells, const Deadline& deadline, const std::vector<LatticePose>& candidates) {
-    std::vector<GridGeometry> windows;
-    std::int64_t apart = 0;
-    for (const LatticePose& pose : candidates) {
-      windows.push_back(window_around(level, pose, cells));
-      apart += cells_of(windows.back());
-    }
-    if (!windows.empty()) {
-      const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
-      if (cells_of(all) <= apart) windows.assign(1, all);
-    }
-    for (const GridGeometry& window : windows) {
-      if (deadline.over()) return;
-      planes_.push_back({window.origin, MapPlane(level.read(window).cells)});
-    }
-    complete_ = true;
-  }
-
-  bool complete() const { return complete_; }
-  bool shared() const { return planes_.size() == 1; }
-  const MapPlane& plane(std::size_t candidate) const { return at(candidate).plane; }
-  PlaneCell place(std::size_t candidate, LatticeIndex cell) const {
-    const LatticeIndex origin = at(candidate).origin;
-    return {cell.col - origin.col, cell.row - origin.row};
-  }
-
- private:
-  struct Plane {
-    LatticeIndex origin;
-    MapPlane plane;
-  };
-  const Plane& at(std::size_t candidate) const { return planes_[shared() ? 0 : candidate]; }
-
-  std::vector<Plane> planes_;
-  bool complete_ = false;
-};
 
 /// The places up to `cells` around one, row by row.
 void add_places_around(PlaneCell place, int cells, std::vector<PlaneCell>& places) {
@@ -149,33 +92,6 @@ void run(RefineTask& task, const Level& level, int cells, const GroundAround& gr
 }
 
 }  // namespace
-
-GridPose Level::pose_of(const LatticePose& pose) const {
-  return {{(pose.cell.col + 0.5) * cell_m(), -(pose.cell.row + 0.5) * cell_m()}, bins.heading(bins.wrapped(pose.bin))};
-}
-
-LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
-    : map(std::move(features)),
-      rotator(map),
-      full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
-      min_cells(std::max(1.0, min_share * static_cast<double>(full_cells))) {}
-
-LevelFeatures Level::at_scale(int index) const {
-  if (index == 0) return features;
-  return {resampled(source, cell_m(), scales.factor(index)), min_share};
-}
-
-int Level::reach(int scale) const {
-  const int reach = footprint_reach(features.map);
-  return scale == 0 ? reach : static_cast<int>(std::ceil(scales.factor(scale) * reach)) + 1;
-}
-
-GridGeometry padded(const GridGeometry& geometry, int cells) {
-  return {geometry.cell_m,
-          {geometry.origin.col - cells, geometry.origin.row - cells},
-          geometry.cols + 2 * cells,
-          geometry.rows + 2 * cells};
-}
 
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
   const GroundAround ground(level, cells, deadline, candidates);

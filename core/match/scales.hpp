@@ -16,6 +16,7 @@ class Scales {
   static Scales for_footprint(double radius_m, double cell_m, double range);
 
   int reach() const { return reach_; }
+  int count() const { return 2 * reach_ + 1; }
   double factor(int index) const;
   /// Index of the factor nearest to exp(log_factor).
   int nearest(double log_factor) const;

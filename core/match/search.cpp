@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/match/refine.hpp"
 #include "core/match/search_levels.hpp"
 #include "core/match/search_modes.hpp"
 #include "core/match/search_proof.hpp"

@@ -1,9 +1,10 @@
 // Where does a feature map fit best? Every position of a region and every heading of a range, coarse to fine.
 //
-// Coarse: in cells of 8 m, 16 m in a large region or 32 m for a footprint of kilometres, with enough of them across the
-// footprint, all poses are scored by FFT correlation. Fine: the best distinct candidates are followed down the pyramid
-// to the cells of the map (of a footprint of more than 512 of them across, to coarser ones), then within the cell. It
-// is not exact: a true pose that is not among the candidates at the coarse level is missed.
+// Coarse: in cells of 8 m, 16 m for a footprint of 480 m or in a large region or 32 m for a footprint of kilometres,
+// with enough of them across the footprint, all poses are scored by FFT correlation. Fine: the best distinct candidates
+// are followed down the pyramid to the cells of the map (of a footprint of more than 512 of them across, to coarser
+// ones), then within the cell. It is not exact: a true pose that is not among the candidates at the coarse level is
+// missed.
 //
 // The score of a pose is r * sqrt(n / n_full): Pearson's correlation over the n cells observed in both, of n_full
 // observed in the feature map. For chance matches its spread does not depend on n, so small overlaps do not win by
@@ -79,7 +80,7 @@ struct SearchMode {
 
 /// What scores look like by chance over the searched region.
 struct ScoreBackground {
-  double sd = 0.0;  ///< of all scanned poses, about 0
+  double sd = 0.0;  ///< of all scanned poses, about 0, in cells of at most 8 m
   std::int64_t poses = 0;
   /// Scores of the best distinct places beside the best mode, also of such around the region; descending.
   std::vector<double> rivals;

@@ -9,16 +9,19 @@
 namespace roadfix {
 namespace {
 
-// Streets of a town blur into each other beyond 8 m: a large region is scanned in cells of 16 m all the same, since it
-// costs an eighth, but then many more candidates are followed.
+// Streets of a town blur into each other beyond 8 m. A scan in cells of 16 m costs an eighth, one over sizes of the
+// ground a sixteenth: it serves as well where enough ground was seen and more candidates are followed, and with less
+// where finer cells would take long.
 constexpr double kCoarsestCellM = 8.0;
+constexpr int kFootprintCells = 32;  // that the coarse level keeps at least across a footprint
 constexpr double kCoarsestCellOfLargeM = 16.0;
-constexpr double kLargeKm2 = 30.0;
-constexpr int kFootprintCells = 32;         // that the coarse level keeps at least across a footprint
-constexpr int kFootprintCellsOfLarge = 24;  // likewise, in a large region
+constexpr double kLargeKm2 = 30.0;          // of a region, times the sizes
+constexpr int kFootprintCellsOfLarge = 24;  // likewise
+constexpr double kCoarsestCellOfBroadM = 16.0;
+constexpr double kBroadM = 480.0;  // side of a square as large as what was seen
 // What lies where in a footprint of kilometres is known from coarser cells still, and tells places apart more surely.
-constexpr double kWideM = 1500.0;  // side of a square as large as what was seen
 constexpr double kCoarsestCellOfWideM = 32.0;
+constexpr double kWideM = 1500.0;  // likewise
 
 constexpr int kMostFootprintCells = 512;  // across what was seen of a footprint, on the finest level
 
@@ -31,16 +34,16 @@ constexpr int kProofFootprintCells = 64;  // across a footprint at least
 constexpr double kCandidatesPerKm2 = 32.0;
 constexpr double kFewestCandidates = 256.0;
 constexpr double kMostCandidates = 4096.0;
-constexpr double kCandidatesAfterCoarser = 1024.0;  // from the level below a scan in cells of more than 8 m
+constexpr double kCandidatesOfCoarser = 4.0;  // for each that is followed from the next level, of a scan beyond 8 m
 
-int coarse_level(double finest_cell_m, double side_m, double seen_m, const PoseRegion& region) {
-  const bool wide = seen_m >= kWideM;
-  const bool large = wide || region.area_km2() >= kLargeKm2;
+int coarse_level(double finest_cell_m, double side_m, double seen_m, double area_km2, int sizes) {
+  const bool large = area_km2 * sizes >= kLargeKm2;
   const auto fits = [&](double cell_m) {
     const double across = side_m / cell_m;
     return (cell_m <= kCoarsestCellM && across >= kFootprintCells) ||
-           (large && cell_m <= kCoarsestCellOfLargeM && across >= kFootprintCellsOfLarge) ||
-           (wide && cell_m <= kCoarsestCellOfWideM);
+           (cell_m <= kCoarsestCellOfLargeM && large && across >= kFootprintCellsOfLarge) ||
+           (cell_m <= kCoarsestCellOfBroadM && seen_m >= kBroadM) ||
+           (cell_m <= kCoarsestCellOfWideM && seen_m >= kWideM);
   };
   int level = 0;
   while (fits(std::ldexp(finest_cell_m, level + 1))) ++level;
@@ -74,8 +77,9 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
     : region_(region),
       side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())),
       seen_m_(side_seen_m(features)) {
-  const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region);
   const double radius_m = radius_of(features, side_m_);
+  const int sizes = Scales::for_footprint(radius_m, kCoarsestCellM, options.scale_range).count();
+  const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region.area_km2(), sizes);
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
   const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
@@ -90,13 +94,14 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
 
 std::size_t SearchLevels::followed(int index) const {
   const bool coarser = coarse().cell_m() > kCoarsestCellM;
+  const double most = coarser ? kMostCandidates / kCandidatesOfCoarser : kMostCandidates;
   const double cost = std::max(1.0, seen_m_ * seen_m_ / (kWideM * kWideM));  // of following one
+  const double wanted = std::clamp(kCandidatesPerKm2 * region_.area_km2(), kFewestCandidates, most) / cost;
   if (index == coarsest()) {
-    const double all = coarser ? kMostCandidates : kCandidatesPerKm2 * region_.area_km2();
-    return static_cast<std::size_t>(std::clamp(all / cost, kFewestCandidates, kMostCandidates));
+    return static_cast<std::size_t>(std::max((coarser ? kCandidatesOfCoarser : 1.0) * wanted, kFewestCandidates));
   }
-  if (!coarser || index + 1 < coarsest()) return kSurvivors;
-  return std::max(kSurvivors, static_cast<std::size_t>(kCandidatesAfterCoarser / cost));
+  if (coarser && index + 1 == coarsest()) return std::max(kSurvivors, static_cast<std::size_t>(wanted));
+  return kSurvivors;
 }
 
 int SearchLevels::proof_level() const {
@@ -105,6 +110,12 @@ int SearchLevels::proof_level() const {
     const double cell_m = at(k).cell_m();
     if (cell_m <= kProofCellM && side_m_ / cell_m >= kProofFootprintCells) level = k;
   }
+  return level;
+}
+
+int SearchLevels::spread_level() const {
+  int level = coarsest();
+  while (level > 0 && at(level).cell_m() > kCoarsestCellM) --level;
   return level;
 }
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/match/refine.hpp"
+#include "core/match/level.hpp"
 #include "core/units/pose_region.hpp"
 
 namespace roadfix {
@@ -38,6 +38,8 @@ class SearchLevels {
   std::size_t followed(int index) const;
   /// The level that a proof speaks of.
   int proof_level() const;
+  /// The coarsest one whose scores spread as those do that calibrations are learned from.
+  int spread_level() const;
 
   bool within_region(const Level& level, const LatticePose& pose) const;
   /// Those that are apart from every better one, best first: up to `keep` from within the region, and as many others.

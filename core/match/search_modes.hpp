@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/match/deadline.hpp"
 #include "core/match/search_levels.hpp"
 
 namespace roadfix {

@@ -44,7 +44,8 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
                                           [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();
   const Deadline deadline = end_of_proof(options);
-  SearchProof proof{level.cell_m(), static_cast<int>(bounded.headings.size()), 2 * largest + 1, 0.0, 0.0, true, 0.0};
+  SearchProof proof{
+      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), 0.0, 0.0, true, 0.0};
   for (int scale = -largest; scale <= largest; ++scale) {
     const LevelFeatures features = level.at_scale(scale);
     bounded.features = &features.map;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/match/score_spread.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -78,6 +80,13 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
                                [&] { return ScanMap(coarse.read(window), reach, block); });
 }
 
+/// Scores spread the farther the coarser the cells are: of a coarser scan the spread is told from some poses in the
+/// cells that calibrations are learned in.
+std::optional<double> SearchScan::finer_spread(const Deadline& deadline) const {
+  if (levels_.spread_level() == levels_.coarsest()) return std::nullopt;
+  return score_spread(levels_.at(levels_.spread_level()), scanned_, deadline);
+}
+
 std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, SearchResult& result) const {
   const Level& coarse = levels_.coarse();
   ScanRequest asked = request();
@@ -89,7 +98,7 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   std::vector<LatticePose> outside;
   double squares = 0.0;
   double shares = 0.0;
-  result.scales = 2 * largest + 1;
+  result.scales = coarse.scales.count();
   const auto headings = static_cast<std::int64_t>(asked.headings.size());
   std::int64_t before = 0;
   if (options_.progress) {
@@ -111,7 +120,8 @@ std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, Search
   result.scanned_share = shares / result.scales;
   result.headings = static_cast<int>(headings);
   if (result.background.poses > 0) {
-    result.background.sd = std::sqrt(squares / static_cast<double>(result.background.poses));
+    const double scanned = std::sqrt(squares / static_cast<double>(result.background.poses));
+    result.background.sd = finer_spread(deadline).value_or(scanned);
   }
   const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
     return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/match/coarse_scan.hpp"
@@ -27,6 +28,7 @@ class SearchScan {
   PoseRegion enlarged() const;
   ScanRequest request() const;
   std::shared_ptr<const ScanMap> map_below(const GridGeometry& positions) const;
+  std::optional<double> finer_spread(const Deadline& deadline) const;
 
   const SearchLevels& levels_;
   const SearchOptions& options_;

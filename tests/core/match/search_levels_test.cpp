@@ -11,15 +11,17 @@
 namespace roadfix {
 namespace {
 
-/// Of a frame of `side_m`, asked over a square of `region_m`: the cells of each level, and how many are followed from
-/// it.
-std::map<double, std::size_t> levels_of(double side_m, double region_m) {
+/// Of a frame of `side_m`, asked over a square of `region_m` and sizes: the cells of each level, and how many are
+/// followed from it.
+std::map<double, std::size_t> levels_of(double side_m, double region_m, double scale_range = 0.0) {
   const RoadGrid map = testing::street_map(1, {2.0, {100'000, -1'000'000}, 200, 200});
   const int cells = static_cast<int>(side_m / 2.0);
   const FeatureMap features = FeatureMap::centred(CellArray(cells, cells, kNoRoad), 2.0);
   PoseRegion region;
   region.box = {{200'000.0, 2'000'000.0}, {200'000.0 + region_m, 2'000'000.0 + region_m}};
-  const SearchLevels levels(testing::reader_of(map), 2.0, features, region, {});
+  SearchOptions options;
+  options.scale_range = scale_range;
+  const SearchLevels levels(testing::reader_of(map), 2.0, features, region, options);
   std::map<double, std::size_t> result;
   for (int k = 0; k <= levels.coarsest(); ++k) result[levels.at(k).cell_m()] = levels.followed(k);
   return result;
@@ -28,8 +30,8 @@ std::map<double, std::size_t> levels_of(double side_m, double region_m) {
 std::size_t followed(double side_m, double region_m, double cell_m) { return levels_of(side_m, region_m).at(cell_m); }
 
 /// The finest and the coarsest cells.
-std::pair<double, double> cells_of(double side_m, double region_m) {
-  const auto levels = levels_of(side_m, region_m);
+std::pair<double, double> cells_of(double side_m, double region_m, double scale_range = 0.0) {
+  const auto levels = levels_of(side_m, region_m, scale_range);
   return {levels.begin()->first, levels.rbegin()->first};
 }
 
@@ -45,16 +47,24 @@ TEST(SearchLevels, FollowFewerFromTheLevelBelowTheScan) {
   EXPECT_EQ(followed(600, 20'000, 16.0), 4096U);
   EXPECT_EQ(followed(600, 20'000, 8.0), 1024U);
   EXPECT_EQ(followed(600, 20'000, 4.0), 96U);
+  EXPECT_EQ(followed(600, 4'000, 16.0), 2048U);
+  EXPECT_EQ(followed(600, 4'000, 8.0), 512U);
 }
 
 TEST(SearchLevels, AreAsFineAndAsCoarseAsTheFootprintNeeds) {
   EXPECT_EQ(cells_of(150, 2'000), std::pair(2.0, 4.0));
-  EXPECT_EQ(cells_of(600, 2'000), std::pair(2.0, 8.0));
-  EXPECT_EQ(cells_of(600, 20'000), std::pair(2.0, 16.0));
-  EXPECT_EQ(cells_of(1'000, 2'000), std::pair(2.0, 8.0));
-  EXPECT_EQ(cells_of(1'400, 2'000), std::pair(4.0, 8.0));
+  EXPECT_EQ(cells_of(400, 2'000), std::pair(2.0, 8.0));
+  EXPECT_EQ(cells_of(400, 20'000), std::pair(2.0, 16.0));
+  EXPECT_EQ(cells_of(600, 2'000), std::pair(2.0, 16.0));
+  EXPECT_EQ(cells_of(1'400, 2'000), std::pair(4.0, 16.0));
   EXPECT_EQ(cells_of(1'600, 2'000), std::pair(4.0, 32.0));
   EXPECT_EQ(cells_of(4'000, 2'000), std::pair(8.0, 32.0));
+}
+
+TEST(SearchLevels, AreAsCoarseForManySizesOfTheGroundAsForMuchGround) {
+  EXPECT_EQ(cells_of(400, 2'000, 0.15), std::pair(2.0, 16.0));
+  EXPECT_EQ(cells_of(400, 1'000, 0.15), std::pair(2.0, 8.0));
+  EXPECT_EQ(cells_of(300, 2'000, 0.15), std::pair(2.0, 8.0)) << "a small frame is blurred too much";
 }
 
 TEST(SearchLevels, FollowFewerOfFootprintsThatTellPlacesApartMoreSurely) {
@@ -73,7 +83,7 @@ TEST(SearchLevels, AreAsFineAsThoseOfSmallFootprintsWhereLittleOfALargeOneWasSee
   }
   const SearchLevels levels(testing::reader_of(map), 2.0, strip, PoseRegion{}, {});
   EXPECT_EQ(levels.finest().cell_m(), 2.0);
-  EXPECT_EQ(levels.coarse().cell_m(), 8.0);
+  EXPECT_EQ(levels.coarse().cell_m(), 16.0);
 }
 
 }  // namespace

@@ -1,0 +1,39 @@
+#include "core/match/level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/grid/resample.hpp"
+#include "core/match/footprint.hpp"
+
+namespace roadfix {
+
+GridPose Level::pose_of(const LatticePose& pose) const {
+  return {{(pose.cell.col + 0.5) * cell_m(), -(pose.cell.row + 0.5) * cell_m()}, bins.heading(bins.wrapped(pose.bin))};
+}
+
+LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
+    : map(std::move(features)),
+      rotator(map),
+      full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
+      min_cells(std::max(1.0, min_share * static_cast<double>(full_cells))) {}
+
+LevelFeatures Level::at_scale(int index) const {
+  if (index == 0) return features;
+  return {resampled(source, cell_m(), scales.factor(index)), min_share};
+}
+
+int Level::reach(int scale) const {
+  const int reach = footprint_reach(features.map);
+  return scale == 0 ? reach : static_cast<int>(std::ceil(scales.factor(scale) * reach)) + 1;
+}
+
+GridGeometry padded(const GridGeometry& geometry, int cells) {
+  return {geometry.cell_m,
+          {geometry.origin.col - cells, geometry.origin.row - cells},
+          geometry.cols + 2 * cells,
+          geometry.rows + 2 * cells};
+}
+
+}  // namespace roadfix

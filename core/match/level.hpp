@@ -1,0 +1,43 @@
+// One level of the pyramid that a search goes down: the feature map, positions, headings and scales at one cell size.
+#pragma once
+
+#include <cstdint>
+
+#include "core/grid/feature_rotator.hpp"
+#include "core/match/heading_bins.hpp"
+#include "core/match/lattice_pose.hpp"
+#include "core/match/scales.hpp"
+#include "core/match/search.hpp"
+
+namespace roadfix {
+
+/// The feature map in the cells of a level, at one scale.
+struct LevelFeatures {
+  FeatureMap map;
+  FeatureRotator rotator;
+  std::int64_t full_cells = 0;  ///< observed
+  double min_cells = 1.0;       ///< observed in both, below which a pose has no score
+
+  LevelFeatures(FeatureMap features, double min_share);
+};
+
+struct Level {
+  const GridReader& read;
+  const FeatureMap& source;  ///< what the search was given
+  LevelFeatures features;    ///< in the cells of this level, as large as it was given
+  double min_share = 0.5;
+  HeadingBins bins{2};
+  Scales scales;
+  int threads = 1;
+
+  double cell_m() const { return features.map.cell_m; }
+  LevelFeatures at_scale(int index) const;
+  /// Cells that the footprint reaches at a scale.
+  int reach(int scale) const;
+  GridPose pose_of(const LatticePose& pose) const;
+};
+
+/// So many cells more on every side.
+GridGeometry padded(const GridGeometry& geometry, int cells);
+
+}  // namespace roadfix

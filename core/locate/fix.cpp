@@ -100,8 +100,15 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMo
   return rho.value_or(0.0) < kLeastShare * rho_of_all;
 }
 
+// What is no likelier is no claim of a place, whatever the status.
+constexpr double kMostProbable = 0.5;
+
+bool claims_a_place(const Fix& fix) {
+  const bool likely = fix.probability > kMostProbable && fix.reason != kTimeLimitReason;
+  return fix.status == FixStatus::kFix || likely;
+}
+
 void refuse_contradicting_frames(Fix& fix) {
-  constexpr double kMostProbable = 0.5;
   fix.status = FixStatus::kNoFix;
   fix.reason = "frames-contradict";
   fix.explanation =
@@ -172,7 +179,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
-  if (fix.status == FixStatus::kFix && options.own_frame &&
+  if (claims_a_place(fix) && options.own_frame &&
       contradicts(map, *options.own_frame, found.modes.front(), fix.modes.front().rho)) {
     refuse_contradicting_frames(fix);
   }

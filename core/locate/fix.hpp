@@ -32,7 +32,8 @@ struct FixOptions {
   std::chrono::milliseconds proof_time{0};
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
-  /// Where several frames were laid together: the one whose nadir is asked for. A fix has to be borne out by it alone.
+  /// Where several frames were laid together: the one whose nadir is asked for. It alone has to bear a likely place
+  /// out.
   std::optional<FeatureMap> own_frame{};
   int threads = 1;
   std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< see SearchOptions

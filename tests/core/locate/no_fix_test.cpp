@@ -180,8 +180,8 @@ TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
         {own, {}}, {ahead, {120.0 - late_m, 0.0, {}}}, {far_ahead, {240.0 - late_m, 0.0, {}}}};
     return combined(parts, 1e6);
   };
-  const auto answer = [&](double late_m, const std::optional<FeatureMap>& own_frame) {
-    return locate(view_, together(late_m), {}, {.own_frame = own_frame});
+  const auto answer = [&](double late_m, const std::optional<FeatureMap>& own_frame, double confidence = 0.99) {
+    return locate(view_, together(late_m), {}, {.confidence = confidence, .own_frame = own_frame});
   };
   const Fix right = answer(0.0, own);
   EXPECT_EQ(right.status, FixStatus::kFix) << right.explanation;
@@ -189,11 +189,15 @@ TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
   const Fix misled = answer(60.0, {});
   ASSERT_EQ(misled.status, FixStatus::kFix);
   ASSERT_GT(error_m(misled.modes.at(0).pose, truth), 50.0);
-  const Fix refused = answer(60.0, own);
-  EXPECT_EQ(refused.status, FixStatus::kNoFix);
-  EXPECT_EQ(refused.reason, "frames-contradict");
-  EXPECT_LE(refused.probability, 0.5);
-  EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
+  const double beyond_calibration = 0.9999;
+  ASSERT_EQ(answer(60.0, {}, beyond_calibration).status, FixStatus::kAmbiguous);
+  for (const double confidence : {0.99, beyond_calibration}) {
+    const Fix refused = answer(60.0, own, confidence);
+    EXPECT_EQ(refused.status, FixStatus::kNoFix);
+    EXPECT_EQ(refused.reason, "frames-contradict");
+    EXPECT_LE(refused.probability, 0.5);
+    EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
+  }
 }
 
 }  // namespace

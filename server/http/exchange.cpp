@@ -207,10 +207,12 @@ std::exception_ptr failure_of_head(const Exchange& exchange, std::size_t max_byt
     case Connection::Failure::kLetGo:
       return std::make_exception_ptr(Interrupted("request-timeout", "the head of the request did not come in time"));
     default:
-      return std::make_exception_ptr(
-          InvalidInput("bad-request",
-                       "this is not an HTTP/1.1 request with a known method: does the client use TLS or HTTP/2 on this "
-                       "port? The service speaks plain HTTP; for anything else put a proxy in front"));
+      return std::make_exception_ptr(InvalidInput(
+          "bad-request",
+          fmt::format("this is not an HTTP/1.1 request with a known method and headers of at most {} bytes each: does "
+                      "the client use TLS or HTTP/2 on this port? The service speaks plain HTTP; for anything else put "
+                      "a proxy in front",
+                      CPPHTTPLIB_HEADER_MAX_LENGTH)));
   }
 }
 

@@ -238,6 +238,11 @@ TEST_F(BadRequests, WithABodyCutOffAreToldSo) {
   EXPECT_THAT(raw(head + "Transfer-Encoding: chunked\r\n\r\nzz\r\nabc"), HasSubstr("HTTP/1.1 400"));
 }
 
+TEST_F(BadRequests, WithALongHeaderAreToldHowLongItMayBe) {
+  EXPECT_THAT(raw("GET /healthz HTTP/1.1\r\nHost: x\r\nCookie: " + std::string(9000, 'x') + "\r\n\r\n"),
+              AllOf(HasSubstr("bad-request"), HasSubstr("headers of at most 8192 bytes each")));
+}
+
 TEST_F(BadRequests, ThatAreNotHttpGetAProblemAndTheDoor) {
   EXPECT_THAT(raw("hello\r\n\r\n"), AllOf(StartsWith("HTTP/1.1 400"), HasSubstr("problem+json")));
   EXPECT_THAT(raw("GET / HTTP/9.9\r\n\r\n"), StartsWith("HTTP/1.1 400"));

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/match/deadline.hpp"
+#include "core/match/kernel.hpp"
 #include "core/match/lattice_pose.hpp"
 #include "core/match/level.hpp"
-#include "core/match/kernel.hpp"
 #include "core/match/map_plane.hpp"
 
 namespace roadfix {

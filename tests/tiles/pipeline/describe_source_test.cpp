@@ -59,11 +59,11 @@ TEST(DescribeSource, AnEmptyTextTakesOutWhatWasToldOrWhatTheSourceSaysOfItself) 
   EXPECT_THAT(
       describe_source(again, {}, {.date = "", .licence = ""}, before, false),
       ElementsAre("'roads' now has date none instead of '2020'", "'roads' now has licence none instead of 'CC-BY'"));
-  EXPECT_EQ(again.licence, "");
-  EXPECT_EQ(again.attribution, "X");
+  EXPECT_EQ(again.provenance.licence, "");
+  EXPECT_EQ(again.provenance.attribution, "X");
   SourceRecord fresh = record("2");
   EXPECT_THAT(describe_source(fresh, {.licence = "of the file"}, {.licence = ""}, {}, false), IsEmpty());
-  EXPECT_EQ(fresh.licence, "");
+  EXPECT_EQ(fresh.provenance.licence, "");
 }
 
 TEST(DescribeSource, AnInterruptedOneGoesOnAsItWasBegun) {

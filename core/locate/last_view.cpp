@@ -10,10 +10,6 @@
 namespace roadfix {
 namespace {
 
-// A simulator that hovers draws one picture again and again, with odometry that may tremble.
-constexpr double kMovedM = 1.0;
-constexpr double kTurnedRad = 0.01;
-
 bool shows_road(const FeatureMap& features) {
   return std::ranges::any_of(features.cells.cells(),
                              [](Cell cell) { return is_observed(cell) && probability(cell) > 0.5; });
@@ -28,6 +24,10 @@ std::uint64_t digest_of(const FeatureMap& features) {
 }
 
 }  // namespace
+
+bool is_same_view(const FeatureMap& a, const FeatureMap& b) {
+  return a.cell_m == b.cell_m && a.cells == b.cells && shows_road(a);
+}
 
 void LastView::move(const std::optional<Odometry>& odometry) {
   moved_m += odometry ? distance_m(*odometry) : kMovedM;

@@ -10,6 +10,13 @@
 
 namespace roadfix {
 
+// A simulator that hovers draws one picture again and again, with odometry that may tremble.
+inline constexpr double kMovedM = 1.0;
+inline constexpr double kTurnedRad = 0.01;
+
+/// Whether two pictures are one, to the last cell. Never of a feature map without any road: one wood is like the next.
+bool is_same_view(const FeatureMap& a, const FeatureMap& b);
+
 struct LastView {
   std::uint64_t digest = 0;  ///< of the feature map that was seen last; 0 = none
   double moved_m = 0.0;      ///< along the odometry since it was seen for the first time
@@ -17,8 +24,7 @@ struct LastView {
 
   /// The vehicle has moved on; a step that tells no odometry may have led anywhere.
   void move(const std::optional<Odometry>& odometry);
-  /// True where `features` are those that were seen before the vehicle moved. Never of a feature map without any road:
-  /// one wood is like the next.
+  /// True where `features` are those that were seen before the vehicle moved, as is_same_view() tells.
   bool sees_again(const FeatureMap& features);
 
   friend bool operator==(const LastView&, const LastView&) = default;

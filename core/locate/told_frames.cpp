@@ -1,8 +1,13 @@
 #include "core/locate/told_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstddef>
 
 #include "core/locate/compared_cells.hpp"
+#include "core/locate/last_view.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -35,10 +40,29 @@ double mean_distance_m(std::span<const PlacedFeatures> parts) {
   return weights > 0.0 ? sum_m / weights : 0.0;
 }
 
+bool is_apart(const BodyOffset& a, const BodyOffset& b) {
+  return std::hypot(b.forward_m - a.forward_m, b.right_m - a.right_m) >= kMovedM ||
+         angular_distance(a.turn, b.turn).radians() >= kTurnedRad;
+}
+
+/// A camera or a link that has stopped shows one picture again and again.
+void refuse_repeated(std::span<const PlacedFeatures> parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (std::size_t j = i + 1; j < parts.size(); ++j) {
+      if (!is_apart(parts[i].offset, parts[j].offset) || !is_same_view(parts[i].features, parts[j].features)) continue;
+      throw InvalidInput("frames-repeated",
+                         fmt::format("frames {} and {} are the same picture, though taken at different places or "
+                                     "headings: check the camera and its link, or leave one of them out",
+                                     i + 1, j + 1));
+    }
+  }
+}
+
 }  // namespace
 
 FeatureMap laid_together(std::span<const PlacedFeatures> parts, double max_cells) {
   FeatureMap result = combined(parts, max_cells);
+  refuse_repeated(parts);
   result.nadir_sigma_m = std::hypot(result.nadir_sigma_m, kToldOffsetShare * mean_distance_m(parts));
   return result;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/ascii_map.hpp"
+#include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
@@ -21,7 +22,7 @@ TEST(LaidTogether, KnowsThePlaceNoBetterThanTheWayToTheFrameThatTellsIt) {
   const BodyOffset behind{-300.0, 400.0, {}};
   EXPECT_NEAR(sigma_of({{field, {}}, {road, behind}}), 25.0, 1e-9);
   EXPECT_NEAR(sigma_of({{road, {}}, {field, behind}}), 0.0, 1e-9) << "it tells its place by itself";
-  EXPECT_NEAR(sigma_of({{road, {}}, {road, behind}}), 12.5, 1e-9);
+  EXPECT_NEAR(sigma_of({{road, {}}, {map_of("..# ..# ..#"), behind}}), 12.5, 1e-9);
   EXPECT_EQ(sigma_of({{field, {}}, {field, behind}}), 0.0) << "there is no place to know";
 }
 
@@ -34,6 +35,19 @@ TEST(LaidTogether, AddsTheWayToWhatTheFramesKnowOfTheirNadirs) {
 TEST(LaidTogether, LeavesTheCellsToCombined) {
   const std::vector<PlacedFeatures> parts{{map_of("#.. #.. #.."), {}}, {map_of("### ... ..."), {4.0, 0.0, {}}}};
   EXPECT_EQ(laid_together(parts, kPlenty).cells, combined(parts, kPlenty).cells);
+}
+
+TEST(LaidTogether, RefusesOnePictureFromTwoPlaces) {
+  const FeatureMap road = map_of("#.. #.. #..");
+  const FeatureMap field = map_of("... ... ...");
+  const auto code_of_second_at = [&](const FeatureMap& both, const BodyOffset& offset) {
+    const std::vector<PlacedFeatures> parts{{both, {}}, {both, offset}};
+    return testing::code_of([&] { laid_together(parts, kPlenty); });
+  };
+  EXPECT_EQ(code_of_second_at(road, {-20.0, 0.0, {}}), "frames-repeated");
+  EXPECT_EQ(code_of_second_at(road, {0.0, 0.0, Angle::degrees(9.0)}), "frames-repeated");
+  EXPECT_EQ(code_of_second_at(road, {0.5, 0.0, {}}), "no error") << "a simulator that hovers";
+  EXPECT_EQ(code_of_second_at(field, {-20.0, 0.0, {}}), "no error") << "one field is like the next";
 }
 
 }  // namespace

@@ -118,10 +118,12 @@ TEST(FlightRequest, NamesAFieldThatAllShareByItself) {
 }
 
 TEST(FlightRequest, RefusesOthersInCellsOfAnotherSize) {
-  const auto of_cells = [](double cell_m) { return encode_feature_map(FeatureMap::centred(seen(18, 18), cell_m)); };
+  const auto of_cells = [](int rows, double cell_m) {
+    return encode_feature_map(FeatureMap::centred(seen(18, rows), cell_m));
+  };
   const auto code = [&](double cell_m) {
-    const json also = json::array({another(of_cells(cell_m), kBehind)});
-    return testing::code_of([&] { read(content_of(of_cells(1.5), {{"also", also}})); });
+    const json also = json::array({another(of_cells(16, cell_m), kBehind)});
+    return testing::code_of([&] { read(content_of(of_cells(18, 1.5), {{"also", also}})); });
   };
   EXPECT_EQ(code(1.5), "no error");
   EXPECT_EQ(code(2.0), "cell-size-contradictory");

@@ -10,9 +10,8 @@
 
 namespace roadfix {
 
-// A simulator that hovers draws one picture again and again, with odometry that may tremble.
-inline constexpr double kMovedM = 1.0;
-inline constexpr double kTurnedRad = 0.01;
+/// Whether a vehicle that moved so far should see something else.
+bool has_moved(double moved_m, double turned_rad);
 
 /// Whether two pictures are one, to the last cell. Never of a feature map without any road: one wood is like the next.
 bool is_same_view(const FeatureMap& a, const FeatureMap& b);

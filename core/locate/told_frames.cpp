@@ -41,8 +41,8 @@ double mean_distance_m(std::span<const PlacedFeatures> parts) {
 }
 
 bool is_apart(const BodyOffset& a, const BodyOffset& b) {
-  return std::hypot(b.forward_m - a.forward_m, b.right_m - a.right_m) >= kMovedM ||
-         angular_distance(a.turn, b.turn).radians() >= kTurnedRad;
+  return has_moved(std::hypot(b.forward_m - a.forward_m, b.right_m - a.right_m),
+                   angular_distance(a.turn, b.turn).radians());
 }
 
 /// A camera or a link that has stopped shows one picture again and again.

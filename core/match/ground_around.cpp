@@ -46,4 +46,15 @@ PlaneCell GroundAround::place(std::size_t pose, LatticeIndex cell) const {
   return {cell.col - origin.col, cell.row - origin.row};
 }
 
+void GroundAround::match(const PackedFootprint& footprint, std::span<const std::size_t> poses,
+                         std::span<const PlaneCell> places, std::span<MatchSums> sums) const {
+  if (poses.empty()) return;
+  const std::size_t each = places.size() / poses.size();
+  const std::size_t together = shared() ? places.size() : each;
+  for (std::size_t first = 0; first < places.size(); first += together) {
+    match_sums(at(poses[first / each]).plane, footprint, places.subspan(first, together),
+               sums.subspan(first, together));
+  }
+}
+
 }  // namespace roadfix

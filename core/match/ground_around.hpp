@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/match/deadline.hpp"
@@ -21,16 +22,18 @@ class GroundAround {
   GroundAround(const Level& level, int cells, const Deadline& deadline, const std::vector<LatticePose>& poses);
 
   bool complete() const { return complete_; }
-  bool shared() const { return planes_.size() == 1; }
-  const MapPlane& plane(std::size_t pose) const { return at(pose).plane; }
   /// Of a cell of the level around that pose.
   PlaneCell place(std::size_t pose, LatticeIndex cell) const;
+  /// match_sums() at places around some of the poses, equally many around each, one pose after the other.
+  void match(const PackedFootprint& footprint, std::span<const std::size_t> poses, std::span<const PlaneCell> places,
+             std::span<MatchSums> sums) const;
 
  private:
   struct Plane {
     LatticeIndex origin;
     MapPlane plane;
   };
+  bool shared() const { return planes_.size() == 1; }
   const Plane& at(std::size_t pose) const { return planes_[shared() ? 0 : pose]; }
 
   std::vector<Plane> planes_;

@@ -79,12 +79,8 @@ void run(RefineTask& task, const Level& level, int cells, const GroundAround& gr
   std::vector<PlaneCell> places;
   for (const std::size_t i : task.candidates) add_places_around(ground.place(i, poses[i].cell), cells, places);
   std::vector<MatchSums> sums(places.size());
+  ground.match(footprint, task.candidates, places, sums);
   const std::size_t each = places.size() / task.candidates.size();
-  const std::size_t together = ground.shared() ? places.size() : each;
-  for (std::size_t first = 0; first < places.size(); first += together) {
-    match_sums(ground.plane(task.candidates[first / each]), footprint, std::span(places).subspan(first, together),
-               std::span(sums).subspan(first, together));
-  }
   for (std::size_t k = 0; k < task.candidates.size(); ++k) {
     task.best.push_back(
         best_around(poses[task.candidates[k]].cell, cells, task, std::span(sums).subspan(k * each, each)));

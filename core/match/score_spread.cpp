@@ -1,8 +1,9 @@
 #include "core/match/score_spread.hpp"
 
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/match/footprint.hpp"
@@ -47,12 +48,15 @@ struct Squares {
 
 Squares squares_at(const Level& level, int bin, const GroundAround& ground, const std::vector<LatticePose>& places) {
   const PackedFootprint footprint = footprint_at(level.features.rotator, level.bins.heading(bin));
+  std::vector<std::size_t> poses(places.size());
+  std::iota(poses.begin(), poses.end(), 0);
+  std::vector<PlaneCell> cells;
+  for (const std::size_t i : poses) cells.push_back(ground.place(i, places[i].cell));
+  std::vector<MatchSums> sums(cells.size());
+  ground.match(footprint, poses, cells, sums);
   Squares squares;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::array place{ground.place(i, places[i].cell)};
-    std::array<MatchSums, 1> sums;
-    match_sums(ground.plane(i), footprint, place, sums);
-    const double score = score_of(sums.front(), level.features.full_cells, level.features.min_cells);
+  for (const MatchSums& each : sums) {
+    const double score = score_of(each, level.features.full_cells, level.features.min_cells);
     if (score == 0.0) continue;
     squares.sum += score * score;
     ++squares.count;

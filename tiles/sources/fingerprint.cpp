@@ -13,6 +13,7 @@
 #include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
 #include "core/units/text.hpp"
+#include "tiles/sources/aux_xml.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -46,12 +47,13 @@ bool is_alone(const std::string& path) {
 }
 
 /// The file and what is read with it: world files and their .prj, .aux.xml, the parts of a Shapefile, the images of a
-/// VRT, and of the VRTs among them.
+/// VRT, and of the VRTs among them; what was written into a GeoPackage that another program has open.
 void add_with_side_files(const std::string& path, std::set<std::string>& files) {
   if (!files.insert(path).second) return;
   files.insert(CPLResetExtension(path.c_str(), "prj"));
   files.insert(CPLResetExtension(path.c_str(), "PRJ"));
   if (is_alone(path)) return;
+  files.insert(path + "-wal");
   const GdalMessages messages;
   const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
   if (!dataset) return;
@@ -78,7 +80,11 @@ std::string fingerprint(const std::vector<std::string>& paths, const std::string
     add_with_side_files(path, files);
     for (const std::string& file : files) {
       VSIStatBufL stat;
-      if (VSIStatL(file.c_str(), &stat) != 0) continue;
+      if (VSIStatL(file.c_str(), &stat) != 0 || (VSI_ISREG(stat.st_mode) && stat.st_size == 0)) continue;
+      if (is_aux_xml(file)) {
+        hash.add(told_by_aux_xml(file));
+        continue;
+      }
       hash.add(std::filesystem::path(file).filename().string());
       hash.add(fmt::format("{};{};", stat.st_size, stat.st_mtime));
       if (VSI_ISREG(stat.st_mode)) add_content(hash, file, static_cast<vsi_l_offset>(stat.st_size));

@@ -227,6 +227,44 @@ TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {
   EXPECT_NE(fingerprint({path}, "x"), before);
 }
 
+TEST_F(SourceFilesTest, TheFingerprintStaysWhereAnImageWasOnlyLookedAt) {
+  const std::string path = image("a.tif", 1.0);
+  const std::string aux = path + ".aux.xml";
+  const std::string before = fingerprint({path}, "x");
+  // As QGIS leaves it.
+  constexpr const char* kLooked =
+      R"(<PAMRasterBand band="1"><Histograms><HistItem><HistMin>0</HistMin></HistItem></Histograms>)"
+      R"(<Metadata><MDI key="STATISTICS_MEAN">1</MDI></Metadata></PAMRasterBand>)";
+  constexpr const char* kTold = R"(<SRS>EPSG:32637</SRS>)";
+  std::ofstream(aux) << "<PAMDataset>" << kLooked << "</PAMDataset>";
+  EXPECT_EQ(fingerprint({path}, "x"), before);
+  std::ofstream(aux) << "<PAMDataset>" << kTold << "</PAMDataset>";
+  const std::string told = fingerprint({path}, "x");
+  EXPECT_NE(told, before);
+  std::ofstream(aux) << "<PAMDataset>" << kTold << kLooked << "</PAMDataset>";
+  EXPECT_EQ(fingerprint({path}, "x"), told);
+  std::ofstream(aux) << "<PAMDataset>" << kLooked << R"(<PAMRasterBand band="1"><NoDataValue>0</NoDataValue>)"
+                     << "</PAMRasterBand></PAMDataset>";
+  EXPECT_NE(fingerprint({path}, "x"), before);
+}
+
+TEST_F(SourceFilesTest, TheFingerprintChangesWithWhatAnotherProgramWroteIntoAGeoPackageThatItHasOpen) {
+  const std::string path = (folder / "roads.gpkg").string();
+  require_gdal();
+  CPLSetConfigOption("OGR_SQLITE_JOURNAL", "WAL");  // as QGIS
+  const DatasetPtr open(
+      GetGDALDriverManager()->GetDriverByName("GPKG")->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  CPLSetConfigOption("OGR_SQLITE_JOURNAL", nullptr);
+  open->CreateLayer("roads");
+  open->FlushCache();
+  const std::string before = fingerprint({path}, "x");
+  const auto file_before = read_file(path);
+  open->CreateLayer("more roads");
+  open->FlushCache();
+  EXPECT_EQ(read_file(path), file_before) << "what is new lies beside it";
+  EXPECT_NE(fingerprint({path}, "x"), before);
+}
+
 TEST_F(SourceFilesTest, TheFingerprintChangesWithTheImagesOfAVrtOfVrts) {
   const std::string inner = (folder / "inner.vrt").string();
   {

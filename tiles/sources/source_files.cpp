@@ -135,6 +135,18 @@ std::vector<std::string> files_in_zip(const std::string& archive) {
   return files;
 }
 
+/// Taken for imagery, the probabilities of a map would be looked through for roads once more.
+bool are_exported(const std::vector<std::string>& images, const std::string& location) {
+  const auto other = std::ranges::find_if_not(images, is_exported);
+  if (other == images.end()) return true;
+  const auto exported = std::ranges::find_if(images, is_exported);
+  if (exported == images.end()) return false;
+  throw InvalidInput("imagery-mixed",
+                     fmt::format("{}: {} holds roads that roadfix wrote, {} does not. Ingest each kind by itself, or "
+                                 "say with --as what all of them are",
+                                 location, *exported, *other));
+}
+
 /// One source of all images, or where there are none of all vector files.
 SourceFiles source_of_all(const std::vector<std::string>& files, const std::string& location, SourceMeaning meaning) {
   SourceFiles result;
@@ -159,7 +171,7 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
                     others.empty() ? "" : fmt::format("; to ingest {}, name it itself", others.front())));
   }
   const bool roads =
-      meaning == SourceMeaning::kRoads || (meaning == SourceMeaning::kAuto && std::ranges::all_of(images, is_exported));
+      meaning == SourceMeaning::kRoads || (meaning == SourceMeaning::kAuto && are_exported(images, location));
   result.kind = roads ? SourceKind::kRoadRaster : SourceKind::kImagery;
   result.paths = std::move(images);
   if (result.paths.empty()) {

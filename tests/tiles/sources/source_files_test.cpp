@@ -13,6 +13,7 @@
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
@@ -71,6 +72,22 @@ TEST_F(SourceFilesTest, AMapInAFolderIsLeftOutAndNamed) {
   std::ofstream(lines) << kLine;
   EXPECT_THAT(found().paths, ElementsAre(lines));
   EXPECT_THAT(found().left_out, ElementsAre(map));
+}
+
+TEST_F(SourceFilesTest, ExportsBesidePicturesAreRefusedUnlessAllAreCalledTheSame) {
+  const std::string exported = image("export.tif");
+  {
+    const DatasetPtr file = open_dataset(exported, GDAL_OF_RASTER | GDAL_OF_UPDATE);
+    file->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", std::string(kExportedRoads).c_str());
+  }
+  const std::string all = folder.path().string();
+  EXPECT_EQ(find_source(all, SourceMeaning::kAuto).kind, SourceKind::kRoadRaster);
+  const std::string photo = image("photo.tif");
+  EXPECT_EQ(code_of([&] { find_source(all, SourceMeaning::kAuto); }), "imagery-mixed");
+  EXPECT_THAT(testing::message_of([&] { find_source(all, SourceMeaning::kAuto); }),
+              ::testing::HasSubstr(exported + " holds roads that roadfix wrote, " + photo + " does not"));
+  EXPECT_EQ(find_source(all, SourceMeaning::kImagery).kind, SourceKind::kImagery);
+  EXPECT_EQ(find_source(all, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
 }
 
 TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {

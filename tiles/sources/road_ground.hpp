@@ -27,6 +27,8 @@ struct RoadParts {
   std::int64_t features = 0;
   std::int64_t lines = 0;
   std::map<std::string, std::int64_t> unknown_classes;
+  std::int64_t without_class = 0;        ///< lines of layers with classes
+  std::int64_t roads_without_class = 0;  ///< those of them that nothing calls a river or the like
   bool strays_noted = false;
   bool bare_rim_noted = false;
   /// Layers of lines without classes by name: the first file that has them, and their attributes.

@@ -161,6 +161,14 @@ std::string RoadLayer::attributes() const {
   return names.empty() ? "no attributes" : names;
 }
 
+bool RoadLayer::tells_other_lines() const {
+  constexpr std::array<std::string_view, 13> kOthers{"aerialway", "barrier",  "boundary", "building", "landuse",
+                                                     "leisure",   "man_made", "natural",  "power",    "railway",
+                                                     "route",     "subtype",  "waterway"};
+  const auto has = [&](std::string_view name) { return has_attribute(*layer_, std::string(name)); };
+  return std::ranges::any_of(kPacked, has) || std::ranges::any_of(kOthers, has);
+}
+
 std::string RoadLayer::class_of(const OGRFeature& feature) {
   return classified_ ? FeatureTags(feature, places_)(rules_.class_attribute()) : std::string();
 }
@@ -176,6 +184,7 @@ std::optional<double> RoadLayer::see(const OGRFeature& feature) {
   if (holds_a_line(geometry)) {
     ++lines_;
     if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
+    if (classified_ && road_class.empty()) ++without_class_;
   }
   if (geometry.IsEmpty() == FALSE && (!classified_ || rules_.knows(road_class))) {
     OGREnvelope own;

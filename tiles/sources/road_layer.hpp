@@ -61,6 +61,10 @@ class RoadLayer {
   /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
+  /// Lines without a class where the layer has classes.
+  std::int64_t lines_without_class() const { return without_class_; }
+  /// Whether an attribute could say of a line without a class that it is a river, a railway or the like.
+  bool tells_other_lines() const;
 
  private:
   OGRLayer* layer_;
@@ -72,6 +76,7 @@ class RoadLayer {
   std::map<std::string, std::vector<double>> stated_widths_;
   std::int64_t lines_ = 0;
   std::map<std::string, std::int64_t> unknown_classes_;
+  std::int64_t without_class_ = 0;
 };
 
 }  // namespace roadfix

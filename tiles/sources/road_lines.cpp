@@ -12,7 +12,6 @@
 
 #include "core/units/error.hpp"
 #include "core/units/shell_word.hpp"
-#include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
@@ -34,6 +33,8 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
   if (layer.lines() == 0) return;
   parts.lines += layer.lines();
   for (const auto& [name, count] : layer.unknown_classes()) parts.unknown_classes[name] += count;
+  parts.without_class += layer.lines_without_class();
+  if (!layer.tells_other_lines()) parts.roads_without_class += layer.lines_without_class();
   for (const auto& [name, widths] : layer.stated_widths()) {
     std::vector<double>& of_all = parts.network_of(layer).stated_widths[name];
     of_all.insert(of_all.end(), widths.begin(), widths.end());
@@ -131,6 +132,18 @@ void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
       unknown, parts.lines, most_frequent(parts.unknown_classes)));
 }
 
+std::string class_attribute_of(const RoadNetwork& network, const RoadRules& rules) {
+  return network.class_attribute.empty() ? rules.class_attribute() : network.class_attribute;
+}
+
+/// Whoever draws roads by hand forgets an attribute now and then.
+void note_roads_without_class(const RoadParts& parts, const RoadRules& rules, RoadNetwork& network) {
+  if (parts.roads_without_class == 0) return;
+  network.notes.push_back(
+      fmt::format("{} of {} lines are not drawn, since their attribute '{}' is empty. If they are roads, fill it in",
+                  parts.roads_without_class, parts.lines, class_attribute_of(network, rules)));
+}
+
 /// Roads three times as wide as they are make a map that fits nowhere.
 void note_widths(const RoadRules& rules, RoadNetwork& network) {
   const auto is_asked = [&](const auto& stated) { return rules.is_width_attribute(stated.first); };
@@ -151,8 +164,15 @@ void note_widths(const RoadRules& rules, RoadNetwork& network) {
   }
 }
 
-std::string why_none_is_drawn(const RoadParts& parts, const RoadRules& rules) {
-  if (parts.lines == 0) return "none of them is a line; points and areas are not drawn, centrelines are";
+std::string why_none_is_drawn(const RoadParts& parts, const RoadNetwork& network, const RoadRules& rules) {
+  if (parts.lines == 0) {
+    return "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, burn them "
+           "into a raster (gdal_rasterize -burn 255 -init 0 -ot Byte) and ingest that with --as roads";
+  }
+  if (parts.without_class == parts.lines) {
+    return fmt::format("their attribute '{}' is empty; fill it in, or name another with --class-attribute",
+                       class_attribute_of(network, rules));
+  }
   if (!parts.unknown_classes.empty()) {
     return fmt::format(
         "the road rules do not know their classes, {}; give them widths with --rules FILE, which replaces the built-in "
@@ -185,18 +205,7 @@ std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path) 
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
     if (!box) continue;
     refuse_degrees_as_metres(*box, file.crs_of(*layer), path);
-    const TransformationPtr to_earth = transformation(file.crs_of(*layer), wgs84_reference(), path);
-    double lon = (box->MinX + box->MaxX) / 2.0;
-    double lat = (box->MinY + box->MaxY) / 2.0;
-    const GdalMessages messages;
-    if (to_earth->Transform(1, &lon, &lat) == FALSE || !(std::abs(lat) <= 90.0) || !(std::abs(lon) <= 360.0)) {
-      throw InvalidInput(
-          "crs-not-transformable",
-          fmt::format("{}: its coordinates have no place on Earth; if the reference system is wrong, give "
-                      "the right one with --crs",
-                      path));
-    }
-    return LatLon{lat, lon};
+    return centre_on_earth(*box, file.crs_of(*layer), path, "give the right one with --crs");
   }
   return std::nullopt;
 }
@@ -214,18 +223,16 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
   if (network.lines.empty() || network.covered.empty()) {
     throw InvalidInput("source-without-roads",
                        fmt::format("{}: none of its {} features is drawn as a road: {}", paths.front(),
-                                   network.left_out, why_none_is_drawn(parts, rules)));
+                                   network.left_out, why_none_is_drawn(parts, network, rules)));
   }
   note_unknown_classes(parts, network);
+  note_roads_without_class(parts, rules, network);
   note_widths(rules, network);
   return network;
 }
 
 LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options) {
-  std::optional<OGREnvelope> box = box_in_degrees(options.extent);
-  if (is_poly_file(options.extent)) read_poly_file(options.extent)->getEnvelope(&box.emplace());
-  if (box) return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
-  if (!options.extent.empty()) return centre_of_roads({options.extent}, {});
+  if (!options.extent.empty()) return centre_of_extent(options.extent);
   bool any_layer = false;
   for (const std::string& path : paths) {
     VectorFile file(path, options);

@@ -4,6 +4,7 @@
 #include <ogrsf_frmts.h>
 
 #include <cstdio>
+#include <memory>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/line_on_plane.hpp"
@@ -23,6 +24,7 @@ std::vector<GridPoint> ring_on_plane(const OGRLinearRing& ring, OGRCoordinateTra
   throw InvalidInput("extent-unreadable", fmt::format("{}: the polygon has no place in the zone of the map", path));
 }
 
+/// Of geometries without arcs.
 void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const std::string& path,
                   std::vector<PlanePolygon>& polygons) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
@@ -38,6 +40,19 @@ void add_polygons(const OGRGeometry& geometry, OGRCoordinateTransformation& to_p
     holes.push_back(ring_on_plane(*polygon.getInteriorRing(i), to_plane, path));
   }
   polygons.emplace_back(outer, holes);
+}
+
+[[noreturn]] void refuse_extent_without_polygons(const std::string& extent) {
+  throw InvalidInput("extent-unreadable", fmt::format("{}: holds no polygon that could say what is covered", extent));
+}
+
+/// --crs is about the roads.
+OGRSpatialReference crs_of_extent(const VectorFile& file, OGRLayer& layer) {
+  if (layer.GetSpatialRef() != nullptr) return file.crs_of(layer);
+  throw InvalidInput("extent-unreadable",
+                     fmt::format("{}: layer '{}' has no reference system: give it one in the program that it comes "
+                                 "from and save it again, or write --extent W,S,E,N in degrees",
+                                 file.path(), layer.GetName()));
 }
 
 }  // namespace
@@ -71,14 +86,29 @@ std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
   } else {
     VectorFile file(extent, {});
     file.for_each_feature([&](OGRLayer& layer, OGRFeature& feature) {
-      const TransformationPtr to_plane = transformation(file.crs_of(layer), plane, extent);
-      if (feature.GetGeometryRef() != nullptr) add_polygons(*feature.GetGeometryRef(), *to_plane, extent, polygons);
+      if (feature.GetGeometryRef() == nullptr) return;
+      const TransformationPtr to_plane = transformation(crs_of_extent(file, layer), plane, extent);
+      const std::unique_ptr<OGRGeometry> straight(feature.GetGeometryRef()->getLinearGeometry());
+      if (straight) add_polygons(*straight, *to_plane, extent, polygons);
     });
   }
-  if (polygons.empty()) {
-    throw InvalidInput("extent-unreadable", fmt::format("{}: holds no polygon that could say what is covered", extent));
-  }
+  if (polygons.empty()) refuse_extent_without_polygons(extent);
   return polygons;
+}
+
+LatLon centre_of_extent(const std::string& extent) {
+  std::optional<OGREnvelope> box = box_in_degrees(extent);
+  if (is_poly_file(extent)) read_poly_file(extent)->getEnvelope(&box.emplace());
+  if (box) return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
+  VectorFile file(extent, {});
+  for (OGRLayer* layer : file.layers()) {
+    const std::optional<OGREnvelope> own = file.extent_of(*layer);
+    if (own) {
+      const OGRSpatialReference crs = crs_of_extent(file, *layer);
+      return centre_on_earth(*own, crs, extent, "write the right one into the file");
+    }
+  }
+  refuse_extent_without_polygons(extent);
 }
 
 }  // namespace roadfix

@@ -18,5 +18,6 @@ std::optional<OGREnvelope> box_in_degrees(const std::string& extent);
 
 /// See VectorOptions::extent.
 std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone);
+LatLon centre_of_extent(const std::string& extent);
 
 }  // namespace roadfix

@@ -43,11 +43,12 @@ DatasetPtr open_in_known_crs(const std::string& path, const std::optional<Vector
   return dataset;
 }
 
-/// What is known without reading the features.
+/// What is known without reading the features. A Shapefile without geometries says that they lie at zero.
 std::optional<OGREnvelope> stored_extent(OGRLayer& layer) {
   const GdalMessages messages;
   OGREnvelope box;
   if (layer.GetExtent(&box, FALSE) != OGRERR_NONE || box.MinX > box.MaxX) return std::nullopt;
+  if (box.MinX == 0.0 && box.MaxX == 0.0 && box.MinY == 0.0 && box.MaxY == 0.0) return std::nullopt;
   return box;
 }
 
@@ -169,6 +170,20 @@ PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& t
   edge(box.MaxX, box.MaxY, box.MinX, box.MaxY);
   edge(box.MinX, box.MaxY, box.MinX, box.MinY);
   return PlanePolygon(ring);
+}
+
+LatLon centre_on_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path,
+                       std::string_view remedy) {
+  const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
+  double lon = (box.MinX + box.MaxX) / 2.0;
+  double lat = (box.MinY + box.MaxY) / 2.0;
+  const GdalMessages messages;
+  if (to_earth->Transform(1, &lon, &lat) == FALSE || !(std::abs(lat) <= 90.0) || !(std::abs(lon) <= 360.0)) {
+    throw InvalidInput(
+        "crs-not-transformable",
+        fmt::format("{}: its coordinates have no place on Earth; if the reference system is wrong, {}", path, remedy));
+  }
+  return {lat, lon};
 }
 
 OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane) {

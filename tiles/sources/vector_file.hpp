@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tiles/sources/gdal_session.hpp"
@@ -57,6 +58,10 @@ class VectorFile {
 
 /// The box as a polygon on the plane, its edges followed closely. Throws InvalidInput "crs-not-transformable".
 PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path);
+
+/// Of the box. `remedy` is what to do about a wrong reference system. Throws InvalidInput "crs-not-transformable".
+LatLon centre_on_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path,
+                       std::string_view remedy);
 
 /// The box with each side that is shorter on the plane grown to `side_m` about its middle: that of a single straight
 /// road may have no height. A box without a place in the zone stays as it is.

@@ -159,7 +159,8 @@ TEST_F(RoadAttributes, WordsForNothingAreNoTunnelsAndNoClasses) {
   ASSERT_EQ(network.lines.size(), 2U);
   EXPECT_EQ(network.lines.front().half_width_m, 5.0);
   EXPECT_EQ(network.lines.back().half_width_m, 3.0);
-  EXPECT_THAT(network.notes, IsEmpty());
+  EXPECT_THAT(network.notes,
+              ElementsAre(HasSubstr("1 of 4 lines are not drawn, since their attribute 'highway' is empty")));
 }
 
 TEST_F(RoadAttributes, WordsForNothingAmongTheClassesOfAnAttributeDoNotHideThatItHoldsClasses) {

@@ -24,6 +24,7 @@ using testing::code_of;
 using ::testing::ElementsAre;
 using testing::feature;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::kCentre;
 using testing::kZone;
 using testing::message_of;
@@ -144,6 +145,29 @@ TEST_F(RoadLines, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {
   EXPECT_EQ(network.lines.size(), 2U);
   EXPECT_EQ(network.left_out, 0);
   EXPECT_EQ(network.covered.size(), 1U);
+}
+
+TEST_F(RoadLines, DrawnByHandButNotClassifiedAreNotDrawnAndSaidSo) {
+  const std::string classified = feature(R"("highway":"primary")", at(0, 0), at(100, 0));
+  const std::string forgotten = feature(R"("highway":null,"name":"Yeni Cadde")", at(0, 50), at(100, 50));
+  EXPECT_THAT(notes({classified, forgotten}),
+              ElementsAre(AllOf(HasSubstr("1 of 2 lines"), HasSubstr("attribute 'highway' is empty"))));
+  EXPECT_THAT(message_of([&] { read_road_network({geojson({forgotten})}, {}, RoadRules(), kZone); }),
+              AllOf(HasSubstr("attribute 'highway' is empty"), HasSubstr("--class-attribute")));
+  const std::string river = feature(R"("highway":null,"waterway":"river")", at(0, 50), at(100, 50));
+  EXPECT_THAT(notes({classified, river}), IsEmpty());
+}
+
+TEST_F(RoadLines, OfAShapefileWithoutFeaturesAreNone) {
+  const std::string path = (folder / "empty.shp").string();
+  {
+    require_gdal();
+    OGRSpatialReference plane = utm_reference(kZone);
+    const DatasetPtr file(
+        GetGDALDriverManager()->GetDriverByName("ESRI Shapefile")->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    ASSERT_NE(file->CreateLayer("empty", &plane, wkbLineString), nullptr);
+  }
+  EXPECT_THAT(message_of([&] { centre_of_roads({path}, {}); }), HasSubstr("no feature has a geometry"));
 }
 
 TEST_F(RoadLines, FilesThatHoldNoRoadsAreRefused) {

@@ -224,6 +224,8 @@ TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
 
 TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
   EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "source-not-found");
+  EXPECT_THAT(testing::message_of([&] { find_source("roads.gpkg|layername=streets", SourceMeaning::kAuto); }),
+              ::testing::HasSubstr("name the layer with --layer"));
   EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");
   std::ofstream(folder / "letter.txt") << "Dear reader";
   EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string(), SourceMeaning::kAuto); }), "source-unreadable");

@@ -3,8 +3,11 @@
 #include <ogrsf_frmts.h>
 
 #include <fstream>
+#include <numbers>
 #include <string>
+#include <vector>
 
+#include "tests/support/code_of.hpp"
 #include "tests/tiles/sources/vector_roads_fixture.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
@@ -15,10 +18,31 @@ using testing::at;
 using testing::degrees;
 using testing::extent_around_centre;
 using testing::feature;
+using ::testing::HasSubstr;
 using testing::kCentre;
 using testing::kZone;
+using testing::message_of;
 
-using StatedExtent = testing::VectorRoads;
+class StatedExtent : public testing::VectorRoads {
+ protected:
+  static void write_extent(const std::string& path, OGRSpatialReference* crs,
+                           const std::vector<std::string>& polygons) {
+    require_gdal();
+    const char* driver = path.ends_with(".shp") ? "ESRI Shapefile" : "GPKG";
+    const DatasetPtr file(
+        GetGDALDriverManager()->GetDriverByName(driver)->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    const auto type = path.ends_with(".shp") ? wkbPolygon : wkbUnknown;
+    OGRLayer* layer = file->CreateLayer("drawn", crs, type);
+    for (const std::string& wkt : polygons) {
+      OGRGeometry* geometry = nullptr;
+      OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
+      OGRFeature feature(layer->GetLayerDefn());
+      feature.SetGeometryDirectly(geometry);
+      ASSERT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
+    }
+  }
+  OGRSpatialReference plane_ = utm_reference(kZone);
+};
 
 TEST_F(StatedExtent, GroundBesideTheExtentIsUnobserved) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-50, -50), at(50, 50))});
@@ -37,21 +61,7 @@ TEST_F(StatedExtent, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
                        kCentre.north_m - half_m, kCentre.north_m + half_m);
   };
   const std::string known = (folder / "known.gpkg").string();
-  require_gdal();
-  {
-    const DatasetPtr file(
-        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(known.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    OGRSpatialReference plane = utm_reference(kZone);
-    OGRLayer* layer = file->CreateLayer("known", &plane, wkbUnknown);
-    for (const std::string& wkt :
-         {std::string("POLYGON EMPTY"), fmt::format("MULTIPOLYGON(({},{}))", ring(100), ring(50))}) {
-      OGRGeometry* geometry = nullptr;
-      OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
-      OGRFeature feature(layer->GetLayerDefn());
-      feature.SetGeometryDirectly(geometry);
-      ASSERT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
-    }
-  }
+  write_extent(known, &plane_, {"POLYGON EMPTY", fmt::format("MULTIPOLYGON(({},{}))", ring(100), ring(50))});
   VectorOptions options;
   options.extent = known;
   const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
@@ -59,6 +69,28 @@ TEST_F(StatedExtent, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
   EXPECT_TRUE(is_observed(result.at(60, 100)));
   EXPECT_FALSE(is_observed(result.at(100, 100))) << "in the hole";
   EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
+}
+
+TEST_F(StatedExtent, MayHaveArcs) {
+  const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
+  VectorOptions options;
+  options.extent = folder / "circle.gpkg";
+  write_extent(options.extent, &plane_,
+               {fmt::format("CURVEPOLYGON(CIRCULARSTRING({0} {1},{2} {3},{4} {1},{2} {5},{0} {1}))",
+                            kCentre.east_m - 100, kCentre.north_m, kCentre.east_m, kCentre.north_m + 100,
+                            kCentre.east_m + 100, kCentre.north_m - 100)});
+  const CellArray result = cells(*open_road_vectors({path}, options, RoadRules(), kZone, 2.0));
+  EXPECT_NEAR(static_cast<double>(result.observed_count()), std::numbers::pi * 50 * 50, 30.0);
+}
+
+TEST_F(StatedExtent, WithoutGroundOrReferenceSystemIsRefusedForWhatItIs) {
+  VectorOptions options{.crs = "EPSG:32637", .layer = "", .extent = folder / "drawn.shp"};
+  const auto refusal = [&](OGRSpatialReference* crs, const std::vector<std::string>& polygons) {
+    write_extent(options.extent, crs, polygons);
+    return message_of([&] { centre_of_roads({"roads.gpkg"}, options); });
+  };
+  EXPECT_THAT(refusal(&plane_, {}), HasSubstr("holds no polygon"));
+  EXPECT_THAT(refusal(nullptr, {"POLYGON((0 0,1 0,1 1,0 0))"}), HasSubstr("layer 'drawn' has no reference system"));
 }
 
 TEST_F(StatedExtent, MayCoverThePolygonsOfAnOsmosisFilter) {

@@ -49,14 +49,14 @@ void check_tile_scales(Connection& map, std::vector<MapProblem>& problems) {
       map,
       "SELECT (SELECT count(*) FROM road_probability t LEFT JOIN gpkg_2d_gridded_tile_ancillary a ON a.tpudt_name = "
       "'road_probability' AND a.tpudt_id = t.id WHERE a.scale IS NOT 1.0 OR a.offset IS NOT 0.0) + "
-      "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_id NOT IN (SELECT id FROM "
-      "road_probability))");
+      "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability' AND tpudt_id NOT IN "
+      "(SELECT id FROM road_probability))");
   wrong.step();
   if (wrong.integer(0) == 0) return;
   problems.push_back(
       {"ancillary-wrong", fmt::format("{} rows of gpkg_2d_gridded_tile_ancillary are missing, wrong or left over: "
-                                      "other programs misread the map. Restore it from a copy",
-                                      wrong.integer(0))});
+                                      "other programs misread the map. {}",
+                                      wrong.integer(0), kRepair)});
 }
 
 void check_registration(Connection& map, std::vector<MapProblem>& problems) {

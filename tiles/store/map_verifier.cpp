@@ -22,8 +22,6 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 
-constexpr const char* kRepair = "Repair it with roadfix verify --repair, or restore the map from a copy";
-
 class Verifier {
  public:
   Verifier(const std::filesystem::path& path, const OnProgress& progress, std::stop_token stop)

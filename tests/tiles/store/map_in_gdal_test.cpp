@@ -1,11 +1,13 @@
 // Other programs see what we wrote: a map opened by GDAL's own GeoPackage driver.
 #include <gdal_priv.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/store/map_verifier.hpp"
 
 namespace roadfix {
 namespace {
@@ -63,6 +65,38 @@ TEST_P(MapInGdal, IsARasterOfProbabilitiesInPlaceWithNoData) {
       }
     }
   }
+}
+
+TEST(MapInGdalAndBack, OverviewsThatGdalHasBuiltAreMadeAnewByRepair) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  MapWriter writer(path, testing::settings_37n());
+  testing::ingest(writer, {"a", 1, testing::some_blocks(2)});
+  const auto before = testing::tile_bytes(path);
+  {
+    GDALAllRegister();
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    std::array<int, 2> factors{2, 4};
+    ASSERT_EQ(data->BuildOverviews("NEAREST", 2, factors.data(), 0, nullptr, nullptr, nullptr), CE_None);
+  }
+  const std::vector<MapProblem> problems = verify_map(path).problems;
+  ASSERT_FALSE(problems.empty());
+  EXPECT_EQ(problems.front().code, "ancillary-wrong");
+  EXPECT_THAT(problems.front().what, ::testing::HasSubstr("--repair"));
+  writer.repair();
+  EXPECT_TRUE(verify_map(path).problems.empty());
+  EXPECT_EQ(testing::tile_bytes(path), before);
+}
+
+/// With an empty gpkg_geometry_columns GDAL would take our own tables for layers too, and QGIS ask which of them to
+/// show.
+TEST(MapInGdalAndBack, IsOneRasterAndNoVectors) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  { MapWriter writer(path, testing::settings_37n()); }
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
+  EXPECT_EQ(data == nullptr ? 0 : data->GetLayerCount(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(NorthAndSouth, MapInGdal, ::testing::Values(32637, 32734));

@@ -103,6 +103,13 @@ TEST_F(MapVerifier, FindsWrongScales) {
               ElementsAre("ancillary-wrong"));
 }
 
+TEST_F(MapVerifier, DoesNotMindTheTilesOfOtherPrograms) {
+  EXPECT_THAT(codes_after("INSERT INTO gpkg_contents (table_name, data_type, identifier, srs_id) VALUES ('heights', "
+                          "'2d-gridded-coverage', 'heights', 32637); INSERT INTO gpkg_2d_gridded_tile_ancillary "
+                          "(tpudt_name, tpudt_id, scale) VALUES ('heights', 999, 0.5)"),
+              IsEmpty());
+}
+
 TEST_F(MapVerifier, FindsADescriptionByWhichOtherProgramsMisreadTheMap) {
   for (const std::string change : {"scale = 1.0", "offset = 0.5", "data_null = 0", "data_null = NULL",
                                    "datatype = 'float'", "grid_cell_encoding = 'grid-value-is-center'"}) {

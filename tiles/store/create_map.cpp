@@ -67,6 +67,21 @@ void insert_settings(Connection& map, const MapSettings& settings) {
   meta.with("version", fmt::format("{:016x}", 0)).run();
 }
 
+void write_map(const fs::path& path, const MapSettings& settings) {
+  Connection map(path, Access::kCreate, map_error);
+  Transaction transaction(map, Transaction::Kind::kWrite);
+  map.execute(std::string(schema::map_sql()).c_str());
+  insert_settings(map, settings);
+  transaction.commit();
+}
+
+/// If it is there.
+void remove_map(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  fs::remove(path.string() + "-journal", ignored);
+}
+
 /// Makes a rename durable.
 void sync_folder(const fs::path& folder) {
   const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -83,14 +98,12 @@ void create_map(const fs::path& path, const MapSettings& settings) {
                        fmt::format("cells of {} m: a map has cells of 0.25, 0.5, 1, 2, 4, 8 or 16 m", settings.cell_m));
   }
   const fs::path unfinished = path.string() + "-new";
-  fs::remove(unfinished);
-  fs::remove(unfinished.string() + "-journal");
-  {
-    Connection map(unfinished, Access::kCreate, map_error);
-    Transaction transaction(map, Transaction::Kind::kWrite);
-    map.execute(std::string(schema::map_sql()).c_str());
-    insert_settings(map, settings);
-    transaction.commit();
+  remove_map(unfinished);
+  try {
+    write_map(unfinished, settings);
+  } catch (...) {
+    remove_map(unfinished);
+    throw;
   }
   std::error_code error;
   fs::rename(unfinished, path, error);

@@ -1,7 +1,5 @@
 // What cannot be exported leaves nothing behind.
-#include <signal.h>
-#include <sys/resource.h>
-
+#include "tests/support/room.hpp"
 #include "tests/tiles/export/map_export_fixture.hpp"
 
 namespace roadfix {
@@ -9,27 +7,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::MapExport;
+using testing::Room;
 using testing::settings_37n;
-
-/// No file may grow beyond so many bytes, as on a full disk, for as long as this lives.
-class Room {
- public:
-  explicit Room(std::uintmax_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit less{bytes, before_.rlim_max};
-    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &less), 0);
-  }
-  ~Room() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-  Room(const Room&) = delete;
-  Room& operator=(const Room&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
   EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/room.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 #include "tiles/store/map_writer.hpp"
 
@@ -147,6 +148,13 @@ TEST(InterruptedWriter, AKilledProcessLosesNothing) {
     EXPECT_EQ(MapReader(path).info().version, version);
     EXPECT_EQ(MapReader(path).info().pending, 0);
   }
+}
+
+TEST(InterruptedWriter, ADiskWithoutRoomForANewMapIsLeftAsItWas) {
+  const TemporaryFolder folder;
+  const testing::Room room(100);
+  EXPECT_THROW(MapWriter(folder / "new.gpkg", settings_37n()), IoFailure);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace

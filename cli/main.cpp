@@ -22,6 +22,9 @@ void flush_output() {
                            "the answer cannot be written to the standard output: check that its disk is not full");
 }
 
+/// Whether or not standard error takes it: there is nobody else to tell, and the exit code says it too.
+void complain(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,16 +60,16 @@ int main(int argc, char** argv) {
     // Of a mistyped subcommand CLI11 says that one is missing.
     const std::vector<std::string> words = app.remaining();
     if (app.get_subcommands().empty() && !words.empty() && !words.front().starts_with('-')) {
-      fmt::print(stderr, "There is no subcommand '{}'\nRun with --help for a list.\n", words.front());
+      complain(fmt::format("There is no subcommand '{}'\nRun with --help for a list.\n", words.front()));
     } else {
       app.exit(wrong);
     }
     return kWrongUsage;
   } catch (const roadfix::Error& error) {
-    fmt::print(stderr, "roadfix: {} [{}]\n", error.what(), error.code());
+    complain(fmt::format("roadfix: {} [{}]\n", error.what(), error.code()));
     return kFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "roadfix: {}\n", error.what());
+    complain(fmt::format("roadfix: {}\n", error.what()));
     return kFailed;
   }
 }

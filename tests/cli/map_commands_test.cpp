@@ -159,6 +159,12 @@ TEST_F(MapCommands, AnAnswerThatFindsNoRoomIsAFailure) {
   EXPECT_THAT(testing::text_of(err), HasSubstr("[output-unwritable]"));
 }
 
+TEST_F(MapCommands, FailAsTheyWouldWhereNobodyCanBeToldWhy) {
+  const int status = std::system(ROADFIX_PROGRAM " info no-such-map.gpkg 2>/dev/full");
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
 TEST_F(MapCommands, AMapIsNoSourceOfItself) {
   const auto before = testing::tile_bytes(path);
   const std::string as_roads = " --as roads --name again --map " + path.string();

@@ -7,6 +7,7 @@
 
 #include "core/detect/model_files.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/as_another_user.hpp"
 
 namespace roadfix {
 namespace {
@@ -65,6 +66,24 @@ TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModel) {
 TEST_F(MakeDetector, AWrongEnvironmentIsSaidAndNotPassedOver) {
   setenv("ROADFIX_MODEL", "/nowhere/roadnet.onnx", 1);
   EXPECT_EQ(refusal({}), "model-missing");
+}
+
+TEST_F(MakeDetector, TheFirstModelThatIsThereIsTaken) {
+  EXPECT_EQ(first_model({folder_ / "none.onnx", model() / "beside.onnx", model()}), model());
+  EXPECT_EQ(first_model({folder_ / "none.onnx", folder_}), std::nullopt);
+}
+
+TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
+  fs::permissions(folder_, fs::perms{0700});
+  const testing::AsAnotherUser reader;
+  if (reader.may_do_everything()) GTEST_SKIP();
+  try {
+    first_model({folder_ / "tiny.onnx"});
+    ADD_FAILURE() << "it was not to be seen";
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.code(), "model-missing");
+    EXPECT_NE(std::string(error.what()).find("Permission denied"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {

@@ -33,8 +33,15 @@ bool is_file(const fs::directory_entry& entry) {
 }
 
 std::map<std::string, fs::path> map_files(const fs::path& folder) {
+  std::error_code refused;
+  const fs::directory_iterator entries(folder, refused);
+  if (refused) {
+    throw IoFailure("maps-folder-unreadable",
+                    fmt::format("--maps {}: {}; the service must be able to list and enter this folder",
+                                folder.string(), refused.message()));
+  }
   std::map<std::string, fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
+  for (const auto& entry : entries) {
     if (!is_called_a_map(entry.path().filename()) || !is_file(entry)) continue;
     fs::path& path = files[entry.path().stem()];
     path = std::max(path, entry.path());  // of city.GPKG and city.gpkg the latter, as small letters come last
@@ -57,7 +64,9 @@ std::string ServedMap::edition() const { return fmt::format("{}-{}", view.versio
 
 MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes)
     : folder_(std::move(folder)), cache_bytes_(cache_bytes), search_cache_bytes_(search_cache_bytes) {
-  if (!fs::is_directory(folder_)) {
+  std::error_code unseen;
+  const fs::file_type type = fs::status(folder_, unseen).type();
+  if (type != fs::file_type::directory && type != fs::file_type::none) {  // none: refresh() says why it is not seen
     throw NotFound("maps-folder-not-found",
                    fmt::format("--maps {} is not a folder; name the folder with the maps", folder_.string()));
   }

@@ -39,7 +39,7 @@ struct UnreadableMap {
 class MapRegistry {
  public:
   /// `cache_bytes` bounds the decoded tiles of each map, `search_cache_bytes` what its searches build. Throws NotFound
-  /// ("maps-folder-not-found").
+  /// ("maps-folder-not-found") and IoFailure ("maps-folder-unreadable").
   MapRegistry(std::filesystem::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes = 0);
   ~MapRegistry();
   MapRegistry(const MapRegistry&) = delete;

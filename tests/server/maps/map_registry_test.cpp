@@ -188,6 +188,24 @@ TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
   EXPECT_EQ(said("can be read again"), 1);
 }
 
+TEST(MapRegistry, SaysOfAFolderThatItMayNotReadThatItMayNot) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "srv" / "maps");
+  fs::permissions(folder.path(), fs::perms{0755});
+  for (const fs::path& closed : {folder / "srv" / "maps", folder / "srv"}) {
+    fs::permissions(closed, fs::perms{0700});
+    const AsAnotherUser reader;
+    if (reader.may_do_everything()) GTEST_SKIP();
+    try {
+      const MapRegistry registry(folder / "srv" / "maps", kCache);
+      ADD_FAILURE() << closed << " was read";
+    } catch (const IoFailure& error) {
+      EXPECT_EQ(error.code(), "maps-folder-unreadable");
+      EXPECT_NE(std::string(error.what()).find("Permission denied"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(MapRegistry, RefusesAFolderThatIsNotThere) { EXPECT_THROW(MapRegistry("/no/such/folder", kCache), NotFound); }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,11 @@ void flush_output() {
 
 /// Whether or not standard error takes it: there is nobody else to tell, and the exit code says it too.
 void complain(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
+int failed(const roadfix::Error& error) {
+  complain(fmt::format("roadfix: {} [{}]\n", error.what(), error.code()));
+  return kFailed;
+}
 
 }  // namespace
 
@@ -66,8 +72,11 @@ int main(int argc, char** argv) {
     }
     return kWrongUsage;
   } catch (const roadfix::Error& error) {
-    complain(fmt::format("roadfix: {} [{}]\n", error.what(), error.code()));
-    return kFailed;
+    return failed(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // Whoever asks of a path what it is seldom thinks of folders that may not be entered.
+    return failed(
+        roadfix::IoFailure("path-refused", fmt::format("{}: {}", error.path1().string(), error.code().message())));
   } catch (const std::exception& error) {
     complain(fmt::format("roadfix: {}\n", error.what()));
     return kFailed;

@@ -254,5 +254,13 @@ TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
   EXPECT_THAT(roadfix("info " + path.string() + " --jsn").err, HasSubstr("--jsn"));
 }
 
+TEST_F(MapCommands, APathThatTheSystemRefusesIsNamedWithItsReasonAndACode) {
+  std::filesystem::create_symlink("round.tif", folder / "round.tif");
+  const ProgramResult result = roadfix("ingest " + (folder / "round.tif").string() + " --map " + path.string());
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err,
+            "roadfix: " + (folder / "round.tif").string() + ": Too many levels of symbolic links [path-refused]\n");
+}
+
 }  // namespace
 }  // namespace roadfix

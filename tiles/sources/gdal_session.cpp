@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <mutex>
@@ -88,7 +89,8 @@ DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* con
                                        open_options, nullptr));
   if (dataset) return dataset;
   VSIStatBufL stat;
-  if (VSIStatL(path.c_str(), &stat) != 0) {
+  errno = 0;
+  if (VSIStatL(path.c_str(), &stat) != 0 && errno != EACCES) {
     const bool with_layer = path.find("|layername=") != std::string::npos;  // as QGIS writes it
     throw NotFound("source-not-found", fmt::format("{}: no such file{}", path,
                                                    with_layer ? "; name the layer with --layer, not here" : ""));

@@ -10,6 +10,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "tests/support/as_another_user.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
@@ -231,6 +232,13 @@ TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
   EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string(), SourceMeaning::kAuto); }), "source-unreadable");
   std::ofstream(folder / "empty.tif") << "";
   EXPECT_EQ(code_of([&] { find_source((folder / "empty.tif").string(), SourceMeaning::kAuto); }), "source-unreadable");
+}
+
+TEST_F(SourceFilesTest, WhatMayNotBeReadIsNotCalledMissing) {
+  const std::string path = image("city.tif");
+  const testing::AsAnotherUser other;  // who may not enter the folder
+  if (other.may_do_everything()) GTEST_SKIP();
+  EXPECT_EQ(code_of([&] { open_dataset(path, GDAL_OF_RASTER); }), "source-unreadable");
 }
 
 TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {

@@ -14,9 +14,11 @@ constexpr double kEquatorM = 40'075'016.685578488;  // 2 pi 6378137, the sphere 
 
 int parse_index(const std::string& text, int end) {
   int value = -1;
-  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || last != text.data() + text.size() || value < 0 || value >= end) {
-    throw NotFound("tile-not-found", "tiles are /{z}/{x}/{y}.png with z from 0 to 24 and x, y from 0 to 2^z - 1");
+  const auto error = std::from_chars(text.data(), text.data() + text.size(), value).ec;
+  const bool is_index = error == std::errc{} && value >= 0 && value < end;
+  if (!is_index || std::to_string(value) != text) {  // 007 and 7 would be two addresses of one tile
+    throw NotFound("tile-not-found",
+                   "tiles are /{z}/{x}/{y}.png with z from 0 to 24 and x, y from 0 to 2^z - 1, without leading zeros");
   }
   return value;
 }

@@ -17,7 +17,7 @@ struct TileAddress {
   int y = 0;
 };
 
-/// Throws NotFound ("tile-not-found") for anything that is no tile of the square.
+/// Throws NotFound ("tile-not-found") for anything that is no tile of the square, and for numbers that begin with 0.
 TileAddress parse_tile(const std::string& z, const std::string& x, const std::string& y);
 
 /// Continuous pixel coordinates of the whole square at a zoom; the poles are at infinity.

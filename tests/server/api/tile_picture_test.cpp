@@ -78,6 +78,9 @@ TEST(WebMercator, RefusesWhatIsNoTile) {
                                 {"1", "0", "-1"},
                                 {"a", "0", "0"},
                                 {"1", "0 ", "0"},
+                                {"1", "01", "0"},
+                                {"00", "0", "0"},
+                                {"1", "-0", "0"},
                                 {"", "0", "0"}}) {
     EXPECT_THROW(parse_tile(z, x, y), NotFound);
   }

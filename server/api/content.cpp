@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/units/error.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/multipart.hpp"
@@ -63,8 +62,8 @@ Content read_content(const http::Request& request, const std::vector<std::string
       add_part(content, part, known, limits);
     }
   } else {
-    throw InvalidInput(
-        "unsupported-media-type",
+    throw InvalidField(
+        "unsupported-media-type", "Content-Type",
         fmt::format("Content-Type is '{}'; send image/png, image/jpeg, application/json or multipart/form-data",
                     type.substr(0, 60)));
   }

@@ -19,8 +19,8 @@ struct Content {
   bool has_picture = false;  ///< one was sent, though its bytes may have been lost on their way
 };
 
-/// `known` are the members a JSON body or form may have. Throws InvalidField, LimitExceeded, or InvalidInput
-/// ("unsupported-media-type").
+/// `known` are the members a JSON body or form may have. Throws InvalidField ("unsupported-media-type"
+/// of the header Content-Type, too) or LimitExceeded.
 Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits);
 
 }  // namespace roadfix::api

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "core/locate/tracker.hpp"
-#include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
@@ -17,6 +16,7 @@
 #include "server/api/track_request.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/http/errors.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -67,8 +67,8 @@ json without_nulls(const json& asked) {
 
 http::Response post_track(const Service& service, const http::Request& request) {
   if (request.media_type() != "application/json") {
-    throw InvalidInput("unsupported-media-type",
-                       "a track is begun with a JSON object (Content-Type: application/json)");
+    throw http::InvalidField("unsupported-media-type", "Content-Type",
+                             "a track is begun with a JSON object (Content-Type: application/json)");
   }
   const json asked = without_nulls(api::parse_json(request.body, {service.limits.json_depth, 1000}));
   const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));

@@ -145,8 +145,8 @@ bool announces_body(const Request& request) {
 void check_body_headers(const Request& request, std::size_t max_bytes) {
   const std::string encoding = lower_case(request.header("content-encoding"));
   if (!encoding.empty() && encoding != "identity" && encoding != "gzip") {
-    throw InvalidInput(
-        "unsupported-content-encoding",
+    throw InvalidField(
+        "unsupported-content-encoding", "Content-Encoding",
         fmt::format("Content-Encoding '{}' is not supported; send the body with gzip or unencoded", encoding));
   }
   const std::string transfer = lower_case(request.header("transfer-encoding"));

@@ -40,8 +40,8 @@ void take_over(httplib::Request& head, Exchange& exchange);
 /// Method, headers, id and client; not yet target, body and route.
 Request translated(const httplib::Request& head, const Exchange& exchange, const Proxies& proxies);
 
-/// Throws InvalidInput ("length-required", "bad-content-length", "unsupported-content-encoding") or LimitExceeded
-/// ("body-too-large") by what the head says.
+/// Throws InvalidInput ("length-required", "bad-content-length"), InvalidField ("unsupported-content-encoding") or
+/// LimitExceeded ("body-too-large") by what the head says.
 void check_body_headers(const Request& request, std::size_t max_bytes);
 /// Throws InvalidInput "bad-header" for a name that is no token (RFC 9112 5.1), which programs in front may read
 /// otherwise, and for other than one Host (RFC 9112 3.2).

@@ -75,7 +75,7 @@ TEST_F(BadRequests, SayWhichMethodsThereAre) {
 
 TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "text/plain")), "415 unsupported-media-type");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "text/plain")), "415 unsupported-media-type Content-Type");
   EXPECT_EQ(refusal(client_.Post(fix_, png, "image/png")), "400 missing-parameter cell_m");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", "", "image/png")), "400 missing-parameter image");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", "not a picture", "image/png")), "422 image-format");
@@ -225,7 +225,7 @@ TEST_F(BadRequests, WithAGzipBombAreRefusedAtTheLimit) {
       refusal(testing::client_of(*service).Post(match_, {{"Content-Encoding", "gzip"}}, "no gzip", "application/json")),
       "400 bad-body-encoding");
   EXPECT_EQ(refusal(testing::client_of(*service).Post(match_, {{"Content-Encoding", "br"}}, "x", "application/json")),
-            "415 unsupported-content-encoding");
+            "415 unsupported-content-encoding Content-Encoding");
 }
 
 TEST_F(BadRequests, WithABodyCutOffAreToldSo) {

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "core/detect/frame.hpp"
 #include "server/http/errors.hpp"
 #include "tiles/sources/drone_picture.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 using http::InvalidField;
 
-constexpr Range kGsd{0.0, 100.0, true};
+constexpr Range kGsd{kFinestGsdM, kCoarsestGsdM};
 constexpr Range kHeight{0.0, 20'000.0, true};
 constexpr Range kQuarterTurn{-90.0, 90.0};
 constexpr std::string_view kLenses[] = {"perspective", "fisheye"};

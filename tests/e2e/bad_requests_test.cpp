@@ -85,8 +85,9 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&gsd_m=1", png, "image/png")), "400 bad-parameter gsd_m");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1&nadir_col=3", png, "image/png")),
             "400 bad-parameter nadir_col");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=20", png, "image/png")), "422 frame-too-coarse");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1e-4", png, "image/png")), "422 frame-too-fine");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=20", png, "image/png")), "400 parameter-out-of-range gsd_m");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1e-4", png, "image/png")),
+            "400 parameter-out-of-range gsd_m");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame", png, "image/png")), "400 missing-parameter fov_deg");
   const std::string camera = fix_ + "?kind=frame&agl_m=50&focal_px=64";
   EXPECT_EQ(refusal(client_.Post(camera + "&distortion=0.1", png, "image/png")), "400 bad-parameter distortion");

@@ -32,7 +32,9 @@ TEST(FrameScale, IsToldDirectlyOfAFrameSeenFromStraightAbove) {
   EXPECT_EQ(scale.gsd_m, 0.5);
   EXPECT_FALSE(scale.camera);
   EXPECT_FALSE(scale.in_file);
-  EXPECT_EQ(refused_scale({{"gsd_m", 0}}), "parameter-out-of-range gsd_m");
+  for (const double mistaken : {0.0, 1e-4, 20.0}) {
+    EXPECT_EQ(refused_scale({{"gsd_m", mistaken}}), "parameter-out-of-range gsd_m");
+  }
 }
 
 TEST(FrameScale, IsNotToldTwice) {

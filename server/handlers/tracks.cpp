@@ -86,13 +86,24 @@ struct PostedStep {
   StepInput input;
 };
 
-http::Response step_response(const Service& service, const PostedStep& step, std::string answer) {
-  if (step.format.is_json()) return {200, "application/json", std::move(answer)};
+http::Response formatted(const Service& service, const PostedStep& step, StepAnswer answer) {
+  if (step.format.is_json()) return {200, "application/json", std::move(answer.text)};
   api::PositionFormat numbered = step.format;
   numbered.sender.sequence = static_cast<std::uint8_t>(step.input.sequence & 0xff);
   // A step that is sent again is as old as when it came first.
   const auto age = service.tracks.age_of_step(step.track.id, step.input.sequence);
-  return api::position_response(api::stored_json(answer), numbered, {step.input.time_us, age});
+  return api::position_response(answer.answer, numbered, {step.input.time_us, age});
+}
+
+http::Response step_response(const Service& service, const PostedStep& step, StepAnswer answer) {
+  const bool repeated = answer.repeated;
+  if (!repeated) {
+    const std::string& status = answer.answer.at("status").get_ref<const std::string&>();
+    service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
+  }
+  http::Response response = formatted(service, step, std::move(answer));
+  if (repeated) response.headers.emplace_back("Roadfix-Repeated", "true");
+  return response;
 }
 
 PostedStep read_step(const Service& service, const http::Request& request) {
@@ -109,9 +120,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   StepInput& input = step.input;
   const std::int64_t digest = digest_of(step.content);
   if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
-    http::Response repeated = step_response(service, step, std::move(*answer));
-    repeated.headers.emplace_back("Roadfix-Repeated", "true");
-    return repeated;
+    return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);
   if (api::shows_ground(step.content)) {
@@ -125,10 +134,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   constexpr int kRestOfStep = 10;  // a tenth of the time
   limits.searches_end = request.deadline - api::time_left(request.deadline) / kRestOfStep;
   limits.stop = limit.token();
-  std::string answer = service.tracks.step(track.id, input, digest, limits, request.received);
-  const std::string status = api::stored_json(answer).at("status");
-  service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
-  return step_response(service, step, std::move(answer));
+  return step_response(service, step, service.tracks.step(track.id, input, digest, limits, request.received));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first.

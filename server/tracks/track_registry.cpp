@@ -239,16 +239,16 @@ void TrackRegistry::expire() {
   }
 }
 
-std::optional<std::string> TrackRegistry::answered(const std::string& id, std::int64_t sequence,
-                                                   std::int64_t digest) const {
-  const auto taken = store().step(find(id).id, sequence);
+std::optional<StepAnswer> TrackRegistry::answered(const std::string& id, std::int64_t sequence,
+                                                  std::int64_t digest) const {
+  auto taken = store().step(find(id).id, sequence);
   if (!taken) return std::nullopt;
   if (taken->digest != digest) {
     throw InvalidInput(
         "step-differs",
         fmt::format("step {} was already processed with different content: continue with the next number", sequence));
   }
-  return taken->answer;
+  return StepAnswer{api::stored_json(taken->answer), std::move(taken->answer), true};
 }
 
 void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequence) {
@@ -268,11 +268,11 @@ void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequen
   --steps_waiting_;
 }
 
-std::string TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
-                                const StepLimits& limits, Clock::time_point came) {
+StepAnswer TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
+                               const StepLimits& limits, Clock::time_point came) {
   const std::shared_ptr<LiveTrack> track = live(id);
   LiveTrack::Turn turn(*track, input.sequence, limits_.order_wait);
-  if (const auto answer = answered(id, input.sequence, digest)) return *answer;
+  if (auto before = answered(id, input.sequence, digest)) return *std::move(before);
   if (turn.is_doubtful()) turn.settle(stored_state(id));
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   json answer = api::to_json(result.estimate);
@@ -294,7 +294,7 @@ std::string TrackRegistry::step(const std::string& id, const StepInput& input, s
   }
   ++changes_;
   news_.notify_all();
-  return text;
+  return {std::move(answer), std::move(text)};
 }
 
 }  // namespace roadfix::server

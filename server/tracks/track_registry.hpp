@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,6 +35,13 @@ struct TrackLimits {
   std::chrono::milliseconds order_wait{100};  ///< for a step that was overtaken on its way here
   int steps_waiting = 16;                     ///< for those before them, of all tracks
   std::int64_t store_bytes = std::int64_t{8} << 30;
+};
+
+/// What a step was answered.
+struct StepAnswer {
+  nlohmann::json answer;
+  std::string text;       ///< the same, byte by byte as it was told before and is stored
+  bool repeated = false;  ///< the step had been taken before
 };
 
 class TrackRegistry {
@@ -76,14 +84,15 @@ class TrackRegistry {
 
   /// What a step was answered, if it was taken already. Throws InvalidInput ("step-differs") where that was another
   /// step of the same number.
-  std::optional<std::string> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
+  std::optional<StepAnswer> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
   /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
   /// the searches for that, so that it holds none meanwhile. Throws Busy where too many wait.
   void await_predecessor(const std::string& id, std::int64_t sequence);
-  /// Takes the step and returns its answer once it cannot be lost any more. Throws what Tracker::advance throws,
-  /// InvalidInput ("map-replaced") and the store's errors; the track is then as it was. `came` is when the step did.
-  std::string step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
-                   std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now());
+  /// Takes the step, unless that was done meanwhile, and returns its answer once it cannot be lost any more. Throws
+  /// what Tracker::advance throws, InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
+  /// `came` is when the step did.
+  StepAnswer step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
+                  std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now());
 
   /// One stream of events for as long as it lives. Throws Busy.
   class Listener;

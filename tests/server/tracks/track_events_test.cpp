@@ -19,7 +19,7 @@ TEST_F(TrackEvents, HandsOutStepsAndTheEndToAStream) {
   limits.streams = 1;
   const auto tracks = registry(limits);
   const std::string id = begin(*tracks);
-  const std::string answer = tracks->step(id, step_of(0), 0, {});
+  const std::string answer = tracks->step(id, step_of(0), 0, {}).text;
   const auto stream = tracks->stream(id, -1);
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "server-busy");
   EXPECT_EQ(stream->next()->steps.at(0).answer, answer);

@@ -39,7 +39,7 @@ class TrackRegistryTest : public ::testing::Test {
   }
   /// The answer without the name of the track.
   static std::string take(TrackRegistry& tracks, const std::string& id, std::int64_t sequence) {
-    nlohmann::json answer = nlohmann::json::parse(tracks.step(id, step_of(sequence), sequence, {}));
+    nlohmann::json answer = tracks.step(id, step_of(sequence), sequence, {}).answer;
     answer.erase("track");
     return answer.dump();
   }

@@ -42,6 +42,17 @@ TEST_F(TrackRegistryTest, KnowsHowOldEachOfTheLastStepsIs) {
   EXPECT_FALSE(tracks->age_of_step(id, last));
 }
 
+TEST_F(TrackRegistryTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
+  const auto tracks = registry();
+  const std::string id = begin(*tracks);
+  const StepAnswer first = tracks->step(id, step_of(0), 0, {});
+  const StepAnswer again = tracks->step(id, step_of(0), 0, {});
+  EXPECT_FALSE(first.repeated);
+  EXPECT_TRUE(again.repeated);
+  EXPECT_EQ(again.text, first.text);
+  EXPECT_EQ(again.answer, json::parse(first.text));
+}
+
 TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
   const auto tracks = registry();
   const long unused = maps_.find("town").use_count();
@@ -80,7 +91,7 @@ TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
   const auto accepted = [&](const char* file, std::shared_ptr<const Calibration> calibration) {
     TrackRegistry tracks(folder_ / file, {}, maps_, limits_, std::move(calibration));
     const std::string id = tracks.create("::1", R"({"map": "town", "particles": 500})").id;
-    const json answer = json::parse(tracks.step(id, first, 0, {}));
+    const json answer = tracks.step(id, first, 0, {}).answer;
     EXPECT_EQ(answer["measurement"], "searched");
     return !answer["since_accepted_s"].is_null();
   };

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -31,19 +33,7 @@ constexpr double kMaxThreads = 10'000;
 
 struct ServeOptions {
   server::Configuration service;
-  std::size_t body_mib = service.http.body_bytes / kMiB;
-  std::size_t all_bodies_mib = service.http.all_bodies_bytes / kMiB;
-  std::size_t map_cache_mib = service.map_cache_bytes / kMiB;
-  std::size_t search_cache_mib = service.search_cache_bytes / kMiB;
-  std::size_t picture_cache_mib = service.picture_cache_bytes / kMiB;
-  double request_time_s = 30.0;
-  double body_time_s = 60.0;
-  std::optional<double> turn_time_s;  ///< else as long as the request time
-  double idle_time_s = 15.0;
-  double watch_s = 1.0;
-  double track_idle_s = 3600.0;
-  double step_wait_s = 0.1;
-  std::size_t tracks_mib = static_cast<std::size_t>(service.track_limits.store_bytes) / kMiB;
+  std::optional<std::chrono::milliseconds> turn_time;  ///< else as long as the request time
   std::string log_level = "info";
   std::string calibration;
   std::vector<std::string> proxies;
@@ -53,22 +43,10 @@ server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
   result.http.proxies = http::Proxies(options.proxies);
-  result.http.body_bytes = options.body_mib * kMiB;
-  result.http.all_bodies_bytes = options.all_bodies_mib * kMiB;
-  result.map_cache_bytes = options.map_cache_mib * kMiB;
-  result.search_cache_bytes = options.search_cache_mib * kMiB;
-  result.picture_cache_bytes = options.picture_cache_mib * kMiB;
-  result.http.body_time = milliseconds(options.body_time_s);
-  result.http.request_time = milliseconds(options.request_time_s);
-  result.http.turn_time = options.turn_time_s ? milliseconds(*options.turn_time_s) : result.http.request_time;
-  result.http.idle_time = milliseconds(options.idle_time_s);
-  result.watch_interval = milliseconds(options.watch_s);
-  result.track_limits.idle = milliseconds(options.track_idle_s);
-  result.track_limits.order_wait = milliseconds(options.step_wait_s);
-  result.track_limits.store_bytes = static_cast<std::int64_t>(options.tracks_mib * kMiB);
+  result.http.turn_time = options.turn_time.value_or(result.http.request_time);
   // Each takes a thread for as long as it is open.
-  result.track_limits.streams = std::min(options.service.track_limits.streams, options.service.http.threads / 2);
-  result.track_limits.steps_waiting = std::max(1, options.service.http.threads / 4);
+  result.track_limits.streams = std::min(result.track_limits.streams, result.http.threads / 2);
+  result.track_limits.steps_waiting = std::max(1, result.http.threads / 4);
   return result;
 }
 
@@ -97,59 +75,85 @@ void also_from_file(CLI::App& command, const std::string& path) {
   }
 }
 
+/// Options that stand together in the help; all are above 0, and what they write into has their defaults.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& command, const char* name) : command_(command), name_(name) {}
+
+  template <typename Number>
+  void number(const char* name, Number& value, const char* text, double max = kMaxNumber) {
+    command_.add_option(name, value, text)->capture_default_str()->check(positive(max))->group(name_);
+  }
+  void seconds(const char* name, std::chrono::milliseconds& time, const char* text) {
+    seconds(name, text, [&time](double s) {
+      time = milliseconds(s);
+    })->default_str(fmt::format("{}", std::chrono::duration<double>(time).count()));
+  }
+  CLI::Option* seconds(const char* name, const char* text, const std::function<void(double)>& take) {
+    return command_.add_option_function<double>(name, take, text)->check(positive(kMaxSeconds))->group(name_);
+  }
+  template <typename Bytes>
+  void mib(const char* name, Bytes& bytes, const char* text) {
+    const auto take = [&bytes](std::size_t mib) { bytes = static_cast<Bytes>(mib * kMiB); };
+    command_.add_option_function<std::size_t>(name, take, text)
+        ->default_str(fmt::format("{}", static_cast<std::size_t>(bytes) / kMiB))
+        ->check(positive(kMaxMiB))
+        ->group(name_);
+  }
+
+ private:
+  CLI::App& command_;
+  const char* name_;
+};
+
 void add_limits(CLI::App& command, ServeOptions& o) {
+  auto& http = o.service.http;
   auto& limits = o.service.limits;
-  const auto add = [&](const char* name, auto& value, const char* text, double max = kMaxNumber) {
-    command.add_option(name, value, text)->capture_default_str()->check(positive(max))->group("Limits of one request");
-  };
-  add("--max-body", o.body_mib, "Body in MiB, after unpacking", kMaxMiB);
-  add("--body-time", o.body_time_s, "Seconds that a body may take to arrive", kMaxSeconds);
-  add("--max-pixels", limits.pixels, "Pixels of a picture");
-  add("--max-cells", limits.cells, "Cells of a window or feature map");
-  add("--max-poses", limits.poses, "Poses of a match");
-  add("--max-search", limits.search_km2, "Area of a search in km2");
-  add("--max-particles", limits.particles, "Particles of a track");
-  add("--request-time", o.request_time_s, "Seconds that an answer may take; searches count from their turn",
-      kMaxSeconds);
-  command
-      .add_option("--turn-time", o.turn_time_s,
-                  "Seconds that a search or detection may wait for its turn; default: --request-time")
-      ->check(positive(kMaxSeconds))
-      ->group("Limits of one request");
+  OptionGroup group(command, "Limits of one request");
+  group.mib("--max-body", http.body_bytes, "Body in MiB, after unpacking");
+  group.seconds("--body-time", http.body_time, "Seconds that a body may take to arrive");
+  group.number("--max-pixels", limits.pixels, "Pixels of a picture");
+  group.number("--max-cells", limits.cells, "Cells of a window or feature map");
+  group.number("--max-poses", limits.poses, "Poses of a match");
+  group.number("--max-search", limits.search_km2, "Area of a search in km2");
+  group.number("--max-particles", limits.particles, "Particles of a track");
+  group.seconds("--request-time", http.request_time, "Seconds that an answer may take; searches count from their turn");
+  group.seconds("--turn-time", "Seconds that a search or detection may wait for its turn; default: --request-time",
+                [&o](double s) { o.turn_time = milliseconds(s); });
 }
 
 void add_resources(CLI::App& command, ServeOptions& o) {
   auto& http = o.service.http;
-  const auto add = [&](const char* name, auto& value, const char* text, double max = kMaxNumber) {
-    return command.add_option(name, value, text)->capture_default_str()->check(positive(max))->group("Resources");
-  };
-  add("--threads", http.threads, "Connections served at the same time", kMaxThreads);
-  add("--searches", http.heavy_running, "Searches and detections at the same time");
-  add("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
-  add("--search-threads", o.service.search_threads,
-      "Threads of a search; searches that run at the same time share them", kMaxThreads);
-  add("--body-memory", o.all_bodies_mib,
-      "Bodies of all requests at once, MiB; further ones get 503. At least --max-body", kMaxMiB);
-  add("--idle-time", o.idle_time_s, "Seconds after which an idle connection is closed", kMaxSeconds);
-  add("--map-cache", o.map_cache_mib, "Decoded tiles in memory per map, MiB", kMaxMiB);
-  add("--search-cache", o.search_cache_mib, "Search data kept for later searches, per map, MiB", kMaxMiB);
-  add("--picture-cache", o.picture_cache_mib, "Rendered tiles in memory, MiB", kMaxMiB);
-  add("--max-tracks", o.service.track_limits.tracks, "Tracks at the same time");
-  add("--max-client-tracks", o.service.track_limits.tracks_per_client, "Tracks per client address");
-  add("--max-streams", o.service.track_limits.streams, "Event streams at the same time, at most half of --threads");
-  add("--tracks-size", o.tracks_mib, "Maximum size of the track file, MiB", kMaxMiB);
-  add("--step-wait", o.step_wait_s, "Seconds that a step waits for steps it overtook", kMaxSeconds);
-  add("--track-idle", o.track_idle_s, "Seconds without a step after which a track ends", kMaxSeconds);
-  add("--watch", o.watch_s, "Seconds between scans of the map folder", kMaxSeconds);
+  auto& tracks = o.service.track_limits;
+  OptionGroup group(command, "Resources");
+  group.number("--threads", http.threads, "Connections served at the same time", kMaxThreads);
+  group.number("--searches", http.heavy_running, "Searches and detections at the same time");
+  group.number("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
+  group.number("--search-threads", o.service.search_threads,
+               "Threads of a search; searches that run at the same time share them", kMaxThreads);
+  group.mib("--body-memory", http.all_bodies_bytes,
+            "Bodies of all requests at once, MiB; further ones get 503. At least --max-body");
+  group.seconds("--idle-time", http.idle_time, "Seconds after which an idle connection is closed");
+  group.mib("--map-cache", o.service.map_cache_bytes, "Decoded tiles in memory per map, MiB");
+  group.mib("--search-cache", o.service.search_cache_bytes, "Search data kept for later searches, per map, MiB");
+  group.mib("--picture-cache", o.service.picture_cache_bytes, "Rendered tiles in memory, MiB");
+  group.number("--max-tracks", tracks.tracks, "Tracks at the same time");
+  group.number("--max-client-tracks", tracks.tracks_per_client, "Tracks per client address");
+  group.number("--max-streams", tracks.streams, "Event streams at the same time, at most half of --threads");
+  group.mib("--tracks-size", tracks.store_bytes, "Maximum size of the track file, MiB");
+  group.seconds("--step-wait", tracks.order_wait, "Seconds that a step waits for steps it overtook");
+  group.seconds("--track-idle", tracks.idle, "Seconds without a step after which a track ends");
+  group.seconds("--watch", o.service.watch_interval, "Seconds between scans of the map folder");
 }
 
 /// Whatever they come from. Otherwise every body of the size that is allowed would be told to come again.
 void require_room_for_one_body(const ServeOptions& options) {
-  if (options.all_bodies_mib >= options.body_mib) return;
+  const http::ServerSettings& http = options.service.http;
+  if (http.all_bodies_bytes >= http.body_bytes) return;
   throw CLI::ValidationError(
-      "--body-memory", fmt::format("{} MiB hold no body of the {} MiB that --max-body allows: give {} or more, or a "
+      "--body-memory", fmt::format("{0} MiB hold no body of the {1} MiB that --max-body allows: give {1} or more, or a "
                                    "smaller --max-body",
-                                   options.all_bodies_mib, options.body_mib, options.body_mib));
+                                   http.all_bodies_bytes / kMiB, http.body_bytes / kMiB));
 }
 
 void run_serve(const ServeOptions& options) {

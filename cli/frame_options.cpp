@@ -38,23 +38,20 @@ auto decoded(const std::string& path, const auto& decode) {
   });
 }
 
-FrameCamera camera_of(const FrameOptions& options) {
-  if (options.fov_deg <= 0.0 && options.focal_px <= 0.0) throw CLI::RequiredError("--fov or --focal-px");
-  FrameCamera camera;
-  if (options.fov_deg > 0.0) camera.horizontal_fov = Angle::degrees(options.fov_deg);
-  if (options.focal_px > 0.0) camera.focal_px = options.focal_px;
-  if (!options.principal_px.empty()) camera.principal_px.emplace(options.principal_px[0], options.principal_px[1]);
-  if (options.fisheye) camera.lens = LensModel::kFisheye;
-  camera.distortion = options.distortion;
-  camera.agl_m = options.agl_m;
-  set_attitude(camera, options.roll_deg, options.pitch_deg);
+FrameCamera told_camera(const FrameCamera& camera) {
+  if (!camera.horizontal_fov && !camera.focal_px) throw CLI::RequiredError("--fov or --focal-px");
   return camera;
 }
 
-FrameCamera camera_in(const std::string& path, const FrameOptions& options) {
-  const KnownView known{options.agl_m > 0.0 ? std::optional(options.agl_m) : std::nullopt, options.roll_deg,
-                        options.pitch_deg};
+FrameCamera camera_in(const std::string& path, const FrameCamera& told) {
+  const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
   return decoded(path, [&](const auto& bytes) { return camera_of(drone_picture(read_picture_tags(bytes)), known); });
+}
+
+/// In degrees.
+CLI::Option* add_angle(CLI::App& command, const char* name, std::optional<Angle>& angle, const char* what) {
+  return command.add_option_function<double>(
+      name, [&angle](double degrees) { angle = Angle::degrees(degrees); }, what);
 }
 
 }  // namespace
@@ -66,16 +63,18 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
                       "The input is a rectified frame, as if seen straight from above: metres per pixel. For a camera "
                       "that may lean give its lens and --agl")
           ->check(positive());
-  auto* fov = command.add_option("--fov", o.fov_deg, "The input is a camera frame: field of view across, degrees")
-                  ->check(positive());
+  auto* fov =
+      add_angle(command, "--fov", o.camera.horizontal_fov, "The input is a camera frame: field of view across, degrees")
+          ->check(positive());
   auto* focal = command
-                    .add_option("--focal-px", o.focal_px,
+                    .add_option("--focal-px", o.camera.focal_px,
                                 "The input is a camera frame: focal length in pixels, as a calibration gives it")
                     ->check(positive())
                     ->excludes(fov);
-  auto* agl = command.add_option("--agl", o.agl_m, "Altitude above ground in metres, with --fov, --focal-px or --exif")
-                  ->check(positive())
-                  ->excludes(gsd);
+  auto* agl =
+      command.add_option("--agl", o.camera.agl_m, "Altitude above ground in metres, with --fov, --focal-px or --exif")
+          ->check(positive())
+          ->excludes(gsd);
   auto* exif =
       command
           .add_flag("--exif", o.camera_in_file,
@@ -86,24 +85,31 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
           ->excludes(focal);
   fov->needs(agl);
   focal->needs(agl);
-  command.add_option("--roll", o.roll_deg, "Roll of the camera in degrees, right side down, 0 = straight down")
+  add_angle(command, "--roll", o.camera.roll, "Roll of the camera in degrees, right side down, 0 = straight down")
       ->needs(agl);
+  add_angle(command, "--pitch", o.camera.pitch,
+            "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
+      ->needs(agl);
+  const auto set_principal = [&o](const std::vector<double>& at) { o.camera.principal_px.emplace(at[0], at[1]); };
   command
-      .add_option("--pitch", o.pitch_deg, "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
-      ->needs(agl);
-  command.add_option("--principal-px", o.principal_px, "Principal point in pixels (default: the middle of the frame)")
+      .add_option_function<std::vector<double>>("--principal-px", set_principal,
+                                                "Principal point in pixels (default: the middle of the frame)")
       ->type_name("X,Y")
       ->delimiter(',')
       ->expected(2)
       ->needs(focal);
   command
-      .add_option("--distortion", o.distortion,
+      .add_option("--distortion", o.camera.distortion,
                   "Lens distortion by OpenCV's model (ROS: plumb_bob, rational_polynomial), of --fisheye K1,K2,K3,K4")
       ->type_name("K1,K2,P1,P2[,K3[,K4,K5,K6]]")
       ->delimiter(',')
       ->expected(4, 8)
       ->needs(focal);
-  command.add_flag("--fisheye", o.fisheye, "The lens is a fisheye (OpenCV's model; ROS: equidistant)")->needs(focal);
+  command
+      .add_flag_callback(
+          "--fisheye", [&o] { o.camera.lens = LensModel::kFisheye; },
+          "The lens is a fisheye (OpenCV's model; ROS: equidistant)")
+      ->needs(focal);
   command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen");
   return {gsd, agl, exif};
 }
@@ -116,7 +122,11 @@ void require_frame_for(const FrameOptions& options) {
 SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
   const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_frame(bytes, kMaxPixels); });
   std::optional<FrameCamera> camera;
-  if (options.camera()) camera = options.camera_in_file ? camera_in(path, options) : camera_of(options);
+  if (options.camera_in_file) {
+    camera = camera_in(path, options.camera);
+  } else if (options.has_camera()) {
+    camera = told_camera(options.camera);
+  }
   const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
   return said_of(path, [&] {
     GroundView view =

@@ -14,18 +14,11 @@ namespace roadfix::cli {
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
   bool camera_in_file = false;
-  double fov_deg = 0.0;
-  double focal_px = 0.0;
-  std::vector<double> principal_px;
-  bool fisheye = false;
-  std::vector<double> distortion;
-  double agl_m = 0.0;
-  std::optional<double> roll_deg;
-  std::optional<double> pitch_deg;
+  FrameCamera camera;  ///< what is told of it; without a height nothing is
   bool black_unseen = false;
 
-  bool given() const { return gsd_m > 0.0 || camera(); }
-  bool camera() const { return camera_in_file || agl_m > 0.0; }
+  bool given() const { return gsd_m > 0.0 || has_camera(); }
+  bool has_camera() const { return camera_in_file || camera.agl_m > 0.0; }
 };
 
 /// Adds --gsd, the camera's --exif, --fov or --focal-px and what goes with them, and --black-unseen; `options` must

@@ -121,9 +121,9 @@ std::optional<Frame> frame_of(const fs::path& file, const fs::path& table_folder
   return Frame{name, sequence, std::move(picture), *agl_m};
 }
 
-/// With two decimals, and without the sign of a zero.
-std::string hundredths(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", std::round(*value * 100.0) / 100.0 + 0.0) : "";
+/// Degrees with two decimals, and without the sign of a zero.
+std::string hundredths(const std::optional<Angle>& angle) {
+  return angle ? fmt::format("{:.2f}", std::round(angle->degrees() * 100.0) / 100.0 + 0.0) : "";
 }
 
 std::string row_of(const Frame& frame) {
@@ -133,7 +133,7 @@ std::string row_of(const Frame& frame) {
       p.principal_px ? fmt::format("{:.2f} {:.2f}", p.principal_px->x, p.principal_px->y) : "";
   return fmt::format("{},{},{},{:.8f},{:.8f},{:.2f},{:.2f},{:.2f},{},{},{},{}\n", frame.name, frame.sequence, time,
                      p.place->lat_deg, p.place->lon_deg, p.heading->compass_degrees(), frame.agl_m, p.focal_px.value(),
-                     hundredths(p.roll_deg), hundredths(p.pitch_deg), principal, fmt::join(p.distortion, " "));
+                     hundredths(p.roll), hundredths(p.pitch), principal, fmt::join(p.distortion, " "));
 }
 
 void run_frames(const FramesOptions& options) {

@@ -46,6 +46,10 @@ class Row {
     if (!has(name)) return std::nullopt;
     return number(name, low, high);
   }
+  Angle angle(std::string_view name) const { return Angle::degrees(number(name, -360.0, 360.0)); }
+  std::optional<Angle> optional_angle(std::string_view name) const {
+    return has(name) ? std::optional(angle(name)) : std::nullopt;
+  }
   std::vector<double> numbers(std::string_view name) const {
     std::vector<double> values;
     for (const std::string_view part : split(text(name), ' ')) {
@@ -71,15 +75,13 @@ class Row {
 FrameCamera camera_of(const Row& row) {
   FrameCamera camera;
   camera.agl_m = row.number("agl_m", 0.0, kAnyNumber);
-  if (const auto fov_deg = row.optional_number("fov_deg", -360.0, 360.0)) {
-    camera.horizontal_fov = Angle::degrees(*fov_deg);
-  }
+  camera.horizontal_fov = row.optional_angle("fov_deg");
   camera.focal_px = row.optional_number("focal_px", -kAnyNumber, kAnyNumber);
   if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
     row.refuse("agl_m needs either fov_deg or focal_px");
   }
-  const auto roll_deg = row.optional_number("roll_deg", -360.0, 360.0);
-  set_attitude(camera, roll_deg, row.optional_number("pitch_deg", -360.0, 360.0));
+  camera.roll = row.optional_angle("roll_deg");
+  camera.pitch = row.optional_angle("pitch_deg");
   if (row.has("principal_px")) {
     const std::vector<double> principal = row.numbers("principal_px");
     if (principal.size() != 2) row.refuse("principal_px must be two numbers with a blank between");
@@ -100,8 +102,7 @@ FrameTruth frame_of(const Row& row) {
   if (!row.has("file")) row.refuse("the column 'file' is empty");
   FrameTruth frame;
   frame.file = std::string(row.text("file"));
-  frame.pose = {{row.number("lat", -90.0, 90.0), row.number("lon", -180.0, 180.0)},
-                Angle::degrees(row.number("heading_deg", -360.0, 360.0))};
+  frame.pose = {{row.number("lat", -90.0, 90.0), row.number("lon", -180.0, 180.0)}, row.angle("heading_deg")};
   if (row.has("gsd_m") == row.has("agl_m")) {
     row.refuse("give gsd_m for a frame seen straight from above, or agl_m with fov_deg or focal_px for any other");
   }

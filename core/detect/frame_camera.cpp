@@ -29,14 +29,6 @@ double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2);
 
 }  // namespace
 
-void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg) {
-  const auto told = [](std::optional<double> degrees) {
-    return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
-  };
-  camera.roll = told(roll_deg);
-  camera.pitch = told(pitch_deg);
-}
-
 void validate(const FrameCamera& camera, cv::Size frame) {
   if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
     throw InvalidInput("frame-camera", "frame: give either the field of view or the focal length");

@@ -38,9 +38,6 @@ struct FrameCamera {
   Angle assumed_pitch() const { return pitch.value_or(Angle()); }
 };
 
-/// What was told of roll and pitch.
-void set_attitude(FrameCamera& camera, std::optional<double> roll_deg, std::optional<double> pitch_deg);
-
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
 void validate(const FrameCamera& camera, cv::Size frame);
 

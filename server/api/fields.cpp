@@ -120,6 +120,11 @@ double Fields::number(const std::string& name, const Range& range) const {
   return *value;
 }
 
+std::optional<Angle> Fields::optional_angle(const std::string& name, const Range& range) const {
+  const auto degrees = optional_number(name, range);
+  return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
+}
+
 std::optional<double> Fields::whole_number(const std::string& name, const Range& range) const {
   const auto value = optional_number(name, range);
   if (value && *value != std::floor(*value)) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/units/angle.hpp"
 #include "server/http/message.hpp"
 
 namespace roadfix::api {
@@ -44,6 +45,8 @@ class Fields {
   /// Throws InvalidField ("missing-parameter", "bad-parameter", "parameter-out-of-range"), as do those below.
   double number(const std::string& name, const Range& range) const;
   std::optional<double> optional_number(const std::string& name, const Range& range) const;
+  /// Of degrees.
+  std::optional<Angle> optional_angle(const std::string& name, const Range& range) const;
   int integer(const std::string& name, int min, int max) const;
   std::optional<int> optional_integer(const std::string& name, int min, int max) const;
   /// Up to kMaxExactInteger, as numbers of steps and times may be.

@@ -38,8 +38,7 @@ void refuse(const Fields& fields, const std::vector<std::string>& names, std::st
 
 FrameCamera told_camera(const Fields& fields) {
   FrameCamera camera;
-  if (const auto fov = fields.optional_number("fov_deg", {0.0, 179.0, true}))
-    camera.horizontal_fov = Angle::degrees(*fov);
+  camera.horizontal_fov = fields.optional_angle("fov_deg", {0.0, 179.0, true});
   camera.focal_px = fields.optional_number("focal_px", kPositive);
   if (camera.horizontal_fov) refuse(fields, {"focal_px"}, "fov_deg: the focal length tells how wide the lens sees");
   if (!camera.horizontal_fov && !camera.focal_px) {
@@ -53,14 +52,14 @@ FrameCamera told_camera(const Fields& fields) {
   }
   camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
   camera.agl_m = fields.number("agl_m", kHeight);
-  const auto roll_deg = fields.optional_number("roll_deg", kQuarterTurn);
-  set_attitude(camera, roll_deg, fields.optional_number("pitch_deg", kQuarterTurn));
+  camera.roll = fields.optional_angle("roll_deg", kQuarterTurn);
+  camera.pitch = fields.optional_angle("pitch_deg", kQuarterTurn);
   return camera;
 }
 
 FrameCamera camera_in(std::span<const std::uint8_t> picture, const Fields& fields) {
-  const KnownView known{fields.optional_number("agl_m", kHeight), fields.optional_number("roll_deg", kQuarterTurn),
-                        fields.optional_number("pitch_deg", kQuarterTurn)};
+  const KnownView known{fields.optional_number("agl_m", kHeight), fields.optional_angle("roll_deg", kQuarterTurn),
+                        fields.optional_angle("pitch_deg", kQuarterTurn)};
   return camera_of(drone_picture(read_picture_tags(picture)), known);
 }
 

@@ -51,7 +51,7 @@ PositionFormat parse_position_format(const http::Request& request, const Fields&
   format.name = media.name;
   format.type = media.type;
   format.altitude_msl_m = fields.optional_number("alt_m", {-1000.0, 50'000.0});
-  format.camera_yaw = Angle::degrees(fields.optional_number("camera_yaw_deg", kDegrees).value_or(0.0));
+  format.camera_yaw = fields.optional_angle("camera_yaw_deg", kDegrees).value_or(Angle());
   format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
   format.sender.system = static_cast<std::uint8_t>(fields.optional_integer("system", 1, 255).value_or(1));
   if (const auto component = fields.optional_integer("component", 1, 255)) {

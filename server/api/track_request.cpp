@@ -25,8 +25,8 @@ VehicleNoise parse_vehicle(const Fields& fields) {
     VehicleNoise::Planar planar;
     planar.speed_m_s = {*speed, fields.optional_number("speed_sigma_m_s", {0.0, 300.0}).value_or(2.0)};
     planar.turn_rate_rad_s = {
-        Angle::degrees(fields.optional_number("turn_rate_deg_s", kDegrees).value_or(0.0)).radians(),
-        Angle::degrees(fields.optional_number("turn_rate_sigma_deg_s", {0.0, 360.0}).value_or(5.0)).radians()};
+        fields.optional_angle("turn_rate_deg_s", kDegrees).value_or(Angle()).radians(),
+        fields.optional_angle("turn_rate_sigma_deg_s", {0.0, 360.0}).value_or(Angle::degrees(5.0)).radians()};
     noise.planar = planar;
   } else {
     for (const char* name : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {

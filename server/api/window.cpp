@@ -87,7 +87,7 @@ WindowRequest parse_window(const Fields& fields) {
   request.width_m = fields.number("width_m", {0.0, kMaxSideM, true});
   request.height_m = fields.number("height_m", {0.0, kMaxSideM, true});
   request.cell_m = fields.optional_number("cell_m", {0.0, kMaxWindowCellM, true});
-  if (const auto heading = fields.optional_number("heading_deg", kDegrees)) request.heading = Angle::degrees(*heading);
+  request.heading = fields.optional_angle("heading_deg", kDegrees);
   return request;
 }
 

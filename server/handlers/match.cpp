@@ -19,7 +19,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
       api::read_content(request, joined(joined(match_fields(), {"poses"}), api::flight_members()), service.limits);
   const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
   MatchOptions options;
-  options.heading_step = Angle::degrees(content.fields.optional_number("heading_step_deg", {0.0, 90.0}).value_or(0.0));
+  options.heading_step = content.fields.optional_angle("heading_step_deg", {0.0, 90.0}).value_or(Angle());
   const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features =
       api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());

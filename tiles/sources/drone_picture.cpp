@@ -42,6 +42,12 @@ std::optional<double> number(const Tags& tags, const char* name) {
   return all.size() == 1 ? std::optional(all.front()) : std::nullopt;
 }
 
+/// Of degrees.
+std::optional<Angle> angle(const Tags& tags, const char* name) {
+  const auto degrees = number(tags, name);
+  return degrees ? std::optional(Angle::degrees(*degrees)) : std::nullopt;
+}
+
 std::optional<double> degrees_of(const Tags& exif, const char* name, const char* reference, char negative) {
   const auto parts = numbers(exif, name);
   const auto side = exif.find(reference);
@@ -83,20 +89,19 @@ std::optional<double> time_of(const Tags& exif) {
 void set_gimbal(DronePicture& picture, Angle yaw, Angle pitch, Angle roll) {
   const Angle up = pitch + Angle::degrees(90.0);
   picture.heading = (yaw + Angle::radians(std::atan2(sin(roll), cos(up) * cos(roll)))).wrapped();
-  picture.pitch_deg = Angle::radians(std::asin(sin(up) * cos(roll))).degrees();
-  picture.roll_deg = Angle::radians(std::atan2(sin(up) * sin(roll), cos(up))).degrees();
+  picture.pitch = Angle::radians(std::asin(sin(up) * cos(roll)));
+  picture.roll = Angle::radians(std::atan2(sin(up) * sin(roll), cos(up)));
 }
 
 void set_attitude(DronePicture& picture, const Tags& xmp) {
-  const auto gimbal_yaw = number(xmp, "GimbalYawDegree");
-  const auto gimbal_pitch = number(xmp, "GimbalPitchDegree");
+  const auto gimbal_yaw = angle(xmp, "GimbalYawDegree");
+  const auto gimbal_pitch = angle(xmp, "GimbalPitchDegree");
   if (gimbal_yaw && gimbal_pitch) {
-    set_gimbal(picture, Angle::degrees(*gimbal_yaw), Angle::degrees(*gimbal_pitch),
-               Angle::degrees(number(xmp, "GimbalRollDegree").value_or(0.0)));
-  } else if (const auto yaw = number(xmp, "Yaw")) {
-    picture.heading = Angle::degrees(*yaw).wrapped();
-    picture.pitch_deg = number(xmp, "Pitch");
-    picture.roll_deg = number(xmp, "Roll");
+    set_gimbal(picture, *gimbal_yaw, *gimbal_pitch, angle(xmp, "GimbalRollDegree").value_or(Angle()));
+  } else if (const auto yaw = angle(xmp, "Yaw")) {
+    picture.heading = yaw->wrapped();
+    picture.pitch = angle(xmp, "Pitch");
+    picture.roll = angle(xmp, "Roll");
   }
 }
 
@@ -211,8 +216,8 @@ FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
   camera.distortion = picture.distortion;
   camera.agl_m = known.agl_m.value_or(picture.agl_m.value_or(picture.takeoff_m.value_or(0.0)));
   if (camera.agl_m <= 0.0) refuse("a height above ground (RelativeAltitude or AboveGroundAltitude): give it besides");
-  set_attitude(camera, known.roll_deg ? known.roll_deg : picture.roll_deg,
-               known.pitch_deg ? known.pitch_deg : picture.pitch_deg);
+  camera.roll = known.roll ? known.roll : picture.roll;
+  camera.pitch = known.pitch ? known.pitch : picture.pitch;
   return camera;
 }
 

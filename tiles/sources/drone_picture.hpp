@@ -26,8 +26,8 @@ struct DronePicture {
   std::optional<double> agl_m;      ///< height above ground
   std::optional<double> takeoff_m;  ///< height above the place of the take-off
   std::optional<Angle> heading;     ///< of the frame's upper edge
-  std::optional<double> roll_deg;   ///< with `heading`, as FrameCamera has them: 0 = straight down
-  std::optional<double> pitch_deg;  ///< likewise
+  std::optional<Angle> roll;        ///< with `heading`, as FrameCamera has them: 0 = straight down
+  std::optional<Angle> pitch;       ///< likewise
   std::optional<double> focal_px;   ///< of the picture as it is, also where it was made smaller; none with a doubt
   std::optional<cv::Point2d> principal_px;
   std::vector<double> distortion;  ///< by OpenCV's model; empty where the picture has none any more, or none is told
@@ -39,8 +39,8 @@ DronePicture drone_picture(const PictureTags& tags);
 /// What somebody knows better than the picture's file.
 struct KnownView {
   std::optional<double> agl_m;
-  std::optional<double> roll_deg;
-  std::optional<double> pitch_deg;
+  std::optional<Angle> roll;
+  std::optional<Angle> pitch;
 };
 
 /// The camera that took it. Where only the height above the take-off is told, the ground below is taken to be as high

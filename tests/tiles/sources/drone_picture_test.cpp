@@ -41,7 +41,8 @@ cv::Matx33d about(int axis, double degrees) {
 /// Of FrameCamera: its axes right, back and down in NED.
 cv::Matx33d axes_of(const DronePicture& picture) {
   FrameCamera camera;
-  set_attitude(camera, picture.roll_deg, picture.pitch_deg);
+  camera.roll = picture.roll;
+  camera.pitch = picture.pitch;
   const double c = cos(picture.heading.value());
   const double s = sin(picture.heading.value());
   return cv::Matx33d{-s, -c, 0, c, -s, 0, 0, 0, 1} * level_from_camera(camera);
@@ -67,8 +68,8 @@ TEST(DronePicture, LooksWhereItsGimbalPointed) {
 TEST(DronePicture, TakesTheAnglesOfPix4dAsTheyAre) {
   const DronePicture picture = of_xmp({{"Yaw", "-92.7"}, {"Pitch", "3.1"}, {"Roll", "-1.5"}});
   EXPECT_NEAR(picture.heading.value().degrees(), -92.7, 1e-9);
-  EXPECT_THAT(picture.pitch_deg, near_to(3.1));
-  EXPECT_THAT(picture.roll_deg, near_to(-1.5));
+  EXPECT_NEAR(picture.pitch.value().degrees(), 3.1, 1e-9);
+  EXPECT_NEAR(picture.roll.value().degrees(), -1.5, 1e-9);
 }
 
 TEST(DronePicture, TellsHeightAboveGroundFromHeightAboveTheTakeOff) {

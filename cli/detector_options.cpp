@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/number_checks.hpp"
+#include "cli/unit_options.hpp"
 
 namespace roadfix::cli {
 
@@ -36,10 +37,8 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
   add("--tree-epsilon", o.tree.epsilon, "Grey levels added to B of equation (3); default: 4");
   add("--tree-edge", o.tree.edge_px, "Length of an edge in pixels; default: 12");
   add("--tree-fan", o.tree.fan, "Edges proposed from a node; default: 7");
-  command
-      .add_option_function<double>(
-          "--tree-fan-width", [&o](double degrees) { o.tree.fan_half_width = Angle::degrees(degrees); },
-          "Half the angle of the fan in degrees; default: 40")
+  add_degrees_option(command, "--tree-fan-width", o.tree.fan_half_width,
+                     "Half the angle of the fan in degrees; default: 40")
       ->group(kGroup);
   add("--tree-root-fan", o.tree.root_fan, "Edges proposed from the root, all around; default: 16");
   add("--tree-nodes", o.tree.max_nodes, "End of a tree: number of nodes; default: 200")->check(positive(kMaxNodes));

@@ -14,6 +14,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/unit_options.hpp"
 #include "core/locate/fix.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
@@ -32,8 +33,6 @@ struct FixArguments {
   std::optional<GeoBox> bbox;
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
-  std::optional<double> time_limit_s;
-  double proof_s = 0.0;
   std::string calibration;
   FixOptions fix;
   bool as_json = false;
@@ -92,8 +91,6 @@ void run_fix(const FixArguments& options) {
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.own_frame = std::move(input.own_frame);
   fix_options.stop = stop_on_signals();
-  if (options.time_limit_s) fix_options.time_limit = milliseconds(*options.time_limit_s);
-  fix_options.proof_time = milliseconds(options.proof_s);
   Progress progress("searching", "headings");
   const auto began = std::chrono::steady_clock::now();
   fix_options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -157,9 +154,11 @@ void add_fix_command(CLI::App& app) {
           "otherwise 0)")
       ->check(not_negative(1000.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
-  command->add_option("--proof", o->proof_s, "Search this many seconds for a better place than the best candidate")
+  add_seconds_option(*command, "--proof", o->fix.proof_time,
+                     "Search this many seconds for a better place than the best candidate")
       ->check(positive());
-  command->add_option("--time-limit", o->time_limit_s, "End the search after this many seconds and report what it has")
+  add_seconds_option(*command, "--time-limit", o->fix.time_limit,
+                     "End the search after this many seconds and report what it has")
       ->check(positive());
   command->add_flag("--json", o->as_json, "The answer of the service as JSON");
   command->callback([o] { run_fix(*o); });

@@ -17,12 +17,6 @@
 namespace roadfix::cli {
 namespace {
 
-fly::Handling handling_of(const FlyOptions& options) {
-  fly::Handling handling = options.plan.handling;
-  handling.turn_rate = Angle::degrees(options.turn_rate_deg);
-  return handling;
-}
-
 void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
   if (options.server.empty()) {
     throw InvalidInput("frames-without-service",
@@ -37,12 +31,6 @@ void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
                        "with --send frames the service detects roads by its own detector: give --detector, --model and "
                        "--orientations to roadfix serve");
   }
-}
-
-fly::CameraErrors camera_errors_of(const FlyOptions& options) {
-  fly::CameraErrors errors = options.camera;
-  errors.attitude = Angle::degrees(options.attitude_deg);
-  return errors;
 }
 
 void look_at_map(const FlyOptions& options, const MapView& map, Ground& ground) {
@@ -60,10 +48,9 @@ void look_at_map(const FlyOptions& options, const MapView& map, Ground& ground) 
 void look_at_imagery(const FlyOptions& options, const MapView& map, Ground& ground) {
   ground.imagery = read_orthoimage(options.over, map.zone);
   ground.box = ground.imagery->box();
-  const fly::CameraErrors errors = camera_errors_of(options);
   ground.sensor = ground.detector ? fly::make_imaging_sensor(*ground.imagery, *ground.detector, ground.footprint,
-                                                             errors, map.cell_m)
-                                  : fly::make_camera(*ground.imagery, ground.footprint, errors, map.cell_m);
+                                                             options.camera, map.cell_m)
+                                  : fly::make_camera(*ground.imagery, ground.footprint, options.camera, map.cell_m);
 }
 
 void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& ground) {
@@ -99,7 +86,7 @@ GridBox flying_box(const Footprint& footprint, const GridBox& map, const GridBox
 
 std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options, const GridBox& box,
                                                        const UtmZone& zone) {
-  const fly::Handling handling = handling_of(options);
+  const fly::Handling handling = options.plan.handling;
   if (options.course == "random") return [=] { return fly::make_random_pilot(box, handling); };
   const auto points =
       options.course == "survey" ? fly::survey_lanes(box, options.lane_m) : fly::read_waypoints(options.course, zone);
@@ -194,9 +181,6 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
 fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
   fly::FlightPlan plan = options.plan;
   plan.steps = options.steps.value_or(plan.steps);
-  plan.handling = handling_of(options);
-  plan.odometry.turn = Angle::degrees(options.turn_noise_deg);
-  plan.odometry.turn_drift = Angle::degrees(options.turn_drift_deg);
   plan.tells_odometry = !options.no_odometry;
   plan.registration_m =
       options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m(map.extent.centre()));
@@ -219,7 +203,7 @@ VehicleNoise vehicle_of(const FlyOptions& options) {
   vehicle.wind = Wind::of(options.wind_sigma_m_s, options.wind_walk);
   vehicle.scale_range = options.scale_range;
   if (!options.no_odometry) return vehicle;
-  const fly::Handling handling = handling_of(options);
+  const fly::Handling& handling = options.plan.handling;
   vehicle.planar =
       VehicleNoise::Planar{{handling.speed_m_s, 0.1 * handling.speed_m_s}, {0.0, 0.5 * handling.turn_rate.radians()}};
   return vehicle;

@@ -1,11 +1,20 @@
 #include "cli/fly_options.hpp"
 
+#include <fmt/format.h>
+
 #include "cli/fly/localizer.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/unit_options.hpp"
 
 namespace roadfix::cli {
 namespace {
+
+CLI::Option* add_angle(CLI::App& command, const char* name, Angle& angle, const char* what) {
+  return add_degrees_option(command, name, angle, what)
+      ->default_str(fmt::format("{:g}", angle.degrees()))
+      ->check(not_negative());
+}
 
 void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_option("map", o.map, "Map file (GeoPackage) to localize on")->required();
@@ -68,7 +77,7 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
   add("--step-s", o.plan.handling.step_s, "Seconds between steps; of a recorded flight where it has no times")
       ->check(positive());
   add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(not_negative());
-  add("--turn-rate", o.turn_rate_deg, "Fastest turn in degrees per second")->check(not_negative());
+  add_angle(command, "--turn-rate", o.plan.handling.turn_rate, "Fastest turn in degrees per second")->group(kGroup);
   add("--footprint-m", o.footprint_m, "Ground that a frame shows: side, or width,height")
       ->delimiter(',')
       ->expected(1, 2)
@@ -94,11 +103,14 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
   };
   add("--odometry-noise", o.plan.odometry.share, "Odometry: share of the distance, each step and axis");
   add("--odometry-scale", o.plan.odometry.scale, "Odometry: scale, once for a flight");
-  add("--turn-noise", o.turn_noise_deg, "Odometry: degrees of each step's turn");
-  add("--turn-drift", o.turn_drift_deg, "Odometry: degrees per second, once for a flight");
+  add_angle(command, "--turn-noise", o.plan.odometry.turn, "Odometry: degrees of each step's turn")->group(kGroup);
+  add_angle(command, "--turn-drift", o.plan.odometry.turn_drift, "Odometry: degrees per second, once for a flight")
+      ->group(kGroup);
   add("--wind", o.plan.odometry.wind_m_s,
       "Odometry: metres per second and axis of a wind that it does not feel, once for a flight");
-  add("--attitude", o.attitude_deg, "Imagery: degrees of roll and pitch not known to the rectification");
+  add_angle(command, "--attitude", o.camera.attitude,
+            "Imagery: degrees of roll and pitch not known to the rectification")
+      ->group(kGroup);
   add("--altitude", o.camera.altitude, "Imagery: relative error of the altitude, in every frame");
   add("--altitude-bias", o.plan.altitude_bias,
       "Relative error of the altitude, once for a flight; recorded frames are as they are");

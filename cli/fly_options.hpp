@@ -24,17 +24,13 @@ struct FlyOptions {
   std::vector<double> footprint_m{400.0};
   fly::FlightPlan plan;
   std::optional<int> steps;  ///< default: those of the plan; of a recorded flight all
-  double turn_rate_deg = 10.0;
   std::optional<double> wind_sigma_m_s;
   std::optional<double> wind_walk;
   double scale_range = 0.0;
-  double turn_noise_deg = 0.3;
-  double turn_drift_deg = 0.05;
   bool no_odometry = false;
   std::vector<int> outage;               ///< first step without frames and the first with them again; empty = none
   std::vector<double> kidnap;            ///< step and metres; empty = none
   std::optional<double> registration_m;  ///< default: what the map says of itself
-  double attitude_deg = 1.0;
   fly::CameraErrors camera;
   FeatureQuality quality{0.2, 0.2, 0.0, 2.0, 0.0, 0.0};
   DetectorChoice detector;

@@ -7,6 +7,7 @@
 
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/unit_options.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
@@ -48,12 +49,6 @@ FrameCamera camera_in(const std::string& path, const FrameCamera& told) {
   return decoded(path, [&](const auto& bytes) { return camera_of(drone_picture(read_picture_tags(bytes)), known); });
 }
 
-/// In degrees.
-CLI::Option* add_angle(CLI::App& command, const char* name, std::optional<Angle>& angle, const char* what) {
-  return command.add_option_function<double>(
-      name, [&angle](double degrees) { angle = Angle::degrees(degrees); }, what);
-}
-
 }  // namespace
 
 std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) {
@@ -63,9 +58,9 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
                       "The input is a rectified frame, as if seen straight from above: metres per pixel. For a camera "
                       "that may lean give its lens and --agl")
           ->check(positive());
-  auto* fov =
-      add_angle(command, "--fov", o.camera.horizontal_fov, "The input is a camera frame: field of view across, degrees")
-          ->check(positive());
+  auto* fov = add_degrees_option(command, "--fov", o.camera.horizontal_fov,
+                                 "The input is a camera frame: field of view across, degrees")
+                  ->check(positive());
   auto* focal = command
                     .add_option("--focal-px", o.camera.focal_px,
                                 "The input is a camera frame: focal length in pixels, as a calibration gives it")
@@ -85,10 +80,11 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
           ->excludes(focal);
   fov->needs(agl);
   focal->needs(agl);
-  add_angle(command, "--roll", o.camera.roll, "Roll of the camera in degrees, right side down, 0 = straight down")
+  add_degrees_option(command, "--roll", o.camera.roll,
+                     "Roll of the camera in degrees, right side down, 0 = straight down")
       ->needs(agl);
-  add_angle(command, "--pitch", o.camera.pitch,
-            "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
+  add_degrees_option(command, "--pitch", o.camera.pitch,
+                     "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
       ->needs(agl);
   const auto set_principal = [&o](const std::vector<double>& at) { o.camera.principal_px.emplace(at[0], at[1]); };
   command

@@ -13,6 +13,7 @@
 #include "cli/feature_input.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/unit_options.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
@@ -29,8 +30,7 @@ struct MatchArguments {
   FeatureInputOptions input;
   std::vector<std::string> poses;
   std::string poses_file;
-  double heading_step_deg = 0.0;
-  int threads = 1;
+  MatchOptions match;
   bool as_json = false;
 };
 
@@ -91,9 +91,7 @@ void run_match(const MatchArguments& options) {
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
   const MapView view = view_of_file(options.map);
   const FeatureInput input = read_feature_input(options.input, view.cell_m);
-  MatchOptions match_options;
-  match_options.heading_step = Angle::degrees(options.heading_step_deg);
-  match_options.threads = options.threads;
+  MatchOptions match_options = options.match;
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.features, poses, match_options);
   if (options.as_json) {
@@ -113,11 +111,10 @@ void add_match_command(CLI::App& app) {
   add_feature_input_options(*command, o->input);
   command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");
   command->add_option("--poses", o->poses_file, "CSV file with one such pose per line");
-  command
-      ->add_option("--heading-step", o->heading_step_deg,
-                   "Round headings to this many degrees and positions to cells: faster for many poses")
+  add_degrees_option(*command, "--heading-step", o->match.heading_step,
+                     "Round headings to this many degrees and positions to cells: faster for many poses")
       ->check(CLI::Range(0.0, 90.0));
-  add_threads_option(*command, "--threads", o->threads, "Threads");
+  add_threads_option(*command, "--threads", o->match.threads, "Threads");
   command->add_flag("--json", o->as_json, "Answer as JSON");
   command->callback([o] { run_match(*o); });
 }

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,6 +20,7 @@
 #include "cli/open_files.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/unit_options.hpp"
 #include "server/application.hpp"
 
 namespace roadfix::cli {
@@ -85,12 +85,10 @@ class OptionGroup {
     command_.add_option(name, value, text)->capture_default_str()->check(positive(max))->group(name_);
   }
   void seconds(const char* name, std::chrono::milliseconds& time, const char* text) {
-    seconds(name, text, [&time](double s) {
-      time = milliseconds(s);
-    })->default_str(fmt::format("{}", std::chrono::duration<double>(time).count()));
+    add_seconds(name, time, text)->default_str(fmt::format("{}", std::chrono::duration<double>(time).count()));
   }
-  CLI::Option* seconds(const char* name, const char* text, const std::function<void(double)>& take) {
-    return command_.add_option_function<double>(name, take, text)->check(positive(kMaxSeconds))->group(name_);
+  void seconds(const char* name, std::optional<std::chrono::milliseconds>& time, const char* text) {
+    add_seconds(name, time, text);
   }
   template <typename Bytes>
   void mib(const char* name, Bytes& bytes, const char* text) {
@@ -102,6 +100,10 @@ class OptionGroup {
   }
 
  private:
+  CLI::Option* add_seconds(const char* name, auto& time, const char* text) {
+    return add_seconds_option(command_, name, time, text)->check(positive(kMaxSeconds))->group(name_);
+  }
+
   CLI::App& command_;
   const char* name_;
 };
@@ -118,8 +120,8 @@ void add_limits(CLI::App& command, ServeOptions& o) {
   group.number("--max-search", limits.search_km2, "Area of a search in km2");
   group.number("--max-particles", limits.particles, "Particles of a track");
   group.seconds("--request-time", http.request_time, "Seconds that an answer may take; searches count from their turn");
-  group.seconds("--turn-time", "Seconds that a search or detection may wait for its turn; default: --request-time",
-                [&o](double s) { o.turn_time = milliseconds(s); });
+  group.seconds("--turn-time", o.turn_time,
+                "Seconds that a search or detection may wait for its turn; default: --request-time");
 }
 
 void add_resources(CLI::App& command, ServeOptions& o) {

@@ -69,19 +69,13 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
       fmt::format("{}: tracks cannot be stored here ({}): start the service with --tracks FILE", file, detail)));
 }
 
-/// What a query answers that asks for one number.
-std::int64_t number(sqlite::Connection& connection, std::string_view query) {
-  sqlite::Statement row(connection, query);
-  row.step();
-  return row.integer(0);
-}
-
 /// Whether the file holds tables, but not those that any version of this store begins with.
 bool is_of_another_program(sqlite::Connection& connection, std::int64_t version) {
-  if (number(connection, "SELECT count(*) FROM sqlite_master") == 0) return false;
-  return version == 0 || number(connection,
-                                "SELECT count(*) FROM pragma_table_info('tracks') WHERE name IN ('id', 'client', "
-                                "'request', 'map', 'counters', 'particles')") != 6;
+  if (sqlite::number(connection, "SELECT count(*) FROM sqlite_master") == 0) return false;
+  return version == 0 ||
+         sqlite::number(connection,
+                        "SELECT count(*) FROM pragma_table_info('tracks') WHERE name IN ('id', 'client', "
+                        "'request', 'map', 'counters', 'particles')") != 6;
 }
 
 const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
@@ -110,7 +104,7 @@ class TrackStore::Impl {
       connection_.emplace(path_, sqlite::Access::kCreate, store_error);
       // Who holds the file holds it as long as it runs, and others ask in the meantime.
       connection_->execute("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE");
-      return number(*connection_, "PRAGMA user_version");
+      return sqlite::number(*connection_, "PRAGMA user_version");
     });
     if (with([&] { return is_of_another_program(*connection_, version); })) {
       throw IoFailure("track-store-unavailable",

@@ -35,16 +35,12 @@ void FusionQueue::add_source(std::int64_t id) {
   for (int zoom = tiles_.finest_zoom() - 1; zoom >= kCoarsestZoom; --zoom) parents.with(zoom).run();
 }
 
-std::int64_t FusionQueue::size() {
-  Statement statement(map_, "SELECT count(*) FROM roadfix_pending");
-  statement.step();
-  return statement.integer(0);
-}
+std::int64_t FusionQueue::size() { return sqlite::number(map_, "SELECT count(*) FROM roadfix_pending"); }
 
 /// The tile as it is stored; empty where nothing was observed.
 std::vector<std::byte> FusionQueue::fused(Tile tile) {
   const auto [zoom, index] = tile;
-  const auto cells = zoom == tiles_.finest_zoom() ? tiles_.fused_evidence(index) : tiles_.overview(zoom, index);
+  const auto cells = tiles_.derived(zoom, index);
   if (!cells || cells->observed_count() == 0) return {};
   return encode_tile(*cells, TileDepth::kFused);
 }

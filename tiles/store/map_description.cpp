@@ -9,6 +9,7 @@ namespace roadfix {
 namespace {
 
 using sqlite::Connection;
+using sqlite::number;
 using sqlite::Statement;
 
 void check_lattice(Connection& map, const MapSettings& settings, std::vector<MapProblem>& problems) {
@@ -33,30 +34,29 @@ void check_lattice(Connection& map, const MapSettings& settings, std::vector<Map
 
 /// As create_map writes it.
 void check_coverage(Connection& map, std::vector<MapProblem>& problems) {
-  Statement coverage(map,
-                     "SELECT count(*) FROM gpkg_2d_gridded_coverage_ancillary WHERE tile_matrix_set_name = "
-                     "'road_probability' AND datatype = 'integer' AND scale = 1.0 / 254 AND offset = 0.0 AND precision "
-                     "= 1.0 / 254 AND data_null = 65535 AND grid_cell_encoding = 'grid-value-is-area'");
-  coverage.step();
-  if (coverage.integer(0) == 1) return;
+  const std::int64_t right =
+      number(map,
+             "SELECT count(*) FROM gpkg_2d_gridded_coverage_ancillary WHERE tile_matrix_set_name = "
+             "'road_probability' AND datatype = 'integer' AND scale = 1.0 / 254 AND offset = 0.0 AND precision "
+             "= 1.0 / 254 AND data_null = 65535 AND grid_cell_encoding = 'grid-value-is-area'");
+  if (right == 1) return;
   problems.push_back({"coverage-wrong",
                       "gpkg_2d_gridded_coverage_ancillary is not as a map has it (integers with a scale of 1/254, an "
                       "offset of 0 and 65535 for nothing): other programs misread the map. Restore it from a copy"});
 }
 
 void check_tile_scales(Connection& map, std::vector<MapProblem>& problems) {
-  Statement wrong(
+  const std::int64_t wrong = number(
       map,
       "SELECT (SELECT count(*) FROM road_probability t LEFT JOIN gpkg_2d_gridded_tile_ancillary a ON a.tpudt_name = "
       "'road_probability' AND a.tpudt_id = t.id WHERE a.scale IS NOT 1.0 OR a.offset IS NOT 0.0) + "
       "(SELECT count(*) FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability' AND tpudt_id NOT IN "
       "(SELECT id FROM road_probability))");
-  wrong.step();
-  if (wrong.integer(0) == 0) return;
+  if (wrong == 0) return;
   problems.push_back(
       {"ancillary-wrong", fmt::format("{} rows of gpkg_2d_gridded_tile_ancillary are missing, wrong or left over: "
                                       "other programs misread the map. {}",
-                                      wrong.integer(0), kRepair)});
+                                      wrong, kRepair)});
 }
 
 void check_registration(Connection& map, std::vector<MapProblem>& problems) {

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Access;
 using sqlite::Connection;
+using sqlite::number;
 using sqlite::Statement;
 using sqlite::Transaction;
 
@@ -38,19 +39,13 @@ std::string meta_value(Connection& map, const char* key) {
                     fmt::format("{}: roadfix_meta has no {}. Restore the map from a copy", map.path().string(), key));
 }
 
-std::int64_t pragma(Connection& map, const char* text) {
-  Statement statement(map, text);
-  statement.step();
-  return statement.integer(0);
-}
-
 bool has_table(Connection& map, const char* name) {
   return Statement(map, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1").with(name).step();
 }
 
 void require_ours(Connection& map) {
   const std::string file = map.path().string();
-  if (pragma(map, "PRAGMA application_id") != kGeoPackageId) {
+  if (number(map, "PRAGMA application_id") != kGeoPackageId) {
     throw InvalidInput("map-not-ours",
                        fmt::format("{}: a database, but not a GeoPackage. Name a map made by roadfix", file));
   }
@@ -115,14 +110,14 @@ void look_into(Connection& map) {
   const Transaction no_writer_between(map, Transaction::Kind::kRead);
   constexpr const char* kLook = "SELECT count(*) FROM sqlite_master";
   try {
-    pragma(map, kLook);
+    number(map, kLook);
   } catch (const IoFailure& error) {
     if (error.code() != kMapNeedsRecovery) {
       explain_wal_mode(map);
       throw;
     }
     recover_map(map.path());
-    pragma(map, kLook);
+    number(map, kLook);
   }
   explain_cut_off(map);
 }
@@ -157,7 +152,7 @@ bool is_there(const fs::path& path) {
 
 void recover_map(const fs::path& path) {
   Connection map(path, Access::kReadWrite, map_error);
-  pragma(map, "SELECT count(*) FROM sqlite_master");
+  number(map, "SELECT count(*) FROM sqlite_master");
 }
 
 Connection open_map(const fs::path& path, Access access) {
@@ -203,7 +198,7 @@ MapInfo read_info(Connection& map) {
   Statement tiles(map, "SELECT count(*) FROM road_probability WHERE zoom_level = ?1");
   tiles.with(zoom_of(info.settings.cell_m)).step();
   info.tiles = tiles.integer(0);
-  info.pending = pragma(map, "SELECT count(*) FROM roadfix_pending");
+  info.pending = number(map, "SELECT count(*) FROM roadfix_pending");
   Statement sources(map,
                     "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "
                     "registration_sigma_m, in_force, ingested_at, "

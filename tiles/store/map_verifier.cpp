@@ -20,6 +20,7 @@ namespace {
 
 using sqlite::Access;
 using sqlite::Connection;
+using sqlite::number;
 using sqlite::Statement;
 
 class Verifier {
@@ -32,17 +33,17 @@ class Verifier {
         stop_(std::move(stop)) {}
 
   MapVerdict verdict() {
-    const std::int64_t at_start = number("PRAGMA data_version");
-    total_ = number("SELECT (SELECT count(*) FROM road_probability) + (SELECT count(*) FROM roadfix_evidence)");
+    const std::int64_t at_start = number(map_, "PRAGMA data_version");
+    total_ = number(map_, "SELECT (SELECT count(*) FROM road_probability) + (SELECT count(*) FROM roadfix_evidence)");
     check_database();
     if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
     std::ranges::move(problems_of_description(map_, settings_), std::back_inserter(verdict_.problems));
-    verdict_.tiles_to_fuse = number("SELECT count(*) FROM roadfix_pending");
+    verdict_.tiles_to_fuse = number(map_, "SELECT count(*) FROM roadfix_pending");
     check_ledger();
     check_evidence();
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
     check_summary();
-    if (number("PRAGMA data_version") != at_start) {
+    if (number(map_, "PRAGMA data_version") != at_start) {
       throw Interrupted("map-changed", fmt::format("{}: it was written to while it was being verified. Repeat when the "
                                                    "ingest has ended",
                                                    map_.path().string()));
@@ -51,12 +52,6 @@ class Verifier {
   }
 
  private:
-  std::int64_t number(const char* sql) {
-    Statement statement(map_, sql);
-    statement.step();
-    return statement.integer(0);
-  }
-
   std::vector<std::int64_t> ids(const std::string& sql) {
     std::vector<std::int64_t> found;
     for (Statement rows(map_, sql); rows.step();) found.push_back(rows.integer(0));
@@ -85,9 +80,10 @@ class Verifier {
   }
 
   void check_ledger() {
-    const std::int64_t unexplained = number(
-        "SELECT count(*) FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON b.source_id = e.source_id AND "
-        "b.tile_row = e.tile_row AND b.tile_column = e.tile_column WHERE b.done IS NOT 1");
+    const std::int64_t unexplained =
+        number(map_,
+               "SELECT count(*) FROM roadfix_evidence e LEFT JOIN roadfix_blocks b ON b.source_id = e.source_id AND "
+               "b.tile_row = e.tile_row AND b.tile_column = e.tile_column WHERE b.done IS NOT 1");
     if (unexplained > 0) {
       report("ledger-broken",
              fmt::format("{} tiles of evidence belong to no finished block of a source. {}", unexplained, kRepair));
@@ -177,8 +173,7 @@ class Verifier {
   /// nullopt where what it follows from is damaged, which has been reported already.
   std::optional<CellArray> expected_tile(int zoom, TileIndex index) {
     try {
-      const auto cells = zoom == table_.finest_zoom() ? table_.fused_evidence(index) : table_.overview(zoom, index);
-      return cells ? *cells : CellArray(kTileCells, kTileCells);
+      return table_.derived(zoom, index).value_or(CellArray(kTileCells, kTileCells));
     } catch (const CorruptData&) {
       return std::nullopt;
     }

@@ -161,6 +161,12 @@ void Statement::bind(int index, std::span<const std::byte> value) {
   check(sqlite3_bind_blob64(handle_.get(), index, value.data(), value.size(), SQLITE_STATIC));
 }
 
+std::int64_t number(Connection& connection, std::string_view query) {
+  Statement statement(connection, query);
+  statement.step();
+  return statement.integer(0);
+}
+
 Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
   connection_.execute(kind == Kind::kWrite ? "BEGIN IMMEDIATE" : "BEGIN");
 }

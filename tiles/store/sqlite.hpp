@@ -109,6 +109,9 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
+/// What a query answers that asks for one number.
+std::int64_t number(Connection& connection, std::string_view query);
+
 /// Resets a statement that is kept at the end of a block: one left in the middle of its rows holds a lock on the file.
 class ResetAtEnd {
  public:

@@ -111,6 +111,10 @@ void TileTable::add_to_version(std::uint64_t difference) {
   set_version_.with(fmt::format("{:016x}", version + difference)).run();
 }
 
+std::optional<CellArray> TileTable::derived(int zoom, TileIndex index) {
+  return zoom == finest_ ? fused_evidence(index) : overview(zoom, index);
+}
+
 std::optional<CellArray> TileTable::fused_evidence(TileIndex index) {
   struct Witness {
     std::vector<std::byte> png;

@@ -29,15 +29,16 @@ class TileTable {
 
   /// nullopt where there is none. Throws CorruptData naming the tile.
   std::optional<CellArray> tile(int zoom, TileIndex index);
-  /// What the evidence in force says about a tile of the finest level; nullopt where nothing was observed.
-  std::optional<CellArray> fused_evidence(TileIndex index);
-  /// What the four tiles below say; nullopt where there is none.
-  std::optional<CellArray> overview(int zoom, TileIndex index);
+  /// What the tile should be: of the finest level what the evidence in force says, above it what the four tiles below
+  /// do. nullopt where there are none. Throws CorruptData naming the evidence or the tile below.
+  std::optional<CellArray> derived(int zoom, TileIndex index);
 
   /// Box of the observed cells of the finest level; empty() when there is none.
   GridBox observed_extent();
 
  private:
+  std::optional<CellArray> fused_evidence(TileIndex index);
+  std::optional<CellArray> overview(int zoom, TileIndex index);
   void add_to_version(std::uint64_t difference);
 
   sqlite::Connection& map_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "cli/number_checks.hpp"
 #include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -36,9 +36,9 @@ Another parse_also(const std::string& text) {
   for (std::size_t i = values.size(); i-- > 0;) {
     const auto comma = rest.rfind(',');
     if (comma == std::string_view::npos) refuse_also(text);
-    const std::string_view number = rest.substr(comma + 1);
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), values[i]);
-    if (error != std::errc() || end != number.data() + number.size() || !(std::abs(values[i]) < 1e6)) refuse_also(text);
+    const auto number = as_number<double>(rest.substr(comma + 1));
+    if (!number || !(std::abs(*number) < 1e6)) refuse_also(text);
+    values[i] = *number;
     rest = rest.substr(0, comma);
   }
   if (rest.empty()) refuse_also(text);

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
+
+#include "core/units/text.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -30,10 +31,7 @@ CLI::Validator not_negative(double max) { return number_within(0.0, false, max, 
 
 CLI::Validator seed() {
   return {[](std::string& text) -> std::string {
-            std::int32_t value = -1;
-            const char* const end = text.data() + text.size();
-            const auto [after, error] = std::from_chars(text.data(), end, value);
-            if (error == std::errc{} && after == end && value >= 0) return {};
+            if (as_number<std::int32_t>(text).value_or(-1) >= 0) return {};
             return fmt::format("must be a whole number from 0 to {}, not {}", std::numeric_limits<std::int32_t>::max(),
                                text);
           },

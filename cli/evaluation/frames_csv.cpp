@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 
 #include "core/units/error.hpp"
@@ -61,9 +60,8 @@ class Row {
 
  private:
   double number(std::string_view name, std::string_view text, double low, double high) const {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc() && end == text.data() + text.size() && value >= low && value <= high) return value;
+    const auto value = as_number<double>(text);
+    if (value && *value >= low && *value <= high) return *value;
     refuse(fmt::format("{} is '{}'; it must be a number within {} to {}", name, text, low, high));
   }
 

@@ -1,6 +1,8 @@
 // Texts that machines compare.
 #pragma once
 
+#include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,5 +16,14 @@ std::string_view trimmed(std::string_view text);
 
 /// Without the mark that spreadsheets write before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
+
+/// All of the text as a number, written as in C++ and in decimal; nullopt for anything else, and for what the type does
+/// not hold. "inf" and "nan" are numbers of floating types.
+template <typename Number>
+std::optional<Number> as_number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 }  // namespace roadfix

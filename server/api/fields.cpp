@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "core/units/text.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -44,10 +44,8 @@ void require_in(const Range& range, const std::string& name, double value) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto value = as_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 double number_within(const json& object, const char* name, std::string_view place, const Range& range) {

@@ -1,10 +1,10 @@
 #include "server/api/web_mercator.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -13,14 +13,12 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kEquatorM = 40'075'016.685578488;  // 2 pi 6378137, the sphere of EPSG:3857
 
 int parse_index(const std::string& text, int end) {
-  int value = -1;
-  const auto error = std::from_chars(text.data(), text.data() + text.size(), value).ec;
-  const bool is_index = error == std::errc{} && value >= 0 && value < end;
-  if (!is_index || std::to_string(value) != text) {  // 007 and 7 would be two addresses of one tile
+  const auto value = as_number<int>(text);
+  if (!value || *value < 0 || *value >= end || std::to_string(*value) != text) {  // 7 and 007 would be one tile
     throw NotFound("tile-not-found",
                    "tiles are /{z}/{x}/{y}.png with z from 0 to 24 and x, y from 0 to 2^z - 1, without leading zeros");
   }
-  return value;
+  return *value;
 }
 
 double world_pixels(int zoom) { return kTilePixels * std::exp2(zoom); }

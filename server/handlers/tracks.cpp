@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <string>
 
 #include "core/locate/tracker.hpp"
 #include "core/units/fnv.hpp"
+#include "core/units/text.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
@@ -177,10 +177,7 @@ http::Response get_history(const Service& service, const http::Request& request)
 
 /// Where the client's stream was cut, by the header that browsers send; -1 = from the beginning.
 std::int64_t last_event(const http::Request& request) {
-  const std::string& text = request.header("last-event-id");
-  std::int64_t value = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? value : -1;
+  return as_number<std::int64_t>(request.header("last-event-id")).value_or(-1);
 }
 
 http::Response get_events(const Service& service, const http::Request& request) {

@@ -3,20 +3,11 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
-#include <charconv>
-
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix::http {
 namespace {
-
-template <typename Number>
-std::optional<Number> whole_number(std::string_view text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 struct Address {
   std::string host;
@@ -30,7 +21,7 @@ std::optional<Address> parsed(std::string_view base) {
   if (base.ends_with('/')) base.remove_suffix(1);
   Address address;
   if (const std::size_t colon = base.rfind(':'); colon != std::string_view::npos && !base.ends_with(']')) {
-    const auto port = whole_number<int>(base.substr(colon + 1));
+    const auto port = as_number<int>(base.substr(colon + 1));
     if (!port || *port < 1 || *port > 65535) return std::nullopt;
     address.port = *port;
     base = base.substr(0, colon);
@@ -50,7 +41,7 @@ Address address_of(const std::string& base) {
 std::optional<Answer> answer_of(const httplib::Result& result) {
   if (!result) return std::nullopt;
   Answer answer{result->status, result->body, std::nullopt};
-  if (const auto seconds = whole_number<int>(result->get_header_value("Retry-After"))) {
+  if (const auto seconds = as_number<int>(result->get_header_value("Retry-After"))) {
     answer.retry_after = std::chrono::seconds(*seconds);
   }
   return answer;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "core/units/error.hpp"
@@ -51,17 +50,15 @@ Proxies::Proxies(const std::vector<std::string>& networks) {
   for (const std::string& text : networks) {
     const std::size_t slash = std::min(text.find('/'), text.size());
     const auto address = parsed(std::string_view(text).substr(0, slash));
-    int bits = address ? address->bits : 0;
-    const char* end = text.data() + text.size();
-    const bool has_bits = slash < text.size();
-    const auto [last, error] =
-        has_bits ? std::from_chars(text.data() + slash + 1, end, bits) : std::from_chars_result{end, std::errc{}};
-    if (!address || error != std::errc{} || last != end || bits < 0 || bits > address->bits) {
+    const int all_bits = address ? address->bits : 0;
+    const int bits =
+        slash < text.size() ? as_number<int>(std::string_view(text).substr(slash + 1)).value_or(-1) : all_bits;
+    if (!address || bits < 0 || bits > all_bits) {
       throw InvalidInput(
           "bad-proxy",
           fmt::format("'{}' is not an address or network: give the proxy's, like 127.0.0.1 or 10.0.0.0/8", text));
     }
-    networks_.push_back({address->address, bits + kV6Bits - address->bits});
+    networks_.push_back({address->address, bits + kV6Bits - all_bits});
   }
 }
 

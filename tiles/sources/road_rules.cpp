@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -98,10 +97,7 @@ std::optional<double> take_number(std::string_view& text) {
     text.remove_prefix(1);
   }
   text = trimmed(text);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (number.empty() || error != std::errc{} || end != number.data() + number.size()) return std::nullopt;
-  return value;
+  return as_number<double>(number);
 }
 
 /// Words of "['residential', 'unclassified']", as Python writes a list, and of "(2:residential,unclassified)", as OGR

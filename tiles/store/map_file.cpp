@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 #include <system_error>
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "core/units/shell_word.hpp"
+#include "core/units/text.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
@@ -23,14 +23,6 @@ using sqlite::Statement;
 using sqlite::Transaction;
 
 constexpr std::int64_t kGeoPackageId = 0x47504B47;
-
-template <typename Number>
-std::optional<Number> parsed(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 std::string meta_value(Connection& map, const char* key) {
   Statement select(map, "SELECT value FROM roadfix_meta WHERE key = ?1");
@@ -54,7 +46,7 @@ void require_ours(Connection& map) {
                                                    "of it, name it as a source: roadfix ingest {} --map MAP.gpkg",
                                                    file, shell_word(file)));
   }
-  const auto version = parsed<int>(meta_value(map, "schema_version"));
+  const auto version = as_number<int>(meta_value(map, "schema_version"));
   if (!version || *version < 1) {
     throw CorruptData("map-corrupt", fmt::format("{}: roadfix_meta names no schema version. Restore the map from a "
                                                  "copy",
@@ -170,8 +162,8 @@ Connection open_map(const fs::path& path, Access access) {
 }
 
 MapSettings read_settings(Connection& map) {
-  const auto epsg = parsed<int>(meta_value(map, "epsg"));
-  const auto cell_m = parsed<double>(meta_value(map, "cell_m"));
+  const auto epsg = as_number<int>(meta_value(map, "epsg"));
+  const auto cell_m = as_number<double>(meta_value(map, "cell_m"));
   const auto zone = epsg ? UtmZone::from_epsg(*epsg) : std::nullopt;
   if (!zone || !cell_m || !is_map_cell_size(*cell_m)) {
     throw CorruptData("map-corrupt",
@@ -188,7 +180,7 @@ MapInfo read_info(Connection& map) {
   const Transaction one_view(map, Transaction::Kind::kRead);
   MapInfo info{.settings = read_settings(map)};
   info.version = read_version(map);
-  info.schema_version = *parsed<int>(meta_value(map, "schema_version"));
+  info.schema_version = *as_number<int>(meta_value(map, "schema_version"));
   info.levels = zoom_of(info.settings.cell_m) - kCoarsestZoom + 1;
   info.extent = {{0.0, 0.0}, {-1.0, -1.0}};
   Statement extent(map,

@@ -17,5 +17,13 @@ TEST(Trimmed, TakesSpacesAndTabsFromBothEndsAlone) {
   EXPECT_EQ(trimmed(" \t"), "");
 }
 
+TEST(AsNumber, TakesAllOfTheTextOrNothing) {
+  EXPECT_EQ(as_number<int>("-12"), -12);
+  EXPECT_EQ(as_number<double>("2.5e3"), 2500.0);
+  for (const char* mistaken : {"", " 1", "1 ", "+1", "1,5", "1x", "99999999999"})
+    EXPECT_FALSE(as_number<int>(mistaken));
+  for (const char* mistaken : {"", "1,5", "1e", "1e999"}) EXPECT_FALSE(as_number<double>(mistaken)) << mistaken;
+}
+
 }  // namespace
 }  // namespace roadfix

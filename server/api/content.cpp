@@ -22,7 +22,7 @@ JsonLimits json_limits(const Limits& limits) {
 }
 
 void add_picture(Content& content, std::vector<std::uint8_t> bytes) {
-  if (content.has_picture) throw InvalidField("duplicate-parameter", "image", "'image' is given twice");
+  if (content.has_picture) throw http::given_twice("image");
   content.image = std::move(bytes);
   content.has_picture = true;
 }

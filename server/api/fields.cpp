@@ -62,9 +62,7 @@ Fields::Fields(const http::Parameters& query) {
 }
 
 void Fields::add_text(const std::string& name, std::string text) {
-  if (!values_.try_emplace(name, Value{std::move(text), true}).second) {
-    throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
-  }
+  if (!values_.try_emplace(name, Value{std::move(text), true}).second) throw http::given_twice(name);
 }
 
 void Fields::add(json object, std::span<const std::string> known) {
@@ -76,9 +74,7 @@ void Fields::add(json object, std::span<const std::string> known) {
           fmt::format("'{}' is not a field of this request; allowed: {}", shown(name), fmt::join(known, ", ")));
     }
     if (value.is_null()) continue;
-    if (!values_.try_emplace(name, Value{std::move(value), false}).second) {
-      throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
-    }
+    if (!values_.try_emplace(name, Value{std::move(value), false}).second) throw http::given_twice(name);
   }
 }
 

@@ -39,9 +39,7 @@ void check_shape(std::string_view text, const JsonLimits& limits) {
   }
 }
 
-void refuse_second(const std::string& name) {
-  throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
-}
+void refuse_second(const std::string& name) { throw http::given_twice(name); }
 
 /// Without the library's own name of the error: "[json.exception.parse_error.101] parse error at line 1, ...".
 std::string reason_of(const json::exception& error) {

@@ -14,6 +14,10 @@ InvalidField::InvalidField(std::string code, std::string field, const std::strin
                            std::optional<std::size_t> byte)
     : InvalidInput(std::move(code), message), field_(std::move(field)), byte_(byte) {}
 
+InvalidField given_twice(const std::string& name) {
+  return {"duplicate-parameter", name, fmt::format("'{}' is given twice", name)};
+}
+
 ClientGone::ClientGone() : Interrupted("client-gone", "the client hung up before its answer was ready") {}
 
 Busy::Busy(const std::string& message, std::chrono::seconds retry_after)

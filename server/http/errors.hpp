@@ -33,6 +33,9 @@ class InvalidField : public InvalidInput {
   std::optional<std::size_t> byte_;
 };
 
+/// The InvalidField ("duplicate-parameter") of a name for which there are two values.
+InvalidField given_twice(const std::string& name);
+
 /// Work for a client that has hung up was given up ("client-gone"). Nobody reads this but the logs.
 class ClientGone : public Interrupted {
  public:

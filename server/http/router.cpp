@@ -76,8 +76,7 @@ void check_parameter_names(const Route& route, const Parameters& query) {
           fmt::format("'{}' is not a parameter of {} {}; allowed: {}", name, route.method, route.path,
                       route.parameters.empty() ? "none" : fmt::format("{}", fmt::join(route.parameters, ", "))));
     }
-    if (!seen.insert(name).second)
-      throw InvalidField("duplicate-parameter", name, fmt::format("'{}' is given twice", name));
+    if (!seen.insert(name).second) throw given_twice(name);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -59,40 +60,47 @@ void note_shift(MapWriter& writer, const SourceRecord& record) {
       record.name, directions_of(*shift), shift->correlation, shift->correlation_in_place);
 }
 
+/// In megapixels of the source; without meaning for lines.
+double cell_size_mp(const MapSettings& settings, const SourceSummary& summary) {
+  const double side_px = settings.cell_m / summary.native_gsd_m;
+  return side_px * side_px / 1e6;
+}
+
+IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSummary& summary,
+                                  const SourceRecord& record, MapWriter& writer, IngestOptions options) {
+  const bool lines = summary.native_gsd_m == 0.0;
+  const double lines_per_block =
+      static_cast<double>(summary.features) / static_cast<double>(std::max<std::int64_t>(1, planned.blocks));
+  Progress reading(record.name, lines ? "features" : "MP",
+                   lines ? lines_per_block : kTileCells * kTileCells * cell_size_mp(writer.settings(), summary));
+  Progress fusing("fusing", "tiles");
+  options.on_blocks = reading.updates();
+  options.on_fusing = fusing.updates();
+  return ingest(*planned.cells, record, writer, options);
+}
+
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
-  const auto [source, blocks] = plan_source(request, settings, detector);
-  SourceSummary summary = summary_of(*source, request.files);
-  std::ranges::move(zone_notes(*source, settings), std::back_inserter(summary.notes));
-  if (auto note = note_on_distance(*source, arguments.map)) summary.notes.push_back(std::move(*note));
+  const PlannedSource planned = plan_source(request, settings, detector);
+  const CellSource& source = *planned.cells;
+  SourceSummary summary = summary_of(source, request.files);
+  std::ranges::move(zone_notes(source, settings), std::back_inserter(summary.notes));
+  if (auto note = note_on_distance(source, arguments.map)) summary.notes.push_back(std::move(*note));
   SourceRecord record = record_of(request.files, summary, arguments.options.seed);
   std::ranges::move(describe_source(record, summary.told, arguments.told,
                                     MapWriter::records_of(arguments.map, record.name), arguments.options.replace),
                     std::back_inserter(summary.notes));
   print_notes(request.files, summary);
-  const nlohmann::json json = summary_json(record, summary, blocks, settings);
+  const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
     print_plan(json, arguments.json);
     return;
   }
   if (!writer) writer.emplace(arguments.map, settings);
-  const double cell_px = settings.cell_m / summary.native_gsd_m;
-  const double cell_mp = cell_px * cell_px / 1e6;
-  IngestReport report;
-  {
-    const bool lines = summary.native_gsd_m == 0.0;
-    const double lines_per_block =
-        static_cast<double>(summary.features) / static_cast<double>(std::max<std::int64_t>(1, blocks));
-    Progress reading(record.name, lines ? "features" : "MP",
-                     lines ? lines_per_block : kTileCells * kTileCells * cell_mp);
-    Progress fusing("fusing", "tiles");
-    IngestOptions options = arguments.options;
-    options.on_blocks = reading.updates();
-    options.on_fusing = fusing.updates();
-    options.stop = stop;
-    report = ingest(*source, record, *writer, options);
-  }
+  IngestOptions options = arguments.options;
+  options.stop = stop;
+  const IngestReport report = ingest_with_progress(planned, summary, record, *writer, std::move(options));
   if (report.observed_cells == 0 && report.blocks_before == 0) {
     fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,
                summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent, no numbers or in one colour"
@@ -102,7 +110,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     note_twins(*writer, record.name, arguments.map);
     note_shift(*writer, record);
   }
-  print_report(json, report, cell_mp, arguments.json);
+  print_report(json, report, cell_size_mp(settings, summary), arguments.json);
 }
 
 /// A map that is its own source would count all that it knows twice. That it lies in the folder of its sources is fine.

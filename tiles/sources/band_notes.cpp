@@ -39,8 +39,7 @@ std::optional<std::string> note_on_alpha(RasterFile& file) {
   if (graded <= kWorthNoting * seen) return std::nullopt;
   return fmt::format(
       "{0}: {1:.0f} % of it is half transparent by its alpha band, band {2}, and what is less than half opaque counts "
-      "as "
-      "not seen. If band {2} holds something else, such as near infrared, say so (gdal_edit.py -colorinterp_{2} "
+      "as not seen. If band {2} holds something else, such as near infrared, say so (gdal_edit.py -colorinterp_{2} "
       "undefined) and use --replace",
       file.path(), 100.0 * graded / seen, band);
 }

@@ -5,6 +5,7 @@
 
 #include "tiles/export/probability_pixel.hpp"
 #include "tiles/sources/exported_roads.hpp"
+#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
 namespace {
@@ -70,11 +71,9 @@ void describe(GDALDataset& dataset, PixelKind kind, const MapInfo& info) {
 }
 
 MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)
-    : map_(map), geometry_(geometry) {
+    : map_(map), geometry_(geometry), reference_(utm_reference(map.info().settings.zone)) {
   nRasterXSize = geometry.cols;
   nRasterYSize = geometry.rows;
-  reference_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  reference_.importFromEPSG(map.info().settings.zone.epsg());
   describe(*this, kind, map.info());
   if (kind == PixelKind::kProbability) {
     SetBand(1, new MapBand<float, probability_pixel>(*this, 1, GDT_Float32, GCI_Undefined, "probability of road"));

@@ -14,6 +14,7 @@
 #include "tiles/export/mbtiles.hpp"
 #include "tiles/export/one_side.hpp"
 #include "tiles/export/side_files.hpp"
+#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
 namespace {
@@ -149,7 +150,7 @@ void copy(MapDataset& source, const Driver& target, const fs::path& path, const 
 void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options, const OnProgress& progress,
                 std::stop_token stop) {
   constexpr std::int64_t kLargestPicture = std::int64_t{1} << 29;
-  GDALAllRegister();
+  require_gdal();
   const Driver driver = driver_of(options.format, map.info());
   const GridGeometry geometry = geometry_of(map, options);
   if (options.format == ExportFormat::kPng && std::int64_t{geometry.cols} * geometry.rows > kLargestPicture) {

@@ -3,16 +3,15 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "core/units/error.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/probability_pixel.hpp"
+#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
 namespace {
@@ -55,8 +54,7 @@ std::vector<float> probabilities(const CellArray& cells) {
 
 std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::array<double, 6>& geotransform,
                         const MapInfo& info) {
-  static std::once_flag registered;
-  std::call_once(registered, GDALAllRegister);
+  require_gdal();
   const MemoryFile file;
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   require(driver != nullptr);
@@ -64,8 +62,7 @@ std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::
   std::unique_ptr<GDALDataset> dataset(driver->Create(file.path().c_str(), cells.cols(), cells.rows(), 1, GDT_Float32,
                                                       const_cast<char**>(options.data())));
   require(dataset != nullptr);
-  OGRSpatialReference reference;
-  require(reference.importFromEPSG(zone.epsg()) == OGRERR_NONE);
+  const OGRSpatialReference reference = utm_reference(zone);
   auto transform = geotransform;
   require(dataset->SetSpatialRef(&reference) == CE_None && dataset->SetGeoTransform(transform.data()) == CE_None);
   describe(*dataset, PixelKind::kProbability, info);

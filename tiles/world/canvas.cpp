@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tiles/world/fixed_point.hpp"
+#include "tiles/world/polygon.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -26,6 +27,11 @@ Canvas::Canvas(cv::Rect pixels, double gsd_m)
 bool Canvas::sees(PlanPoint centre, double radius_m) const {
   return centre.x + radius_m >= ground_.x && centre.x - radius_m <= ground_.x + ground_.width &&
          centre.y + radius_m >= ground_.y && centre.y - radius_m <= ground_.y + ground_.height;
+}
+
+bool Canvas::sees(const Polyline& outline) const {
+  const cv::Rect2d box = box_of(outline);
+  return sees({box.x + box.width / 2.0, box.y + box.height / 2.0}, std::hypot(box.width, box.height) / 2.0);
 }
 
 /// OpenCV's sub-pixel coordinates: a pixel's centre is at whole numbers.

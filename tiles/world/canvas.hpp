@@ -18,6 +18,8 @@ class Canvas {
 
   /// Whether anything within the radius can be on this tile.
   bool sees(PlanPoint centre, double radius_m) const;
+  /// The same of a polygon, by the circle around its box.
+  bool sees(const Polyline& outline) const;
 
   /// A polygon with smooth edges. Its height, where given, replaces that of the ground (metres).
   void fill(const Polyline& polygon, const Colour& colour, Material material);

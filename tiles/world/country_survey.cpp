@@ -190,7 +190,7 @@ class Surveyor {
     const Colour straw(142, 126, 92);
     const auto green = [&](const Colour& c, double fading) {
       parcel.summer = palette::varied(c, 0.14, random_);
-      parcel.winter = parcel.summer * (1.0 - fading) + straw * fading;
+      parcel.winter = palette::mixed(parcel.summer, straw, fading);
     };
     const auto bare = [&](const Colour& c) { parcel.summer = parcel.winter = palette::varied(c, 0.14, random_); };
     switch (parcel.cover) {

@@ -46,10 +46,7 @@ class BuildingPainter {
   }
 
  private:
-  Colour dusty(const Colour& c) const {
-    const double share = conditions_.dust * 0.45;
-    return c * (1.0 - share) + palette::kDust * share;
-  }
+  Colour dusty(const Colour& c) const { return palette::mixed(c, palette::kDust, conditions_.dust * 0.45); }
 
   /// Walls between the footprint and the roof above it, those that the camera sees and those that the roof will hide.
   void paint_facades() {

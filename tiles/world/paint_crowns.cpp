@@ -43,7 +43,7 @@ class CrownPainter {
       cone(tree_.leaf * tree_.tone);
     } else {
       const double turned = std::clamp((season_ - kAutumnFrom) / (kBareFrom - kAutumnFrom), 0.0, 1.0);
-      foliage((tree_.leaf * (1.0 - turned) + tree_.autumn * turned) * tree_.tone);
+      foliage(palette::mixed(tree_.leaf, tree_.autumn, turned) * tree_.tone);
     }
   }
 

@@ -32,7 +32,7 @@ void paint_logs(Canvas& canvas, const Countryside& country, const Conditions& co
     const PlanPoint way = log.top - log.foot;
     if (!canvas.sees((log.foot + log.top) / 2.0, cv::norm(way) / 2.0 + log.crown_m)) continue;
     Random random(static_cast<std::uint64_t>((log.foot.x + 1e4) * 64.0), 7);
-    const Colour leaf = log.leaf * (1.0 - 0.5 * conditions.winter) + palette::kBareTree * (0.5 * conditions.winter);
+    const Colour leaf = palette::mixed(log.leaf, palette::kBareTree, 0.5 * conditions.winter);
     canvas.disc(log.foot, 1.1, palette::kSoil * 0.8, Material::kBare, 0.5);  // the plate of its roots
     const int tufts = static_cast<int>(6.0 + 3.0 * log.crown_m);
     for (int i = 0; i < tufts; ++i) {

@@ -13,9 +13,8 @@
 namespace roadfix::world {
 namespace {
 
+using palette::mixed;
 using palette::varied;
-
-Colour mixed(const Colour& a, const Colour& b, double share) { return a * (1.0 - share) + b * share; }
 
 struct Ground {
   Colour colour;
@@ -116,11 +115,7 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
   paint_parcels(canvas, plan, conditions);
   for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
     const Block& block = plan.blocks[i];
-    if (block.outline.size() < 3) continue;
-    const cv::Rect2d box = box_of(block.outline);
-    if (!canvas.sees({box.x + box.width / 2.0, box.y + box.height / 2.0}, std::hypot(box.width, box.height) / 2.0)) {
-      continue;
-    }
+    if (block.outline.size() < 3 || !canvas.sees(block.outline)) continue;
     Random random(i, 17);
     const Ground surface = surface_of(block.use, conditions.winter, random);
     canvas.fill(block.outline, surface.colour, surface.material);

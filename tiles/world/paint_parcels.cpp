@@ -42,7 +42,7 @@ class ParcelPainter {
         random_(parcel.seed, 41),
         along_(std::cos(parcel.row_angle_rad), std::sin(parcel.row_angle_rad)),
         side_(perpendicular(along_)),
-        colour_(parcel.summer * (1.0 - winter) + parcel.winter * winter) {}
+        colour_(palette::mixed(parcel.summer, parcel.winter, winter)) {}
 
   void paint() {
     canvas_.fill(parcel_.outline, colour_, material_of(parcel_.cover));
@@ -112,7 +112,7 @@ class ParcelPainter {
       const double share = strength * random_.uniform(0.0, 0.6);
       const Colour tone = random_.chance(0.6) ? soil_ : colour_ * 0.6;
       if (std::ranges::all_of(patch, within))
-        canvas_.fill(patch, colour_ * (1.0 - share) + tone * share, material_of(parcel_.cover));
+        canvas_.fill(patch, palette::mixed(colour_, tone, share), material_of(parcel_.cover));
     }
   }
 
@@ -142,10 +142,7 @@ class ParcelPainter {
 
 void paint_parcels(Canvas& canvas, const Plan& plan, const Conditions& conditions) {
   for (const Parcel& parcel : plan.country.parcels) {
-    const cv::Rect2d box = box_of(parcel.outline);
-    const PlanPoint middle(box.x + box.width / 2.0, box.y + box.height / 2.0);
-    if (!canvas.sees(middle, std::hypot(box.width, box.height) / 2.0)) continue;
-    ParcelPainter(canvas, parcel, plan, conditions.winter).paint();
+    if (canvas.sees(parcel.outline)) ParcelPainter(canvas, parcel, plan, conditions.winter).paint();
   }
   for (const Strip& strip : plan.country.strips) {
     canvas.stroke(strip.line, strip.width_m, strip.colour, Material::kGrass);

@@ -22,8 +22,7 @@ void paint_railway(Canvas& canvas, const Countryside& country, const Conditions&
   if (country.railway.empty()) return;
   Random random(country.railway.size(), 43);
   const double rust = random.uniform(0.0, 1.0);
-  const Colour ballast =
-      palette::varied(Colour(150, 142, 134) * (1.0 - rust) + Colour(134, 108, 90) * rust, 0.12, random);
+  const Colour ballast = palette::varied(palette::mixed({150, 142, 134}, {134, 108, 90}, rust), 0.12, random);
   const Colour verge = country.grass * 0.75 + country.soil * 0.25;
   canvas.stroke(country.railway, random.uniform(7.0, 10.0), verge, Material::kGrass);
   canvas.stroke(country.railway, random.uniform(3.6, 4.6), ballast, Material::kBare);

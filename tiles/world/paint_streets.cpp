@@ -16,7 +16,7 @@ Colour surface_of(const Street& street, std::size_t number, const Conditions& co
   Colour colour = palette::varied(palette::kAsphalt, 0.09, random);
   if (street.width_m >= kLargeM) colour *= 0.88;
   if (street.width_m < kLargeM && random.chance(0.12)) colour = palette::varied(palette::kSoil, 0.08, random) * 0.95;
-  return colour * conditions.asphalt * (1.0 - conditions.dust) + palette::kDust * conditions.dust;
+  return palette::mixed(colour * conditions.asphalt, palette::kDust, conditions.dust);
 }
 
 void paint_middle(Canvas& canvas, const Street& street, const Colour& marking) {
@@ -44,7 +44,7 @@ void paint_crossing(Canvas& canvas, const Street& street, PlanPoint end, PlanPoi
 
 void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& conditions) {
   const double dust = conditions.dust;
-  const Colour sidewalk = palette::kSidewalk * (1.0 - dust) + palette::kDust * dust;
+  const Colour sidewalk = palette::mixed(palette::kSidewalk, palette::kDust, dust);
   for (const Street& street : plan.streets) {
     if (street.surface != Surface::kKerbed) continue;
     canvas.stroke(street.line, street.width_m + 2.0 * sidewalk_m(street), sidewalk, Material::kPaved);
@@ -60,7 +60,7 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
   }
   for (const Street& street : plan.streets) {
     if (street.surface != Surface::kKerbed || street.width_m < kLargeM || length_m(street.line) < 60.0) continue;
-    const Colour marking = palette::kMarking * (1.0 - dust) + palette::kDust * dust;
+    const Colour marking = palette::mixed(palette::kMarking, palette::kDust, dust);
     paint_middle(canvas, street, marking);
     const std::size_t last = street.line.size() - 2;
     paint_crossing(canvas, street, street.line.front(), direction(street.line, 0), marking);

@@ -21,7 +21,7 @@ class TrackPainter {
         grass_(palette::varied(plan.country.grass, 0.1, random_)),
         soil_(plan.country.soil) {
     const Colour straw(142, 126, 92);
-    grass_ = grass_ * (1.0 - 0.5 * conditions.winter) + straw * (0.5 * conditions.winter);
+    grass_ = palette::mixed(grass_, straw, 0.5 * conditions.winter);
   }
 
   void paint_verge() {
@@ -55,7 +55,7 @@ class TrackPainter {
       case Surface::kAsphalt:
       case Surface::kKerbed: {
         const Colour tar = palette::varied(palette::kAsphalt, 0.22, random_) * conditions_.asphalt;
-        return tar * (1.0 - 0.6 * dust) + palette::kDust * (0.6 * dust);
+        return palette::mixed(tar, palette::kDust, 0.6 * dust);
       }
       case Surface::kGravel:
         return palette::varied(random_.chance(0.5) ? Colour(184, 174, 158) : Colour(160, 156, 150), 0.14, random_);
@@ -75,7 +75,7 @@ class TrackPainter {
     }
     if (random_.chance(0.5)) canvas_.stroke(street_.line, street_.width_m * 0.6, surface * 0.95, Material::kAsphalt);
     if (street_.width_m >= kMarkedM && random_.chance(0.6)) {
-      const Colour marking = palette::kMarking * (1.0 - conditions_.dust) + palette::kDust * conditions_.dust;
+      const Colour marking = palette::mixed(palette::kMarking, palette::kDust, conditions_.dust);
       walk(street_.line, 2.0, 9.0, [&](PlanPoint p, PlanPoint along) {
         canvas_.stroke({p, p + along * 4.0}, 0.25, marking, Material::kAsphalt);
       });

@@ -23,6 +23,8 @@ inline const Colour kBareTree{92, 84, 66};
 inline const Colour kDust{178, 160, 136};
 inline const Colour kRubble{186, 176, 162};
 
+/// `share` of the second colour, the rest of the first.
+inline Colour mixed(const Colour& a, const Colour& b, double share) { return a * (1.0 - share) + b * share; }
 /// Brightness and tint shifted a little, each on its own.
 Colour varied(const Colour& base, double amount, Random& random);
 Colour flat_roof(Random& random);

@@ -1,4 +1,5 @@
-// roadfix fly as a script meets it: a rendered town is mapped before and flown over after its earthquake.
+// roadfix fly as a script meets it: a rendered town is mapped, and flown over after its earthquake. Each test makes it
+// anew, in a process of its own: it is coarse.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -24,9 +25,9 @@ class FlyCommand : public ::testing::Test {
   static void SetUpTestSuite() {
     shared_folder = new testing::TemporaryFolder;
     const std::string town = (*shared_folder / "town").string();
-    ASSERT_EQ(
-        roadfix("world " + town + " --size-km 0.7x0.7 --footprint-m 300 --frames " + std::to_string(kFrames)).code, 0);
-    ASSERT_EQ(roadfix("ingest " + town + "/pre.tif --detector tree --map " + map()).code, 0);
+    const std::string rendering = " --size-km 0.7x0.7 --gsd 1 --footprint-m 300 --frames " + std::to_string(kFrames);
+    ASSERT_EQ(roadfix("world " + town + rendering).code, 0);
+    ASSERT_EQ(roadfix("ingest " + town + "/roads.geojson --map " + map()).code, 0);
   }
   static void TearDownTestSuite() {
     delete shared_folder;

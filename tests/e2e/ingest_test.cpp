@@ -45,8 +45,9 @@ std::map<std::tuple<int, int, int>, std::string> tiles(const std::string& path) 
 }
 
 TEST_F(IngestCommand, KilledAtManyPointsItEndsWithTheSameTiles) {
-  const std::vector<std::string> source{picture(2000, 1.0), "--detector", "tree", "--seed", "3",
-                                        "--jobs",           "2",          "--map"};
+  // As many blocks as a larger picture has, since the cells are small.
+  const std::vector<std::string> source{picture(1200, 1.0), "--detector", "tree",   "--cell", "1",
+                                        "--seed",           "3",          "--jobs", "2",      "--map"};
   const auto with_map = [&](const std::string& path) {
     std::vector<std::string> arguments = source;
     arguments.push_back(path);

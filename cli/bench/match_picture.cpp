@@ -22,8 +22,8 @@ GridBox common_box(std::span<const Orthoimage> imagery) {
 }
 
 /// All imagery in one picture, north up; where some overlap the first one shows.
-cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double m_per_px) {
-  const auto px = [&](double metres) { return static_cast<int>(std::lround(metres / m_per_px)); };
+cv::Mat mosaic(std::span<const Orthoimage> imagery, const GridBox& box, double gsd_m) {
+  const auto px = [&](double metres) { return static_cast<int>(std::lround(metres / gsd_m)); };
   cv::Mat canvas(std::max(1, px(box.height_m())), std::max(1, px(box.width_m())), CV_8UC3, cv::Scalar::all(90));
   const cv::Rect all({}, canvas.size());
   for (std::size_t i = imagery.size(); i-- > 0;) {
@@ -60,9 +60,9 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundView& vie
                       const std::optional<GridPose>& truth) {
   const GridBox box = common_box(imagery);
   const GridPoint origin = imagery.front().north_west;
-  const double m_per_px = box.height_m() / kHeightPx;
+  const double gsd_m = box.height_m() / kHeightPx;
   const double frame_scale = static_cast<double>(kHeightPx) / view.image.pixels.rows;
-  cv::Mat before = mosaic(imagery, box, m_per_px);
+  cv::Mat before = mosaic(imagery, box, gsd_m);
   cv::Mat after;
   cv::resize(evaluation::coloured(view.image.pixels), after, {}, frame_scale, frame_scale, cv::INTER_AREA);
   cv::resize(before, before, {before.cols, after.rows});
@@ -74,8 +74,8 @@ cv::Mat match_picture(std::span<const Orthoimage> imagery, const GroundView& vie
   for (std::size_t i = 0; i < right.size(); ++i) {
     const cv::Point2d seen = matches.frame_px[i];
     const cv::Point2d known = matches.map_m[i];
-    const cv::Point2d from((origin.east_m + known.x - box.min.east_m) / m_per_px,
-                           (box.max.north_m - origin.north_m + known.y) / m_per_px);
+    const cv::Point2d from((origin.east_m + known.x - box.min.east_m) / gsd_m,
+                           (box.max.north_m - origin.north_m + known.y) / gsd_m);
     const cv::Point2d to(before.cols + seen.x * frame_scale, seen.y * frame_scale);
     cv::line(both, from, to, right[i] ? kRight : kWrong, 1, cv::LINE_AA);
   }

@@ -52,13 +52,13 @@ void draw_pose(cv::Mat& picture, const Backdrop& backdrop, const GridPose& pose,
 void draw_estimate(cv::Mat& picture, const Backdrop& backdrop, const UtmZone& zone, const Record& record) {
   const TrackCluster& best = record.estimate.clusters.front();
   const cv::Point2d at = backdrop.at(record.best.position);
-  const double radius = std::max(best.radius95_m / backdrop.m_per_px, 3.0);
+  const double radius = std::max(best.radius95_m / backdrop.gsd_m, 3.0);
   outlined(kBlue, 1, [&](const cv::Scalar& c, int t) {
     cv::circle(picture, fine(at), fine({radius, 0}).x, c, t, cv::LINE_AA, kShift);
   });
   const double axis_deg = zone.grid_from_true(best.ellipse_heading, record.best.position).degrees();
-  const cv::Size2d half(std::max(kSigmasOf95 * best.sigma_m[0] / backdrop.m_per_px, 2.0),
-                        std::max(kSigmasOf95 * best.sigma_m[1] / backdrop.m_per_px, 2.0));
+  const cv::Size2d half(std::max(kSigmasOf95 * best.sigma_m[0] / backdrop.gsd_m, 2.0),
+                        std::max(kSigmasOf95 * best.sigma_m[1] / backdrop.gsd_m, 2.0));
   outlined(kRed, 1, [&](const cv::Scalar& c, int t) {
     // OpenCV turns clockwise from the x axis, headings count from north.
     cv::ellipse(picture, fine(at), cv::Size(fine({half.width, half.height})), axis_deg - 90.0, 0.0, 360.0, c, t,
@@ -74,9 +74,9 @@ void draw_caption(cv::Mat& picture, const std::string& caption) {
 }
 
 /// Cells of the map, coarse enough for the picture.
-RoadGrid overview(const MapView& map, double m_per_px) {
+RoadGrid overview(const MapView& map, double gsd_m) {
   double cell_m = map.cell_m;
-  while (2.0 * cell_m <= m_per_px) cell_m *= 2.0;
+  while (2.0 * cell_m <= gsd_m) cell_m *= 2.0;
   return map.read(GridGeometry::covering(map.extent, cell_m));
 }
 
@@ -97,7 +97,7 @@ cv::Mat shades(const RoadGrid& grid) {
 }
 
 void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
-  const double scale = backdrop.m_per_px / imagery.image.gsd_m;
+  const double scale = backdrop.gsd_m / imagery.image.gsd_m;
   const double x = (backdrop.box.min.east_m - imagery.north_west.east_m) / imagery.image.gsd_m;
   const double y = (imagery.north_west.north_m - backdrop.box.max.north_m) / imagery.image.gsd_m;
   const cv::Matx23d source_from_target(scale, 0.0, x + 0.5 * scale - 0.5, 0.0, scale, y + 0.5 * scale - 0.5);
@@ -118,11 +118,11 @@ void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
 
 Backdrop backdrop_of(const MapView& map, const Orthoimage* imagery, int longest_px) {
   Backdrop backdrop;
-  backdrop.m_per_px = std::max(map.extent.width_m(), map.extent.height_m()) / longest_px;
-  const RoadGrid grid = overview(map, backdrop.m_per_px);
+  backdrop.gsd_m = std::max(map.extent.width_m(), map.extent.height_m()) / longest_px;
+  const RoadGrid grid = overview(map, backdrop.gsd_m);
   backdrop.box = grid.geometry.box();
-  const cv::Size size(std::max(1, static_cast<int>(backdrop.box.width_m() / backdrop.m_per_px)),
-                      std::max(1, static_cast<int>(backdrop.box.height_m() / backdrop.m_per_px)));
+  const cv::Size size(std::max(1, static_cast<int>(backdrop.box.width_m() / backdrop.gsd_m)),
+                      std::max(1, static_cast<int>(backdrop.box.height_m() / backdrop.gsd_m)));
   cv::Mat grey;
   cv::resize(shades(grid), grey, size, 0, 0, cv::INTER_AREA);
   cv::cvtColor(grey, backdrop.pixels, cv::COLOR_GRAY2BGR);

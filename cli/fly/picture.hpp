@@ -17,10 +17,10 @@ namespace roadfix::fly {
 struct Backdrop {
   cv::Mat pixels;  ///< CV_8UC3
   GridBox box;
-  double m_per_px = 1.0;
+  double gsd_m = 1.0;
 
   cv::Point2d at(GridPoint point) const {
-    return {(point.east_m - box.min.east_m) / m_per_px, (box.max.north_m - point.north_m) / m_per_px};
+    return {(point.east_m - box.min.east_m) / gsd_m, (box.max.north_m - point.north_m) / gsd_m};
   }
 };
 

@@ -33,10 +33,10 @@ class Camera {
   }
 
   CameraFrame take(const Shot& shot) const {
-    const double gsd = imagery_.image.gsd_m;
+    const double gsd_m = imagery_.image.gsd_m;
     const Footprint covered{shot.scale * footprint_.width_m, shot.scale * footprint_.height_m};
-    GroundImage frame = cut_out(imagery_, shot.pose, covered, shot.scale * gsd);
-    frame.gsd_m = gsd;
+    GroundImage frame = cut_out(imagery_, shot.pose, covered, shot.scale * gsd_m);
+    frame.gsd_m = gsd_m;
     return {std::move(frame), std::nullopt, cell_m_, shot.seed};
   }
 

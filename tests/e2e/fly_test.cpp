@@ -97,6 +97,7 @@ void expect_equal(const std::vector<fly::Run>& a, const std::vector<fly::Run>& b
 
 TEST_F(Vehicles, AreFollowedAndLeaveNoTracksBehind) {
   const auto running = service("tracks.sqlite");
+  campaign_.flights.number = 2;
   plan_.keeps_tracks = false;
   flight_plan_.missing_share = 0.0;
   std::size_t shown = 0;
@@ -113,6 +114,7 @@ TEST_F(Vehicles, LeaveNoTracksBehindWhereTheyFailOrAreStopped) {
   const auto running = service("tracks.sqlite");
   httplib::Client client = testing::client_of(*running);
   const auto tracks = [&] { return testing::json_of(client.Get("/v1/tracks"))["tracks"].size(); };
+  campaign_.flights.number = 2;  // the one that fails and one beside it
   plan_.keeps_tracks = false;
   std::size_t active = 0;
   const auto code_when = [&](const auto& first_step) {

@@ -78,21 +78,4 @@ BlockCover common_cover(std::span<const BlockCover* const> covers) {
   return common;
 }
 
-std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side) {
-  std::vector<BlockRun> runs;
-  const int half = side / 2;
-  for (int row = 0; row < side; ++row) {
-    int first = -1;
-    for (int col = 0; col <= side; ++col) {
-      const bool covered = col < side && blocks[static_cast<std::size_t>(row * side + col)];
-      if (covered && first < 0) first = col;
-      if (!covered && first >= 0) {
-        runs.push_back({row - half, first - half, col - half});
-        first = -1;
-      }
-    }
-  }
-  return runs;
-}
-
 }  // namespace roadfix

@@ -21,14 +21,4 @@ BlockCover cover_of(const CellArray& cells, CellOffset nadir);
 /// What all of them cover (inner), and what any of them does (outer).
 BlockCover common_cover(std::span<const BlockCover* const> covers);
 
-/// Blocks relative to the nadir's, along a row: [first, last).
-struct BlockRun {
-  int row = 0;
-  int first = 0;
-  int last = 0;
-};
-
-/// The marked ones of side x side blocks, the nadir's in the middle.
-std::vector<BlockRun> runs_of(const std::vector<bool>& blocks, int side);
-
 }  // namespace roadfix

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "core/match/footprint.hpp"
 
 namespace roadfix {
 namespace {
@@ -12,7 +15,19 @@ constexpr int kTileRows = 16;  // of blocks; with kRun columns and the footprint
 /// The feature map's sums where parts of the map are unobserved, for a run of blocks.
 struct PartialSums {
   RunSums sum_min{}, sum_max{}, square_min{};
+
+  PartialFeatures at(const TurnedFeatures& turned, std::size_t i) const {
+    return {sum_min[i] * turned.sum_min.unit, sum_max[i] * turned.sum_max.unit, square_min[i] * turned.square_min.unit};
+  }
 };
+
+PartialSums partial_sums(const BoundMap& map, const TurnedFeatures& turned, int col, int row) {
+  PartialSums sums;
+  term_sums(map, turned.sum_min, col, row, sums.sum_min);
+  term_sums(map, turned.sum_max, col, row, sums.sum_max);
+  term_sums(map, turned.square_min, col, row, sums.square_min);
+  return sums;
+}
 
 }  // namespace
 
@@ -34,13 +49,14 @@ std::vector<BlockTile> BlockScan::tiles() const {
 BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline) const {
   BlockScanResult result;
   std::vector<Row> rows = rows_of(tile);
+  const GroundSums ground = ground_below(tile);
   for (const Sector& sector : headings_.sectors()) {
     if (deadline.over()) return {{}, 0, false};
     cover(sector, tile, rows);
     for (std::size_t h = sector.first; h < sector.last; ++h) {
       for (std::size_t r = 0; r < rows.size(); ++r) {
         if (rows[r].excluded) continue;
-        scan_row(h, tile.col, tile.row + static_cast<int>(r), rows[r], result.nodes);
+        scan_row(h, tile.col, tile.row + static_cast<int>(r), rows[r], ground, result.nodes);
       }
     }
   }
@@ -81,12 +97,18 @@ void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<R
   }
 }
 
-void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known, std::vector<BoundNode>& nodes) const {
+GroundSums BlockScan::ground_below(const BlockTile& tile) const {
+  const int reach = footprint_reach(*problem_.search.features);
+  return {problem_.map, kBlockCells * tile.col - reach, kBlockCells * tile.row - reach,
+          kBlockCells * BoundMap::kRun + 2 * reach, kBlockCells * tile.rows + 2 * reach};
+}
+
+void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known, const GroundSums& ground,
+                         std::vector<BoundNode>& nodes) const {
   const TurnedFeatures& turned = headings_.turned(heading);
   RunSums cross;
   term_sums(problem_.map, turned.cross, col, row, cross);
-  bool partial_known = false;
-  PartialSums partial;
+  std::optional<PartialSums> partial;
   for (std::size_t i = 0; i < BoundMap::kRun; ++i) {
     const double cross_max = cross[i] * turned.cross.unit;
     if (cross_max < known.needed[i]) continue;
@@ -95,26 +117,16 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
     if (map_observed) {
       narrow(sums, turned);
     } else {
-      if (!partial_known) {
-        partial_known = true;
-        term_sums(problem_.map, turned.sum_min, col, row, partial.sum_min);
-        term_sums(problem_.map, turned.sum_max, col, row, partial.sum_max);
-        term_sums(problem_.map, turned.square_min, col, row, partial.square_min);
-      }
-      narrow(sums, turned,
-             {partial.sum_min[i] * turned.sum_min.unit, partial.sum_max[i] * turned.sum_max.unit,
-              partial.square_min[i] * turned.square_min.unit});
+      if (!partial) partial = partial_sums(problem_.map, turned, col, row);
+      narrow(sums, turned, partial->at(turned, i));
     }
-    const double bound = score_bound(sums, problem_.full_cells, problem_.search.min_cells);
+    if (problem_.bound_of(sums) <= best_) continue;
+    const int block_col = col + static_cast<int>(i);
+    narrow(sums, turned, ground.below(turned.runs, block_col, row));
+    const double bound = problem_.bound_of(sums);
     if (bound <= best_) continue;
-    BoundNode node{col + static_cast<std::int32_t>(i), row, static_cast<std::int32_t>(heading),
-                   std::nextafter(static_cast<float>(bound), 2.0F)};
-    node.map_min = known.run.inner.value[i];
-    node.map_max = known.run.outer.value[i];
-    node.square_min = known.run.inner.square[i];
-    node.square_max = known.run.outer.square[i];
-    node.map_observed = map_observed;
-    nodes.push_back(node);
+    nodes.push_back(
+        {block_col, row, static_cast<std::int32_t>(heading), std::nextafter(static_cast<float>(bound), 2.0F), sums});
   }
 }
 

@@ -17,9 +17,7 @@ struct BoundNode {
   std::int32_t row = 0;
   std::int32_t heading = 0;  ///< index into the headings searched
   float bound = 0.0F;
-  /// Sums of the map under the footprint, set only where all of it is observed.
-  std::uint32_t map_min = 0, map_max = 0, square_min = 0, square_max = 0;
-  bool map_observed = false;
+  BlockSums sums;  ///< that it follows from
 };
 
 /// Blocks that are bounded together.
@@ -57,7 +55,9 @@ class BlockScan {
 
   std::vector<Row> rows_of(const BlockTile& tile) const;
   void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
-  void scan_row(std::size_t heading, int col, int row, const Row& known, std::vector<BoundNode>& nodes) const;
+  GroundSums ground_below(const BlockTile& tile) const;
+  void scan_row(std::size_t heading, int col, int row, const Row& known, const GroundSums& ground,
+                std::vector<BoundNode>& nodes) const;
 
   const BoundProblem& problem_;
   const HeadingSectors& headings_;

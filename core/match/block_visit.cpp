@@ -16,16 +16,16 @@ constexpr int kQuarterCells = kBlockCells / 2;  // along an edge
 std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
   const FeatureMap turned = problem_.rotator.rotated(problem_.heading(heading));
   const PackedFootprint above(above_base(turned, problem_.base));
-  std::vector<Part> parts = parts_of(heading, nodes);
+  std::vector<Part> parts = parts_of(nodes);
   parts = surviving(std::move(parts), above, kBlockCells);
   parts = surviving(quarters(parts), above, kQuarterCells);
   return best_of(heading, PackedFootprint(turned), parts);
 }
 
-std::vector<BlockVisit::Part> BlockVisit::parts_of(std::size_t heading, std::span<const BoundNode> nodes) const {
+std::vector<BlockVisit::Part> BlockVisit::parts_of(std::span<const BoundNode> nodes) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    parts.push_back({i, kBlockCells * nodes[i].col, kBlockCells * nodes[i].row, sums_at(heading, nodes[i])});
+    parts.push_back({i, kBlockCells * nodes[i].col, kBlockCells * nodes[i].row, nodes[i].sums});
   }
   return parts;
 }
@@ -53,33 +53,9 @@ std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, con
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     part.sums.cross_max = static_cast<double>(products[i]);
-    if (score_bound(part.sums, problem_.full_cells, problem_.search.min_cells) > best_) result.push_back(part);
+    if (problem_.bound_of(part.sums) > best_) result.push_back(part);
   }
   return result;
-}
-
-/// What is known of a block without its cross sum.
-BlockSums BlockVisit::sums_at(std::size_t heading, const BoundNode& node) const {
-  const Sector& sector = headings_.sector_of(heading);
-  const TurnedFeatures& turned = headings_.turned(heading);
-  if (node.map_observed) {
-    BlockSums sums = sector.features;
-    sums.map = {static_cast<double>(node.map_min), static_cast<double>(node.map_max)};
-    sums.map_square = {static_cast<double>(node.square_min), static_cast<double>(node.square_max)};
-    narrow(sums, turned);
-    return sums;
-  }
-  SectorRun run;
-  covered_sums(problem_.map, sector.inner, node.col, node.row, run.inner);
-  covered_sums(problem_.map, sector.outer, node.col, node.row, run.outer);
-  BlockSums sums = HeadingSectors::covered(sector, run, 0).sums;
-  const auto at = [&](const BoundTerms& terms) {
-    RunSums values;
-    term_sums(problem_.map, terms, node.col, node.row, values);
-    return values[0] * terms.unit;
-  };
-  narrow(sums, turned, {at(turned.sum_min), at(turned.sum_max), at(turned.square_min)});
-  return sums;
 }
 
 std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFootprint& footprint,

@@ -13,8 +13,7 @@ namespace roadfix {
 class BlockVisit {
  public:
   /// `best`: what a pose has to exceed; may grow meanwhile.
-  BlockVisit(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& best)
-      : problem_(problem), headings_(headings), best_(best) {}
+  BlockVisit(const BoundProblem& problem, const std::atomic<double>& best) : problem_(problem), best_(best) {}
 
   /// The best pose of each node that has one above the best. All nodes are of this heading. Thread-safe.
   std::vector<LatticePose> best_poses(std::size_t heading, std::span<const BoundNode> nodes) const;
@@ -28,15 +27,13 @@ class BlockVisit {
     BlockSums sums;
   };
 
-  std::vector<Part> parts_of(std::size_t heading, std::span<const BoundNode> nodes) const;
+  static std::vector<Part> parts_of(std::span<const BoundNode> nodes);
   static std::vector<Part> quarters(std::span<const Part> parts);
   std::vector<Part> surviving(std::vector<Part> parts, const PackedFootprint& above, int side) const;
-  BlockSums sums_at(std::size_t heading, const BoundNode& node) const;
   std::vector<LatticePose> best_of(std::size_t heading, const PackedFootprint& footprint,
                                    std::span<const Part> quarters) const;
 
   const BoundProblem& problem_;
-  const HeadingSectors& headings_;
   const std::atomic<double>& best_;
 };
 

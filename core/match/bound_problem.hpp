@@ -4,6 +4,7 @@
 #include "core/grid/feature_rotator.hpp"
 #include "core/match/bound_terms.hpp"
 #include "core/match/branch_and_bound.hpp"
+#include "core/match/score_bound.hpp"
 
 namespace roadfix {
 
@@ -25,6 +26,7 @@ struct BoundProblem {
         full_cells(static_cast<double>(asked.features->cells.observed_count())),
         base(base_of(*asked.features)) {}
 
+  double bound_of(const BlockSums& sums) const { return score_bound(sums, full_cells, search.min_cells); }
   /// The heading with this index among those searched.
   Angle heading(std::size_t index) const { return search.bins.heading(search.headings[index]); }
   /// Whether this cell of the map is one of the positions searched,

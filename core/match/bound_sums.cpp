@@ -25,9 +25,9 @@ void sum_terms(const BoundTerms& terms, const std::uint8_t* const* planes, std::
   }
 }
 
-void sum_runs(std::span<const BlockRun> runs, const std::uint32_t* before, std::ptrdiff_t stride, std::uint32_t* out) {
+void sum_runs(std::span<const RowRun> runs, const std::uint32_t* before, std::ptrdiff_t stride, std::uint32_t* out) {
   for (int i = 0; i < BoundMap::kRun; ++i) out[i] = 0;
-  for (const BlockRun& run : runs) {
+  for (const RowRun& run : runs) {
     const std::uint32_t* row = before + run.row * stride;
     for (int i = 0; i < BoundMap::kRun; ++i) out[i] += row[run.last + i] - row[run.first + i];
   }
@@ -88,13 +88,13 @@ HWY_ATTR void sum_terms(const BoundTerms& terms, const std::uint8_t* const* plan
 }
 
 /// What lies between the two places of each run.
-HWY_ATTR void sum_runs(std::span<const BlockRun> runs, const std::uint32_t* before, std::ptrdiff_t stride,
+HWY_ATTR void sum_runs(std::span<const RowRun> runs, const std::uint32_t* before, std::ptrdiff_t stride,
                        std::uint32_t* out) {
   constexpr hn::CappedTag<std::uint32_t, BoundMap::kRun> kLanes;
   const std::size_t step = hn::Lanes(kLanes);
   for (std::size_t start = 0; start < BoundMap::kRun; start += step) {
     auto sum = hn::Zero(kLanes);
-    for (const BlockRun& run : runs) {
+    for (const RowRun& run : runs) {
       const std::uint32_t* row = before + run.row * stride + start;
       sum = hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + run.last), hn::LoadU(kLanes, row + run.first)));
     }
@@ -121,7 +121,7 @@ void term_sums(const BoundMap& map, const BoundTerms& terms, int col, int row, R
   HWY_DYNAMIC_DISPATCH(sum_terms)(terms, planes.data(), map.stride(), sums.data());
 }
 
-void covered_sums(const BoundMap& map, std::span<const BlockRun> runs, int col, int row, CoveredSums& sums) {
+void covered_sums(const BoundMap& map, std::span<const RowRun> runs, int col, int row, CoveredSums& sums) {
   const BoundMap::Sums before = map.sums_before(col, row);
   HWY_DYNAMIC_DISPATCH(sum_runs)(runs, before.cells, map.stride(), sums.cells.data());
   HWY_DYNAMIC_DISPATCH(sum_runs)(runs, before.value, map.stride(), sums.value.data());

@@ -7,6 +7,7 @@
 
 #include "core/match/bound_map.hpp"
 #include "core/match/bound_terms.hpp"
+#include "core/match/row_run.hpp"
 
 namespace roadfix {
 
@@ -19,6 +20,6 @@ void term_sums(const BoundMap& map, const BoundTerms& terms, int col, int row, R
 struct CoveredSums {
   RunSums cells{}, value{}, square{};
 };
-void covered_sums(const BoundMap& map, std::span<const BlockRun> runs, int col, int row, CoveredSums& sums);
+void covered_sums(const BoundMap& map, std::span<const RowRun> runs, int col, int row, CoveredSums& sums);
 
 }  // namespace roadfix

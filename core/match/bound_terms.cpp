@@ -196,6 +196,7 @@ TurnedFeatures::TurnedFeatures(const FeatureMap& turned, Angle heading, int base
     square += double{1} * cell * cell;
   }
   cover = cover_of(array, nadir);
+  runs = runs_of(array.cols(), array.rows(), nadir, [&](int c, int r) { return is_observed(array.at(c, r)); });
 
   Remainder rest(array, base);
   Weighted pieces = line_terms(hints, heading, nadir, map.span(), rest);

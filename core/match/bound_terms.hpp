@@ -9,6 +9,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/match/block_cover.hpp"
 #include "core/match/bound_map.hpp"
+#include "core/match/row_run.hpp"
 
 namespace roadfix {
 
@@ -58,6 +59,7 @@ struct TurnedFeatures {
   BoundTerms cross;                             ///< sum of (l - base) m', at most
   BoundTerms sum_min, sum_max, square_min;      ///< over cells where the map is observed
   BlockCover cover;
+  std::vector<RowRun> runs;  ///< the observed cells, relative to the nadir's
 
   /// `turned` = rotated(features, heading).
   TurnedFeatures(const FeatureMap& turned, Angle heading, int base, const LineHints& hints, const BoundMap& map);

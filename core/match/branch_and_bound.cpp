@@ -15,7 +15,7 @@
 namespace roadfix {
 namespace {
 
-constexpr std::size_t kBatch = std::size_t{1} << 20U;  // looked into before the best score is read again
+constexpr std::size_t kBatch = std::size_t{1} << 19U;  // looked into before the best score is read again
 
 bool higher(const BoundNode& a, const BoundNode& b) { return a.bound > b.bound; }
 
@@ -28,7 +28,7 @@ class BranchAndBound {
         headings_(problem_),
         best_(search.known),
         block_scan_(problem_, headings_, best_),
-        block_visit_(problem_, headings_, best_) {}
+        block_visit_(problem_, best_) {}
 
   BoundedResult run() {
     const bool scanned = headings_.turn(deadline_) && scan();

@@ -20,6 +20,13 @@ void narrow(BlockSums& sums, const TurnedFeatures& turned, const PartialFeatures
   sums.feature_square_min = observed.square_min;
 }
 
+void narrow(BlockSums& sums, const TurnedFeatures& turned, const GroundRange& ground) {
+  if (ground.cells.min == turned.cells) narrow(sums, turned);
+  sums.cells = ground.cells;
+  sums.map = ground.value;
+  sums.map_square = ground.square;
+}
+
 bool HeadingSectors::turn(const Deadline& deadline) {
   const BoundedSearch& search = problem_.search;
   const LineHints hints = find_lines(*search.features, problem_.base);
@@ -60,9 +67,13 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
     sums.feature_square_min = std::min(sums.feature_square_min, turned.square);
   }
   const BlockCover common = common_cover(covers);
-  sector.inner = runs_of(common.inner, common.side);
-  sector.outer = runs_of(common.outer, common.side);
-  for (const BlockRun& run : sector.outer) sector.outer_blocks += run.last - run.first;
+  const auto runs = [side = common.side](const std::vector<bool>& blocks) {
+    const CellOffset middle{side / 2, side / 2};
+    return runs_of(side, side, middle, [&](int c, int r) { return blocks[static_cast<std::size_t>(r * side + c)]; });
+  };
+  sector.inner = runs(common.inner);
+  sector.outer = runs(common.outer);
+  for (const RowRun& run : sector.outer) sector.outer_blocks += run.last - run.first;
   return sector;
 }
 

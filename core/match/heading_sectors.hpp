@@ -7,6 +7,7 @@
 
 #include "core/match/bound_problem.hpp"
 #include "core/match/bound_sums.hpp"
+#include "core/match/ground_sums.hpp"
 #include "core/match/score_bound.hpp"
 
 namespace roadfix {
@@ -15,7 +16,7 @@ namespace roadfix {
 struct Sector {
   std::size_t first = 0;
   std::size_t last = 0;  ///< after the last heading
-  std::vector<BlockRun> inner, outer;
+  std::vector<RowRun> inner, outer;
   double outer_blocks = 0.0;
   BlockSums features;  ///< what holds for all of them; map sums are left out
 };
@@ -34,6 +35,8 @@ struct PartialFeatures {
 /// observed, and where parts of it are not.
 void narrow(BlockSums& sums, const TurnedFeatures& turned);
 void narrow(BlockSums& sums, const TurnedFeatures& turned, const PartialFeatures& observed);
+/// Puts what the map holds under a heading's footprint in place of what it holds under those of its sector.
+void narrow(BlockSums& sums, const TurnedFeatures& turned, const GroundRange& ground);
 
 class HeadingSectors {
  public:

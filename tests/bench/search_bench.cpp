@@ -127,6 +127,13 @@ BENCHMARK(search_city)
     ->Args({1000, 1, 60, 0})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(kQueries);
+BENCHMARK(search_city)
+    ->Name("prove_city")
+    ->ArgNames({"radius_m", "warm", "proof_s", "scale_percent"})
+    ->Args({4000, 0, 600, 0})
+    ->Args({0, 0, 600, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 /// What an altitude or a tilt that is known roughly costs: circles of 1 km, feature maps of another size than they say
 /// (1 sigma) and tilted (1 sigma per axis), with and without a range of sizes to search.

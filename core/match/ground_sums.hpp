@@ -1,0 +1,40 @@
+// What the map holds under a footprint, exactly, while its nadir is anywhere in a block.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/match/bound_map.hpp"
+#include "core/match/row_run.hpp"
+#include "core/match/score_bound.hpp"
+
+namespace roadfix {
+
+/// The least and the most of sums under a footprint over the positions of a block.
+struct GroundRange {
+  Interval cells;   ///< that the map has observed
+  Interval value;   ///< above the map's base
+  Interval square;  ///< of those
+};
+
+/// Part of a map as sums along its rows, so that a run of cells is a difference of two. Thread-safe once built.
+class GroundSums {
+ public:
+  /// Of cols x rows cells from (col, row) of the map on; what lies beyond it is unobserved.
+  GroundSums(const BoundMap& map, int col, int row, int cols, int rows);
+
+  /// `footprint`: its observed cells, relative to the nadir. From every position of the block (col, row) of the map it
+  /// lies within the part.
+  GroundRange below(std::span<const RowRun> footprint, int block_col, int block_row) const;
+
+ private:
+  int col_;
+  int row_;
+  std::ptrdiff_t stride_;
+  /// Before each cell and the end of a row, of that row: observed cells + 2^32 times values, and squares.
+  std::vector<std::uint64_t> before_;
+};
+
+}  // namespace roadfix

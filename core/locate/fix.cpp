@@ -142,6 +142,33 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   return result;
 }
 
+/// Whether a position lies beyond the region of the mode that a probability speaks of.
+bool is_beyond(const MapView& map, const Calibration& calibration, double nadir_sigma_m, const SearchMode& mode,
+               GridPoint position) {
+  const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
+  const double registration_m = map.registration_sigma_m(mode.pose.position);
+  const double more2 = scale2 * registration_m * registration_m + nadir_sigma_m * nadir_sigma_m;
+  const double east2 = scale2 * mode.covariance[0][0] + more2;
+  const double north2 = scale2 * mode.covariance[1][1] + more2;
+  const double both = scale2 * mode.covariance[0][1];
+  const double east = position.east_m - mode.pose.position.east_m;
+  const double north = position.north_m - mode.pose.position.north_m;
+  const double squared =
+      (north2 * east * east - 2.0 * both * east * north + east2 * north * north) / (east2 * north2 - both * both);
+  return squared > kRegionSigmas * kRegionSigmas;
+}
+
+/// Another peak that the region of the best mode leaves out is a place of its own, however near it is.
+void count_nearby(const MapView& map, const Calibration& calibration, double nadir_sigma_m, SearchResult& found) {
+  if (!found.nearby) return;
+  const SearchMode& nearby = *found.nearby;
+  if (!is_beyond(map, calibration, nadir_sigma_m, found.modes.front(), nearby.pose.position)) return;
+  const auto lower = [&](const SearchMode& mode) { return mode.score < nearby.score; };
+  found.modes.insert(std::find_if(found.modes.begin() + 1, found.modes.end(), lower), nearby);
+  std::vector<double>& rivals = found.background.rivals_within;
+  rivals.insert(std::ranges::upper_bound(rivals, nearby.score, std::ranges::greater{}), nearby.score);
+}
+
 }  // namespace
 
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
@@ -162,8 +189,9 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
     }
   }
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
-  const SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
-                                    search_options_of(options, map, started));
+  SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
+                              search_options_of(options, map, started));
+  count_nearby(map, calibration, cells.nadir_sigma_m, found);
   Decision decision = decide(found, calibration, options.confidence);
   fix.status = decision.status;
   fix.reason = std::move(decision.reason);

@@ -41,7 +41,7 @@ SearchResult search(const GridReader& read, double finest_cell_m, const FeatureM
     prove_at(k, candidates);
   }
   candidates = levels.distinct(candidates, levels.finest(), scan.separation_m(), kDistinctBins, kSurvivors);
-  rank(levels, scan.scanned(), options, deadline, candidates, result);
+  rank(levels, scan, options, deadline, candidates, result);
   return result;
 }
 

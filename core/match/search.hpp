@@ -100,6 +100,9 @@ struct ScoreBackground {
 
 struct SearchResult {
   std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
+  /// Another peak within the region, so close to the best mode that the two are no distinct places, at its heading and
+  /// scale: no higher than the mode. What the map knows of its own accuracy tells whether it is another place.
+  std::optional<SearchMode> nearby;
   /// The best place around the region or up to 5 degrees beside its headings, where surroundings were given.
   std::optional<SearchMode> outside;
   ScoreBackground background;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <iterator>
 #include <span>
+#include <utility>
 
 #include "core/grid/resample.hpp"
+#include "core/match/nearby_peak.hpp"
 #include "core/match/peak.hpp"
 #include "core/match/shared_road.hpp"
 
@@ -48,6 +50,23 @@ SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& backgro
 bool on_one_peak(const Level& finest, const SearchMode& a, const SearchMode& b) {
   return distance_m(a.pose.position, b.pose.position) <= kPeakRadius * finest.cell_m() &&
          angular_distance(a.pose.heading, b.pose.heading) <= double{kPeakRadius} * finest.bins.halved().step();
+}
+
+/// Of the finest level, whose bins are twice as wide as those of modes.
+LatticePose lattice_pose_of(const Level& finest, const SearchMode& mode) {
+  const int bin = static_cast<int>(std::lround(mode.pose.heading.radians() / finest.bins.step().radians()));
+  return {lattice_index(mode.pose.position, finest.cell_m()), finest.bins.wrapped(bin), mode.score,
+          finest.scales.nearest(std::log(mode.scale))};
+}
+
+std::optional<SearchMode> nearby_mode(const SearchLevels& levels, double apart_m, const SearchMode& best,
+                                      const ScoreBackground& background) {
+  const Level& finest = levels.finest();
+  const auto peak = nearby_peak(finest, lattice_pose_of(finest, best), apart_m);
+  if (!peak) return std::nullopt;
+  const SearchMode mode = mode_at(finest, *peak, background);
+  const bool another = levels.region().contains(mode.pose) && !on_one_peak(finest, mode, best);
+  return another ? std::optional(mode) : std::nullopt;
 }
 
 double shared_road_m2(const Level& finest, const SearchMode& mode) {
@@ -122,9 +141,10 @@ void set_rivals(std::span<const LatticePose> inside, std::span<const LatticePose
 
 }  // namespace
 
-void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOptions& options, const Deadline& deadline,
+void rank(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options, const Deadline& deadline,
           const std::vector<LatticePose>& candidates, SearchResult& result) {
   const Level& finest = levels.finest();
+  const PoseRegion& scanned = scan.scanned();
   std::vector<LatticePose> inside;
   std::vector<LatticePose> around;
   for (const LatticePose& pose : candidates) {
@@ -143,6 +163,12 @@ void rank(const SearchLevels& levels, const PoseRegion& scanned, const SearchOpt
                result.modes);
   }
   SearchMode& best = result.modes.front();
+  if (deadline.over()) {
+    result.refined = false;
+  } else {
+    result.nearby = nearby_mode(levels, scan.separation_m(), best, result.background);
+  }
+  if (result.nearby && result.nearby->score > best.score) std::swap(*result.nearby, best);
   best.shared_road_m2 = shared_road_m2(finest, best);
   if (!options.surroundings) return;
   const PoseRegion nearly = levels.region().grown(0.0, kHeadingsBeyond);  // what lies at other headings is no rival

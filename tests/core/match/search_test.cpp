@@ -89,6 +89,26 @@ TEST(Search, GivesEachPeakOneMode) {
   EXPECT_GT(pairs, 0);
 }
 
+TEST(Search, TellsOfAPeakThatIsNoDistinctPlace) {
+  const RoadGrid map = street_map(9, town(900, 900));
+  RoadGrid twice = map;
+  for (int row = 0; row < map.cells.rows(); ++row) {
+    for (int col = 14; col < map.cells.cols(); ++col) {
+      twice.cells.at(col, row) = std::max(map.cells.at(col, row), map.cells.at(col - 14, row));
+    }
+  }
+  PoseRegion region;
+  region.box = map.geometry.box();
+  const GridPose truth{region.box.centre(), Angle::degrees(30.0)};
+  const FeatureMap seen = cut_out(map, truth, 160, 160, 2.0);
+  const SearchResult found = search(reader_of(twice), 2.0, seen, region, {});
+  ASSERT_TRUE(found.nearby);
+  EXPECT_LE(found.nearby->score, found.modes[0].score);
+  EXPECT_NEAR(distance_m(found.nearby->pose.position, found.modes[0].pose.position), 28.0, 3.0);
+  const SearchResult once = search(reader_of(map), 2.0, seen, region, {});
+  EXPECT_TRUE(!once.nearby || once.nearby->score < 0.7 * once.modes[0].score);
+}
+
 TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   const RoadGrid map = street_map(3, town(2000, 1600));
   std::mt19937_64 random(4);

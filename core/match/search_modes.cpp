@@ -17,6 +17,10 @@ namespace {
 
 constexpr std::size_t kOutside = 4;  // modes around the region, to tell the best of
 
+// A place at a heading beside those that were told is no rival, unless it is ten times as likely as the best one: of a
+// thousand headings that are told one is wrong (a camera mounted the other way round).
+const double kHeadingIsWrong = std::log(10.0);
+
 SearchMode mode_at(Level level, LatticePose pose, const ScoreBackground& background) {
   level.bins = level.bins.halved();
   pose.bin *= 2;
@@ -171,8 +175,12 @@ void rank(const SearchLevels& levels, const SearchScan& scan, const SearchOption
   if (result.nearby && result.nearby->score > best.score) std::swap(*result.nearby, best);
   best.shared_road_m2 = shared_road_m2(finest, best);
   if (!options.surroundings) return;
-  const PoseRegion nearly = levels.region().grown(0.0, kHeadingsBeyond);  // what lies at other headings is no rival
-  std::erase_if(around, [&](const LatticePose& pose) { return !nearly.contains(finest.pose_of(pose).heading); });
+  const PoseRegion nearly = levels.region().grown(0.0, kHeadingsBeyond);
+  const double best_likelihood = result.background.log_likelihood(best.score);
+  std::erase_if(around, [&](const LatticePose& pose) {
+    const double ahead = result.background.log_likelihood(pose.score) - best_likelihood;
+    return !nearly.contains(finest.pose_of(pose).heading) && ahead < kHeadingIsWrong;
+  });
   result.outside = best_around(levels, scanned, modes_of(finest, around, kOutside, deadline, result), best);
 }
 

@@ -58,13 +58,25 @@ TEST_F(SearchSurroundings, EndWhereTheyAreSaidTo) {
   EXPECT_FALSE(found(region, region.box).outside) << "nothing lies around it";
 }
 
-TEST_F(SearchSurroundings, CountAtTheHeadingsOfTheRegionAlone) {
+TEST_F(SearchSurroundings, CountAtTheHeadingsOfTheRegionWhereNoneFitsFarBetter) {
   PoseRegion region = beside(-600.0);
   region.heading = truth_.heading + Angle::degrees(90.0);
   region.heading_half_width = Angle::degrees(20.0);
-  const SearchResult result = found(region, map_.geometry.box());
+  const SearchResult result = found(region, grown(region.box, 200.0));  // without the true place
   ASSERT_TRUE(result.outside);
-  EXPECT_LT(angular_distance(result.outside->pose.heading, region.heading).degrees(), 23.0);
+  EXPECT_LT(angular_distance(result.outside->pose.heading, region.heading).degrees(), 25.0);
+}
+
+TEST_F(SearchSurroundings, TellOfAPlaceAtAnotherHeadingThatFitsFarBetter) {
+  for (const double wrong_deg : {30.0, 90.0}) {
+    PoseRegion region = beside(60.0);
+    region.heading = truth_.heading + Angle::degrees(wrong_deg);
+    region.heading_half_width = Angle::degrees(10.0);
+    const SearchResult result = found(region, map_.geometry.box());
+    ASSERT_TRUE(result.outside);
+    EXPECT_LT(distance_m(result.outside->pose.position, truth_.position), 1.0);
+    EXPECT_LT(angular_distance(result.outside->pose.heading, truth_.heading).degrees(), 1.0);
+  }
 }
 
 TEST_F(SearchSurroundings, TellOfChanceAsTheyDoOfALargerRegion) {

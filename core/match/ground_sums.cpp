@@ -17,18 +17,20 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kSide = 2 * kBlockCells;  // numbers of the positions of a block side by side
+constexpr std::ptrdiff_t kEach = 2;  // numbers of a position
+constexpr std::size_t kNumbers = kEach * kBlockCells;
 
 /// Adds what lies between the ends of each run; `nadir` is that of the first position.
 HWY_ATTR void sum_runs(std::span<const RowRun> runs, const std::uint64_t* nadir, std::ptrdiff_t stride,
                        std::uint64_t* out) {
-  constexpr hn::CappedTag<std::uint64_t, kSide> kLanes;
+  constexpr hn::CappedTag<std::uint64_t, kNumbers> kLanes;
   const std::size_t step = hn::Lanes(kLanes);
-  for (std::size_t start = 0; start < kSide; start += step) {
+  for (std::size_t start = 0; start < kNumbers; start += step) {
     auto sum = hn::Zero(kLanes);
     for (const RowRun& run : runs) {
       const std::uint64_t* row = nadir + run.row * stride + start;
-      sum = hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + 2 * run.last), hn::LoadU(kLanes, row + 2 * run.first)));
+      sum =
+          hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + kEach * run.last), hn::LoadU(kLanes, row + kEach * run.first)));
     }
     hn::StoreU(sum, kLanes, out + start);
   }
@@ -76,9 +78,10 @@ GroundRange GroundSums::below(std::span<const RowRun> footprint, int block_col, 
   constexpr double kMax = std::numeric_limits<double>::max();
   GroundRange range{{kMax, 0.0}, {kMax, 0.0}, {kMax, 0.0}};
   for (int i = 0; i < kBlockCells; ++i) {
-    const std::ptrdiff_t nadir = (kBlockCells * block_row + i - row_) * stride_ + kBlockCells * block_col - col_;
+    const std::ptrdiff_t col = kBlockCells * block_col - col_;
+    const std::ptrdiff_t row = kBlockCells * block_row + i - row_;
     std::array<std::uint64_t, std::size_t{2} * kBlockCells> sums{};
-    HWY_DYNAMIC_DISPATCH(sum_runs)(footprint, before_.data() + 2 * nadir, 2 * stride_, sums.data());
+    HWY_DYNAMIC_DISPATCH(sum_runs)(footprint, before_.data() + 2 * (row * stride_ + col), 2 * stride_, sums.data());
     for (std::size_t k = 0; k < sums.size(); k += 2) {
       include(range.cells, sums[k] & std::numeric_limits<std::uint32_t>::max());
       include(range.value, sums[k] >> kValueBits);

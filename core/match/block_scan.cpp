@@ -29,7 +29,13 @@ PartialSums partial_sums(const BoundMap& map, const TurnedFeatures& turned, int 
   return sums;
 }
 
+// Streets at right angles fit as well at every block: there only the closer look excludes any.
+constexpr int kTriedAtLeast = 64;
+constexpr int kTriedForOne = 10;
+
 }  // namespace
+
+bool BlockScan::Ground::is_worth_its_time() const { return tried < kTriedAtLeast || kTriedForOne * excluded >= tried; }
 
 std::vector<BlockTile> BlockScan::tiles() const {
   const GridGeometry& positions = problem_.search.positions;
@@ -49,7 +55,7 @@ std::vector<BlockTile> BlockScan::tiles() const {
 BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline) const {
   BlockScanResult result;
   std::vector<Row> rows = rows_of(tile);
-  const GroundSums ground = ground_below(tile);
+  Ground ground{ground_below(tile)};
   for (const Sector& sector : headings_.sectors()) {
     if (deadline.over()) return {{}, 0, false};
     cover(sector, tile, rows);
@@ -103,7 +109,7 @@ GroundSums BlockScan::ground_below(const BlockTile& tile) const {
           kBlockCells * BoundMap::kRun + 2 * reach, kBlockCells * tile.rows + 2 * reach};
 }
 
-void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known, const GroundSums& ground,
+void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known, Ground& ground,
                          std::vector<BoundNode>& nodes) const {
   const TurnedFeatures& turned = headings_.turned(heading);
   RunSums cross;
@@ -120,11 +126,18 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
       if (!partial) partial = partial_sums(problem_.map, turned, col, row);
       narrow(sums, turned, partial->at(turned, i));
     }
-    if (problem_.bound_of(sums) <= best_) continue;
-    const int block_col = col + static_cast<int>(i);
-    narrow(sums, turned, ground.below(turned.runs, block_col, row));
-    const double bound = problem_.bound_of(sums);
+    double bound = problem_.bound_of(sums);
     if (bound <= best_) continue;
+    const int block_col = col + static_cast<int>(i);
+    if (ground.is_worth_its_time()) {
+      narrow(sums, turned, ground.sums.below(turned.runs, block_col, row));
+      bound = problem_.bound_of(sums);
+      ++ground.tried;
+      if (bound <= best_) {
+        ++ground.excluded;
+        continue;
+      }
+    }
     nodes.push_back(
         {block_col, row, static_cast<std::int32_t>(heading), std::nextafter(static_cast<float>(bound), 2.0F), sums});
   }

@@ -55,8 +55,16 @@ class BlockScan {
 
   std::vector<Row> rows_of(const BlockTile& tile) const;
   void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
+  /// Exact sums of a tile, and of how many blocks that were tried they excluded so far.
+  struct Ground {
+    GroundSums sums;
+    int tried = 0;
+    int excluded = 0;
+    bool is_worth_its_time() const;
+  };
+
   GroundSums ground_below(const BlockTile& tile) const;
-  void scan_row(std::size_t heading, int col, int row, const Row& known, const GroundSums& ground,
+  void scan_row(std::size_t heading, int col, int row, const Row& known, Ground& ground,
                 std::vector<BoundNode>& nodes) const;
 
   const BoundProblem& problem_;

@@ -123,8 +123,8 @@ function cameraRows({ camera }) {
   return [['camera', `${camera.agl_m.toFixed(0)} m above ground, ${tilt}, focal length ${camera.focal_px.toFixed(0)} px`]];
 }
 
-/// With its zone: logs and people elsewhere say UTC.
-const timeText = (date) => date.toLocaleTimeString([], { timeZoneName: 'short' });
+/// With its day, since a page stays open overnight, and its zone: logs and people elsewhere say UTC.
+const timeText = (date) => date.toLocaleString([], { dateStyle: 'medium', timeStyle: 'long' });
 
 function timeNeeded({ detect, search }) {
   const parts = [[detect, 'to detect'], [search, 'to search']].filter(([time]) => time !== undefined);  // a feature map is detected already

@@ -34,6 +34,13 @@ await run({
     assert.ok(!isOld());
     assert.deepEqual(view.moved, [37, 38]);
   },
+  async 'a fix says the day and the zone of its time'() {
+    await ask();
+    const date = new Date();
+    assert.ok(output.textContent.includes(date.toLocaleDateString([], { dateStyle: 'medium' })), output.textContent);
+    const zone = new Intl.DateTimeFormat([], { timeZoneName: 'short' }).formatToParts(date).find(({ type }) => type === 'timeZoneName');
+    assert.ok(output.textContent.includes(zone.value), output.textContent);
+  },
   async 'an answer is brought into sight, and one that was given up for another question moves nothing'() {
     output.revealed = false;
     service.answers = { '/fix': () => new Promise(() => {}) };

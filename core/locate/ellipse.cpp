@@ -12,12 +12,14 @@ PositionCovariance position_covariance(const std::array<double, 2>& variances, A
   return {along * s * s + across * c * c, (along - across) * s * c, along * c * c + across * s * s};
 }
 
-Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
+PositionCovariance position_covariance(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
   const double registration_m = map.registration_sigma_m(at);
   const double registration2 = registration_m * registration_m;
-  const double east2 = covariance[0][0] + registration2;
-  const double north2 = covariance[1][1] + registration2;
-  const double east_north = covariance[0][1];
+  return {covariance[0][0] + registration2, covariance[0][1], covariance[1][1] + registration2};
+}
+
+Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
+  const auto [east2, east_north, north2] = position_covariance(map, at, covariance);
   const double mean = 0.5 * (east2 + north2);
   const double split = std::hypot(0.5 * (north2 - east2), east_north);
   const Angle from_grid_north = Angle::radians(0.5 * std::atan2(2.0 * east_north, north2 - east2));

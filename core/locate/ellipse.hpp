@@ -27,6 +27,10 @@ struct PositionCovariance {
 /// `variances` (m^2) lie along the axis, which is clockwise from the plane's north, and across it.
 PositionCovariance position_covariance(const std::array<double, 2>& variances, Angle axis);
 
+/// Of a pose that a match placed at `at`: what the match alone leaves (m^2, rad^2), and the registration error of the
+/// map's sources on both axes.
+PositionCovariance position_covariance(const MapView& map, GridPoint at, const PoseCovariance& covariance);
+
 /// `at` is where the match placed the vehicle, `covariance` (m^2, rad^2) how uncertain the match alone leaves that. The
 /// registration error of the map's sources is added to both axes.
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance);

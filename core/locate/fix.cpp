@@ -146,11 +146,11 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
 bool is_beyond(const MapView& map, const Calibration& calibration, double nadir_sigma_m, const SearchMode& mode,
                GridPoint position) {
   const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
-  const double registration_m = map.registration_sigma_m(mode.pose.position);
-  const double more2 = scale2 * registration_m * registration_m + nadir_sigma_m * nadir_sigma_m;
-  const double east2 = scale2 * mode.covariance[0][0] + more2;
-  const double north2 = scale2 * mode.covariance[1][1] + more2;
-  const double both = scale2 * mode.covariance[0][1];
+  const PositionCovariance told = position_covariance(map, mode.pose.position, mode.covariance);
+  const double nadir2 = nadir_sigma_m * nadir_sigma_m;
+  const double east2 = scale2 * told.east_east + nadir2;
+  const double north2 = scale2 * told.north_north + nadir2;
+  const double both = scale2 * told.east_north;
   const double east = position.east_m - mode.pose.position.east_m;
   const double north = position.north_m - mode.pose.position.north_m;
   const double squared =

@@ -11,6 +11,36 @@ HWY_BEFORE_NAMESPACE();
 namespace roadfix {
 namespace HWY_NAMESPACE {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// What lies between the ends of each run, from kCount places side by side: differences of what is summed before a cell
+/// or block, kEach numbers for each.
+template <typename Sum, int kCount, int kEach>
+HWY_ATTR void add_runs(std::span<const RowRun> runs, const Sum* before, std::ptrdiff_t stride, Sum* out) {
+  constexpr std::ptrdiff_t kStep = kEach;
+  constexpr std::size_t kNumbers = kStep * kCount;
+  constexpr hn::CappedTag<Sum, kNumbers> kLanes;
+  const std::size_t step = hn::Lanes(kLanes);
+  for (std::size_t start = 0; start < kNumbers; start += step) {
+    auto sum = hn::Zero(kLanes);
+    for (const RowRun& run : runs) {
+      const Sum* row = before + run.row * stride + start;
+      sum =
+          hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + kStep * run.last), hn::LoadU(kLanes, row + kStep * run.first)));
+    }
+    hn::StoreU(sum, kLanes, out + start);
+  }
+}
+
+void sum_runs(std::span<const RowRun> runs, const std::uint32_t* before, std::ptrdiff_t stride, std::uint32_t* out) {
+  add_runs<std::uint32_t, BoundMap::kRun, 1>(runs, before, stride, out);
+}
+
+void sum_cells(std::span<const RowRun> runs, const CellSums* before, std::ptrdiff_t stride, CellSums* out) {
+  static_assert(sizeof(CellSums) == 2 * sizeof(std::uint64_t));
+  add_runs<std::uint64_t, kBlockCells, 2>(runs, &before->cells_and_values, 2 * stride, &out->cells_and_values);
+}
+
 #if HWY_TARGET == HWY_SCALAR
 
 void sum_terms(const BoundTerms& terms, const std::uint8_t* const* planes, std::ptrdiff_t stride, std::uint32_t* out) {
@@ -25,17 +55,7 @@ void sum_terms(const BoundTerms& terms, const std::uint8_t* const* planes, std::
   }
 }
 
-void sum_runs(std::span<const RowRun> runs, const std::uint32_t* before, std::ptrdiff_t stride, std::uint32_t* out) {
-  for (int i = 0; i < BoundMap::kRun; ++i) out[i] = 0;
-  for (const RowRun& run : runs) {
-    const std::uint32_t* row = before + run.row * stride;
-    for (int i = 0; i < BoundMap::kRun; ++i) out[i] += row[run.last + i] - row[run.first + i];
-  }
-}
-
 #else
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr hn::CappedTag<std::uint8_t, BoundMap::kRun> kBytes;
 constexpr hn::Repartition<std::uint16_t, decltype(kBytes)> kShorts;
@@ -87,21 +107,6 @@ HWY_ATTR void sum_terms(const BoundTerms& terms, const std::uint8_t* const* plan
   }
 }
 
-/// What lies between the two places of each run.
-HWY_ATTR void sum_runs(std::span<const RowRun> runs, const std::uint32_t* before, std::ptrdiff_t stride,
-                       std::uint32_t* out) {
-  constexpr hn::CappedTag<std::uint32_t, BoundMap::kRun> kLanes;
-  const std::size_t step = hn::Lanes(kLanes);
-  for (std::size_t start = 0; start < BoundMap::kRun; start += step) {
-    auto sum = hn::Zero(kLanes);
-    for (const RowRun& run : runs) {
-      const std::uint32_t* row = before + run.row * stride + start;
-      sum = hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + run.last), hn::LoadU(kLanes, row + run.first)));
-    }
-    hn::StoreU(sum, kLanes, out + start);
-  }
-}
-
 #endif
 
 }  // namespace HWY_NAMESPACE
@@ -114,6 +119,7 @@ namespace roadfix {
 
 HWY_EXPORT(sum_terms);
 HWY_EXPORT(sum_runs);
+HWY_EXPORT(sum_cells);
 
 void term_sums(const BoundMap& map, const BoundTerms& terms, int col, int row, RunSums& sums) {
   std::array<const std::uint8_t*, BoundMap::kPlanes> planes{};
@@ -126,6 +132,11 @@ void covered_sums(const BoundMap& map, std::span<const RowRun> runs, int col, in
   HWY_DYNAMIC_DISPATCH(sum_runs)(runs, before.cells, map.stride(), sums.cells.data());
   HWY_DYNAMIC_DISPATCH(sum_runs)(runs, before.value, map.stride(), sums.value.data());
   HWY_DYNAMIC_DISPATCH(sum_runs)(runs, before.square, map.stride(), sums.square.data());
+}
+
+void cell_sums(std::span<const RowRun> footprint, const CellSums* nadir, std::ptrdiff_t stride,
+               std::array<CellSums, kBlockCells>& sums) {
+  HWY_DYNAMIC_DISPATCH(sum_cells)(footprint, nadir, stride, sums.data());
 }
 
 }  // namespace roadfix

@@ -22,4 +22,14 @@ struct CoveredSums {
 };
 void covered_sums(const BoundMap& map, std::span<const RowRun> runs, int col, int row, CoveredSums& sums);
 
+/// Over cells of a map; as the sums before a cell of its row, a run of cells is a difference of two.
+struct CellSums {
+  std::uint64_t cells_and_values = 0;  ///< observed cells + 2^32 times values above the map's base
+  std::uint64_t squares = 0;           ///< of those values
+};
+/// Those of the cells below a footprint whose nadir is at `nadir`, and at the cells to its right. `footprint`: its
+/// observed cells, relative to the nadir; `nadir` points into rows of sums that are `stride` apart.
+void cell_sums(std::span<const RowRun> footprint, const CellSums* nadir, std::ptrdiff_t stride,
+               std::array<CellSums, kBlockCells>& sums);
+
 }  // namespace roadfix

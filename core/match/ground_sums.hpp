@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/match/bound_map.hpp"
+#include "core/match/bound_sums.hpp"
 #include "core/match/row_run.hpp"
 #include "core/match/score_bound.hpp"
 
@@ -33,8 +33,7 @@ class GroundSums {
   int col_;
   int row_;
   std::ptrdiff_t stride_;
-  /// Before each cell and the end of a row, of that row: observed cells + 2^32 times values, and squares.
-  std::vector<std::uint64_t> before_;
+  std::vector<CellSums> before_;  ///< each cell, and the end of its row
 };
 
 }  // namespace roadfix

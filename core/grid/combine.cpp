@@ -11,7 +11,6 @@
 
 #include "core/grid/cell_size.hpp"
 #include "core/grid/log_odds.hpp"
-#include "core/grid/sampling.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -62,15 +61,7 @@ struct LogOddsSums {
 };
 
 void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, LogOddsSums& sums) {
-  const double c = cos(part.offset.turn);
-  const double s = sin(part.offset.turn);
-  const CellPosition centre = centre_of(part);
-  const double right = -nadir.col - centre.col;
-  const double back = -nadir.row - centre.row;
-  const Placement placement{
-      {part.features.nadir.col + c * right + s * back, part.features.nadir.row - s * right + c * back},
-      {c, -s},
-      {s, c}};
+  const Placement placement = placement_in(part, nadir);
   for (int row = 0; row < rows; ++row) {
     for (int col = 0; col < cols; ++col) {
       const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
@@ -95,6 +86,17 @@ void require_cells_of(double cell_m, std::span<const PlacedFeatures> parts) {
 }
 
 }  // namespace
+
+Placement placement_in(const PlacedFeatures& part, CellPosition nadir) {
+  const double c = cos(part.offset.turn);
+  const double s = sin(part.offset.turn);
+  const CellPosition centre = centre_of(part);
+  const double right = -nadir.col - centre.col;
+  const double back = -nadir.row - centre.row;
+  return {{part.features.nadir.col + c * right + s * back, part.features.nadir.row - s * right + c * back},
+          {c, -s},
+          {s, c}};
+}
 
 FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   assert(!parts.empty() && parts.size() < 256);

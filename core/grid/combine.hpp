@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/grid/feature_map.hpp"
+#include "core/grid/sampling.hpp"
 #include "core/units/planar.hpp"
 
 namespace roadfix {
@@ -14,6 +15,10 @@ struct PlacedFeatures {
 
   friend bool operator==(const PlacedFeatures&, const PlacedFeatures&) = default;
 };
+
+/// From cells of a feature map that was taken where the reference frame was, with this nadir and cells of that size, to
+/// those of `part`.
+Placement placement_in(const PlacedFeatures& part, GridGeometry::CellPosition nadir);
 
 /// One feature map in the body frame of the reference, its nadir that of the reference and known as well as the least
 /// known of all, since any of them may be what tells the place; just large enough for all parts. Where several parts

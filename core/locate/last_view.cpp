@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grid/resample.hpp"
+#include "core/match/correlation.hpp"
 #include "core/units/fnv.hpp"
 
 namespace roadfix {
@@ -13,6 +15,16 @@ namespace {
 // A simulator that hovers draws one picture again and again, with odometry that may tremble.
 constexpr double kMovedM = 1.0;
 constexpr double kTurnedRad = 0.01;
+
+// Views are compared in cells so many times as large at least, and at most so many across: noise of single cells is
+// evened out, and a state stays small.
+constexpr double kCoarser = 2.0;
+constexpr int kMaxAcross = 128;
+
+constexpr double kApartCells = 3.0;  // by which roads must have moved before views are compared
+constexpr double kMinShareInCommon = 0.25;
+constexpr double kStillCorrelation = 0.75;  // of views that lie as before
+constexpr double kStillMargin = 0.3;        // by which they correlate better so than as the odometry tells
 
 bool shows_road(const FeatureMap& features) {
   return std::ranges::any_of(features.cells.cells(),
@@ -27,6 +39,47 @@ std::uint64_t digest_of(const FeatureMap& features) {
   return hash.value();
 }
 
+FeatureMap coarser(const FeatureMap& features) {
+  const int across = std::max(features.cells.cols(), features.cells.rows());
+  return resampled(features, features.cell_m * std::max(kCoarser, std::ceil(1.0 * across / kMaxAcross)));
+}
+
+bool has_same_shape(const FeatureMap& a, const FeatureMap& b) {
+  return a.cell_m == b.cell_m && a.cells.cols() == b.cells.cols() && a.cells.rows() == b.cells.rows();
+}
+
+/// Pearson's over the cells observed in both, with `earlier` laid where it was taken; nullopt where few are.
+std::optional<double> correlation_of(const FeatureMap& features, const PlacedFeatures& earlier) {
+  const Placement placement = placement_in(earlier, features.nadir);
+  MatchSums sums;
+  for (int row = 0; row < features.cells.rows(); ++row) {
+    for (int col = 0; col < features.cells.cols(); ++col) {
+      const Cell now = features.cells.at(col, row);
+      const Cell before = bilinear(earlier.features.cells, placement.source_of(col + 0.5, row + 0.5));
+      if (!is_observed(now) || !is_observed(before)) continue;
+      const double l = probability(now);
+      const double m = probability(before);
+      ++sums.n;
+      sums.m += m;
+      sums.l += l;
+      sums.mm += m * m;
+      sums.ll += l * l;
+      sums.ml += m * l;
+    }
+  }
+  if (static_cast<double>(sums.n) < kMinShareInCommon * static_cast<double>(features.cells.observed_count())) {
+    return std::nullopt;
+  }
+  return pearson(sums);
+}
+
+/// By which roads at half of the way to the rim lie elsewhere in the picture, in cells.
+double cells_apart(const PlacedFeatures& earlier) {
+  const FeatureMap& features = earlier.features;
+  const double arm = 0.25 * std::min(features.cells.cols(), features.cells.rows());
+  return distance_m(earlier.offset) / features.cell_m + arm * std::abs(earlier.offset.turn.radians());
+}
+
 }  // namespace
 
 bool has_moved(double moved_m, double turned_rad) { return moved_m >= kMovedM || turned_rad >= kTurnedRad; }
@@ -35,15 +88,42 @@ bool is_same_view(const FeatureMap& a, const FeatureMap& b) {
   return a.cell_m == b.cell_m && a.cells == b.cells && shows_road(a);
 }
 
-void LastView::move(const std::optional<Odometry>& odometry) {
+void LastView::move(const std::optional<Odometry>& odometry, bool tells_ground) {
   moved_m += odometry ? distance_m(*odometry) : kMovedM;
   turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
+  if (stands_still) return;
+  if (odometry && tells_ground) {
+    earlier.move(*odometry, {});
+  } else {
+    earlier.clear();
+  }
 }
 
-bool LastView::sees_again(const FeatureMap& features) {
+View LastView::look(const FeatureMap& features) {
   const std::uint64_t seen = shows_road(features) ? digest_of(features) : 0;
-  if (seen == 0 || seen != digest) *this = {seen, 0.0, 0.0};
-  return has_moved(moved_m, turned_rad);
+  const bool is_same = seen != 0 && seen == digest;
+  if (!is_same) {
+    digest = seen;
+    moved_m = turned_rad = 0.0;
+  }
+  if (is_same && has_moved(moved_m, turned_rad)) return View::kRepeated;
+  if (seen == 0) earlier.clear();
+  stands_still = seen != 0 && lies_as_earlier(coarser(features));
+  return stands_still ? View::kStandsStill : View::kNew;
+}
+
+/// Keeps `features` to be compared with later views, unless they stand still or have hardly moved.
+bool LastView::lies_as_earlier(const FeatureMap& features) {
+  if (!earlier.frames().empty() && has_same_shape(earlier.frames().front().placed.features, features)) {
+    const PlacedFeatures& placed = earlier.frames().front().placed;
+    if (!stands_still && cells_apart(placed) < kApartCells) return false;
+    const std::optional<double> still = correlation_of(features, {placed.features, {}});
+    const std::optional<double> moved = correlation_of(features, placed);
+    if (still >= kStillCorrelation && (stands_still || (moved && *still - *moved >= kStillMargin))) return true;
+  }
+  earlier.clear();
+  earlier.keep(features);
+  return false;
 }
 
 }  // namespace roadfix

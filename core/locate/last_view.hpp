@@ -1,5 +1,6 @@
-// What a track saw last, to notice a camera or a video link that has stopped: it shows one picture again and again
-// while the vehicle flies on. Two pictures of a live camera are never the same to the last cell.
+// What a track saw last, to notice a camera or a video link that has stopped while the vehicle flies on. Two pictures
+// of a live camera are never the same to the last cell; and where each picture of a stopped one has other noise
+// (encoded anew, with a clock drawn in), roads stay where they were instead of moving as the odometry tells.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 
 #include "core/filter/motion.hpp"
 #include "core/grid/feature_map.hpp"
+#include "core/locate/recent_frames.hpp"
 
 namespace roadfix {
 
@@ -16,17 +18,27 @@ bool has_moved(double moved_m, double turned_rad);
 /// Whether two pictures are one, to the last cell. Never of a feature map without any road: one wood is like the next.
 bool is_same_view(const FeatureMap& a, const FeatureMap& b);
 
-struct LastView {
-  std::uint64_t digest = 0;  ///< of the feature map that was seen last; 0 = none
-  double moved_m = 0.0;      ///< along the odometry since it was seen for the first time
-  double turned_rad = 0.0;   ///< in either direction
+/// kRepeated: the picture that was seen before the vehicle moved, as is_same_view() tells. kStandsStill: other cells,
+/// but its roads lie as they lay before the vehicle moved, and not as they should since: the camera has stopped, or the
+/// odometry is wrong.
+enum class View { kNew, kRepeated, kStandsStill };
 
-  /// The vehicle has moved on; a step that tells no odometry may have led anywhere.
-  void move(const std::optional<Odometry>& odometry);
-  /// True where `features` are those that were seen before the vehicle moved, as is_same_view() tells.
-  bool sees_again(const FeatureMap& features);
+struct LastView {
+  std::uint64_t digest = 0;   ///< of the feature map that was seen last; 0 = none with roads
+  double moved_m = 0.0;       ///< along the odometry since it was seen for the first time
+  double turned_rad = 0.0;    ///< in either direction
+  bool stands_still = false;  ///< what was seen last is a View::kStandsStill
+  RecentFrames earlier;       ///< one view at most, that later ones are compared with, in coarser cells
+
+  /// The vehicle has moved on; a step that tells no odometry may have led anywhere. `tells_ground`: the odometry tells
+  /// the motion over the ground (no wind, no lost steps), so that it says where roads should be seen next.
+  void move(const std::optional<Odometry>& odometry, bool tells_ground);
+  View look(const FeatureMap& features);
 
   friend bool operator==(const LastView&, const LastView&) = default;
+
+ private:
+  bool lies_as_earlier(const FeatureMap& features);
 };
 
 }  // namespace roadfix

@@ -55,24 +55,33 @@ StepResult Tracker::Step::run() {
   }
   if (state_.started) {
     estimate_.missed_steps = input_.sequence - state_.sequence - 1;
-    state_.last_view.move(input_.odometry);
+    state_.last_view.move(input_.odometry, wind().is_none() && estimate_.missed_steps == 0);
     move();
   } else {
     filter_.start_uniformly(tracker_.start_);
     state_.started = true;
   }
-  if (features_ && state_.last_view.sees_again(*input_.features)) {
-    estimate_.measurement = Measurement::kRepeated;
-  } else if (features_) {
-    measure();
-    if (may_search()) state_.recent.keep(*features_);
-  }
+  if (features_) see();
   state_.sequence = input_.sequence;
   state_.time_us = input_.time_us;
   fill_estimate();
   if (estimate_.converged) state_.recent.clear();
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate_)};
+}
+
+void Tracker::Step::see() {
+  const View view = state_.last_view.look(*input_.features);
+  if (view == View::kNew) {
+    measure();
+    if (may_search()) state_.recent.keep(*features_);
+    return;
+  }
+  estimate_.measurement = Measurement::kRepeated;
+  if (view == View::kStandsStill) {  // and nobody knows whether the camera has stopped or the vehicle
+    state_.claim.reject();
+    state_.looked_time_us.reset();
+  }
 }
 
 void Tracker::Step::require_in_order() const {
@@ -271,8 +280,9 @@ void Tracker::Step::fill_estimate() {
 
 bool Tracker::Step::has_converged(const Cluster& best) const {
   return best.weight >= settings_.converged_weight && best.sigma_m() <= settings_.converged_sigma_m &&
-         estimate_.measurement != Measurement::kRejected && state_.claim.is_supported() && is_borne_out() &&
-         filter_.doubt() <= kMaxDoubt && since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
+         estimate_.measurement != Measurement::kRejected && !state_.last_view.stands_still &&
+         state_.claim.is_supported() && is_borne_out() && filter_.doubt() <= kMaxDoubt &&
+         since_accepted_s().value_or(kStaleAfterS) < kStaleAfterS;
 }
 
 /// Equation (7) is no ratio to chance, and bears out what it does not reject. Where no look

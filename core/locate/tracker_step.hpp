@@ -38,6 +38,7 @@ class Tracker::Step {
   void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
   void forget_support();
 
+  void see();
   void measure();
   void weigh(const ParticleMatches& matches, std::int64_t frame_cells);
   bool is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const;

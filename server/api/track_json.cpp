@@ -1,9 +1,14 @@
 #include "server/api/track_json.hpp"
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/units/error.hpp"
+#include "server/api/base64.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/geojson.hpp"
 
@@ -36,12 +41,20 @@ std::optional<BodyVelocity> velocity_of(const json& velocity) {
 }
 
 json json_of(const LastView& view) {
-  return {{"digest", view.digest}, {"moved_m", view.moved_m}, {"turned_rad", view.turned_rad}};
+  const std::vector<std::byte> earlier = view.earlier.to_bytes();
+  return {{"digest", view.digest},
+          {"moved_m", view.moved_m},
+          {"turned_rad", view.turned_rad},
+          {"stands_still", view.stands_still},
+          {"earlier", base64_encoded({reinterpret_cast<const std::uint8_t*>(earlier.data()), earlier.size()})}};
 }
 
 LastView view_of(const json& view) {
   if (view.is_null()) return {};
-  return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad")};
+  // Programs from before compared no earlier view.
+  const Base64Result earlier = base64_decoded(view.value("earlier", std::string()));
+  return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad"),
+          view.value("stands_still", false), RecentFrames::of_bytes(std::as_bytes(std::span(earlier.bytes)))};
 }
 
 /// Throws where it is no whole number; get() would take any, and one beyond the range for anything.

@@ -17,7 +17,7 @@ class Flight {
   const GridPose& pose() const { return pose_; }
   void jump_to(const GridPose& pose) { pose_ = pose; }
 
-  /// The next step: 20 m ahead with a gentle turn, away from the edge of the map.
+  /// The next step: so far ahead with a gentle turn, away from the edge of the map.
   StepInput step(bool sees = true) {
     StepInput input;
     input.sequence = sequence_++;
@@ -29,6 +29,7 @@ class Flight {
 
   DetectorNoise noise{0.15, 0.15};
   int side_cells = 128;
+  double step_m = 20.0;
 
  private:
   Odometry move() {
@@ -39,9 +40,8 @@ class Flight {
     const Angle home = (Angle::radians(to_middle) - pose_.heading).wrapped();
     const Angle turn =
         near_edge ? Angle::radians(std::clamp(home.radians(), -0.2, 0.2)) : Angle::radians(uniform(random_, -0.1, 0.1));
-    const double forward = 20.0;
-    pose_ = moved(pose_, {forward, 0.0, turn});
-    return {forward * uniform(random_, 0.97, 1.03), uniform(random_, -0.3, 0.3),
+    pose_ = moved(pose_, {step_m, 0.0, turn});
+    return {step_m * uniform(random_, 0.97, 1.03), uniform(random_, -0.3, 0.3),
             turn + Angle::degrees(uniform(random_, -0.5, 0.5))};
   }
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 
 namespace roadfix {
@@ -16,44 +19,105 @@ FeatureMap street_at(int col) {
   return FeatureMap::centred(cells, 2.0);
 }
 
+/// A street across and one along, as a vehicle sees them that has flown so many cells on.
+FeatureMap crossing_after(int rows) {
+  FeatureMap features = FeatureMap::centred(CellArray(60, 60, kNoRoad), 2.0);
+  for (int i = 0; i < 60; ++i) {
+    for (const int wide : {0, 1}) {
+      features.cells.at(i, 20 + rows + wide) = kRoad;
+      features.cells.at(35 + wide, i) = kRoad;
+    }
+  }
+  return features;
+}
+
+/// The same cells, but so many of a hundred are road instead of none or none instead of road.
+FeatureMap noisy(FeatureMap features, int percent, std::mt19937_64& random) {
+  for (Cell& cell : features.cells.cells()) {
+    if (uniform(random, 0.0, 100.0) < percent) cell = cell == kRoad ? kNoRoad : kRoad;
+  }
+  return features;
+}
+
 Odometry forward(double m) { return {m, 0.0, {}}; }
 
 TEST(LastView, IsSeenAgainOnceTheVehicleHasMoved) {
   LastView view;
-  EXPECT_FALSE(view.sees_again(street_at(3)));
-  view.move(forward(0.6));
-  EXPECT_FALSE(view.sees_again(street_at(3))) << "it may hover";
-  view.move(forward(-0.6));
-  EXPECT_TRUE(view.sees_again(street_at(3)));
-  view.move(forward(0.0));
-  EXPECT_TRUE(view.sees_again(street_at(3)));
-  EXPECT_FALSE(view.sees_again(street_at(4)));
-  view.move(Odometry{0.0, 0.0, Angle::degrees(-1.0)});
-  EXPECT_TRUE(view.sees_again(street_at(4)));
+  EXPECT_EQ(view.look(street_at(3)), View::kNew);
+  view.move(forward(0.6), true);
+  EXPECT_EQ(view.look(street_at(3)), View::kNew) << "it may hover";
+  view.move(forward(-0.6), true);
+  EXPECT_EQ(view.look(street_at(3)), View::kRepeated);
+  view.move(forward(0.0), true);
+  EXPECT_EQ(view.look(street_at(3)), View::kRepeated);
+  EXPECT_EQ(view.look(street_at(4)), View::kNew);
+  view.move(Odometry{0.0, 0.0, Angle::degrees(-1.0)}, true);
+  EXPECT_EQ(view.look(street_at(4)), View::kRepeated);
 }
 
 TEST(LastView, IsSeenAgainWhereNoOdometryTellsThatTheVehicleHovers) {
   LastView view;
-  EXPECT_FALSE(view.sees_again(street_at(3)));
-  view.move(std::nullopt);
-  EXPECT_TRUE(view.sees_again(street_at(3)));
+  EXPECT_EQ(view.look(street_at(3)), View::kNew);
+  view.move(std::nullopt, true);
+  EXPECT_EQ(view.look(street_at(3)), View::kRepeated);
 }
 
 TEST(LastView, OfGroundWithoutRoadsTellsNothing) {
   LastView view;
   const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
-  EXPECT_FALSE(view.sees_again(wood));
-  view.move(forward(20.0));
-  EXPECT_FALSE(view.sees_again(wood));
+  EXPECT_EQ(view.look(wood), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.look(wood), View::kNew);
 }
 
 TEST(LastView, IsAnotherInCellsOfAnotherSize) {
   LastView view;
   FeatureMap larger = street_at(3);
   larger.cell_m = 3.0;
-  EXPECT_FALSE(view.sees_again(street_at(3)));
-  view.move(forward(20.0));
-  EXPECT_FALSE(view.sees_again(larger));
+  EXPECT_EQ(view.look(street_at(3)), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.look(larger), View::kNew);
+}
+
+TEST(LastView, StandsStillWhereItsRoadsDoNotMoveAsTheOdometryTells) {
+  std::mt19937_64 random(3);
+  LastView view;
+  EXPECT_EQ(view.look(crossing_after(0)), View::kNew);
+  view.move(forward(8.0), true);
+  EXPECT_EQ(view.look(noisy(crossing_after(0), 3, random)), View::kNew) << "not far enough to tell";
+  view.move(forward(12.0), true);
+  EXPECT_EQ(view.look(noisy(crossing_after(0), 3, random)), View::kStandsStill);
+  view.move(forward(1000.0), true);
+  EXPECT_EQ(view.look(noisy(crossing_after(0), 3, random)), View::kStandsStill);
+  EXPECT_EQ(view.look(crossing_after(10)), View::kNew);
+}
+
+TEST(LastView, IsNewWhereItsRoadsMoveAsTheOdometryTells) {
+  std::mt19937_64 random(3);
+  LastView view;
+  for (const int rows : {0, 8, 16, 24}) {
+    EXPECT_EQ(view.look(noisy(crossing_after(rows), 3, random)), View::kNew) << rows;
+    view.move(forward(16.0), true);
+  }
+}
+
+TEST(LastView, OfOneRoadAlongTheWayTellsNothing) {
+  std::mt19937_64 random(3);
+  LastView view;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(view.look(noisy(street_at(9), 3, random)), View::kNew);
+    view.move(forward(16.0), true);
+  }
+}
+
+TEST(LastView, IsNotComparedWhereTheOdometryDoesNotTellTheMotionOverTheGround) {
+  std::mt19937_64 random(3);
+  LastView view;
+  EXPECT_EQ(view.look(crossing_after(0)), View::kNew);
+  view.move(forward(20.0), false);
+  EXPECT_EQ(view.look(noisy(crossing_after(0), 3, random)), View::kNew);
+  view.move(std::nullopt, true);
+  EXPECT_EQ(view.look(noisy(crossing_after(0), 3, random)), View::kNew);
 }
 
 TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
@@ -72,6 +136,42 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
   }
   const TrackEstimate seeing = fly(tracker, flight, 1);
   EXPECT_NE(seeing.measurement, Measurement::kRepeated);
+}
+
+TEST_F(Track, ClaimsNothingWhereTheCameraHasStoppedThoughItsPicturesChangeByNoise) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  const StepInput last = flight.step();
+  advance(tracker, last);
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 15; ++i) {
+    StepInput step = flight.step();
+    step.features = noisy(*last.features, 3, random);
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
+    EXPECT_FALSE(estimate.converged) << "step " << i;
+    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
+  }
+  EXPECT_TRUE(fly(tracker, flight, 5).converged);
+}
+
+TEST_F(Track, IsHeldBackByAStoppedCameraForSomeCellsOnly) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  flight.step_m = 3.0;
+  const StepInput last = flight.step();
+  advance(tracker, last);
+  std::mt19937_64 random(7);
+  for (int i = 1; i <= 20; ++i) {
+    StepInput step = flight.step();
+    step.features = noisy(*last.features, 3, random);
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
+    // Three cells of 4 m since the view that the stopped one is compared with, and as many since the one before that.
+    EXPECT_TRUE(3.0 * i < 24.0 || !estimate.converged) << "step " << i;
+  }
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ TrackerState flown() {
   state.nadir_sigma_m = 5.25;
   state.velocity = BodyVelocity{14.5, -0.25};
   state.coasts = true;
-  state.last_view = {0xfedcba9876543210U, 12.5, 0.25};
+  state.last_view = {0xfedcba9876543210U, 12.5, 0.25, true, {}};
+  state.last_view.earlier.keep(FeatureMap::centred(CellArray(3, 2, kRoad), 4.0));
   return state;
 }
 
@@ -54,6 +55,14 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   EXPECT_FALSE(state.coasts);
   EXPECT_TRUE(state.last_view == LastView());
   EXPECT_EQ(state.sequence, 41);
+}
+
+TEST(TrackCounters, OfAProgramThatComparedNoEarlierViewHaveNone) {
+  nlohmann::json before = counters_json(flown());
+  for (const char* name : {"stands_still", "earlier"}) before["last_view"].erase(name);
+  const LastView view = state_of(before, {}).last_view;
+  EXPECT_EQ(view.digest, 0xfedcba9876543210U);
+  EXPECT_TRUE(view.earlier.frames().empty());
 }
 
 TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {

@@ -11,6 +11,7 @@ import cv2
 import torch
 
 from roadnet.data import Crops, SetOptions, read_sets
+from roadnet.network import SMALL
 from roadnet.training import train
 
 
@@ -32,6 +33,8 @@ def arguments():
     parser.add_argument("--steps", default=3000, type=int)
     parser.add_argument("--minutes", default=0.0, type=float, help="stop after this time if the steps are not done; 0 = no limit")
     parser.add_argument("--batch", default=8, type=int)
+    parser.add_argument("--widths", default=SMALL, type=int, nargs=4, metavar="CHANNELS",
+                        help="channels of the network's four levels; more learn more and take longer (%(default)s)")
     parser.add_argument("--size", default=192, type=int, help="side of a crop in pixels, a multiple of 32 (%(default)s)")
     parser.add_argument("--gsd", default=1.0, type=float, help="metres per pixel that the network sees (%(default)s)")
     parser.add_argument("--rate", default=1.5e-3, type=float, help="peak learning rate (%(default)s)")

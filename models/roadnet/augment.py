@@ -28,7 +28,8 @@ def apply(image, label, weight, gsd_m, rng, strength=1.0):
             (0.25, lambda x: noise(x, rng)),
             (0.15, lambda x: jpeg(x, rng))):
         if rng.random() < chance * strength:
-            out = np.clip(change(out), 0, 255)
+            out = change(out).astype(np.float32, copy=False)
+            np.clip(out, 0, 255, out=out)
     if rng.random() < 0.15 * strength:
         hide(hidden, rng)
     out[hidden] = 118
@@ -37,7 +38,7 @@ def apply(image, label, weight, gsd_m, rng, strength=1.0):
 
 def weight_is_unseen(image, weight):
     """Pixels that lie outside the tile (fill colour, no label); an ignore band inside the tile stays picture."""
-    return (weight == 0) & (image == 118).all(2)
+    return (weight == 0) & (cv2.inRange(image, (118,) * 3, (118,) * 3) > 0)
 
 
 def hide(hidden, rng):

@@ -12,9 +12,8 @@ import cv2
 import numpy as np
 
 from . import augment
-from .normalise import network_input
 
-EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 MAX_TILT_DEG = 15.0  # of a camera that is not gimballed
 FILL = 118  # grey that stands for "not seen", close to the mean that the network subtracts
 
@@ -163,8 +162,8 @@ def warp(level, gsd_m, size, angle, flip, centre, view):
 
 class Crops:
     """Endless augmented crops; crop number i of a seed is always the same one. Augmentation reaches its full strength
-    at crop number `ramp`. A crop is the network's input, the same without the augmentation of its colours and objects, label
-    and weight, each with channels first."""
+    at crop number `ramp`. A crop is a picture with what was seen of it, the same without the augmentation of its colours and
+    objects, label and weight: uint8, channels first, pictures 0 to 255 and the rest 0 or 1 (labels 0 to 255)."""
 
     def __init__(self, sets, root, gsd_m, size, seed, ramp=1):
         self.gsd_m, self.size, self.seed, self.ramp = gsd_m, size, seed, ramp
@@ -186,10 +185,9 @@ class Crops:
         rng = np.random.default_rng([self.seed, index])
         chosen = int(rng.choice(len(self.pairs), p=self.shares))
         image, label, weight = self.crop(chosen, self.size, rng)
-        clean = network_input(image, ~augment.weight_is_unseen(image, weight))
-        image, weight, seen = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
-        changed, clean = (np.ascontiguousarray(x.transpose(2, 0, 1)) for x in (network_input(image, seen), clean))
-        return changed, clean, label[None], weight[None]
+        changed, kept, seen = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
+        clean = image, ~augment.weight_is_unseen(image, weight)
+        return tuple(channels_first(x) for x in (changed, seen, *clean, label * 255, kept))
 
     def crop(self, chosen, size, rng):
         """A tile that is much smaller than the crop is joined with three others into one."""
@@ -220,6 +218,12 @@ class Crops:
             if seen > 0.6:
                 break
         return best[1]
+
+
+def channels_first(values):
+    """uint8; floats are not negative and are rounded."""
+    whole = (values + 0.5).astype(np.uint8) if values.dtype.kind == "f" else values.astype(np.uint8)
+    return whole[None] if whole.ndim == 2 else np.ascontiguousarray(whole.transpose(2, 0, 1))
 
 
 def join(quarters):

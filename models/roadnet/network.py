@@ -43,9 +43,13 @@ class StripContext(nn.Module):
         return x + self.mix(torch.cat([self.along(y), self.across(y)], 1))
 
 
+SMALL = (24, 48, 80, 112)  # channels of the four levels
+
+
 class RoadNet(nn.Module):
-    def __init__(self, widths=(24, 48, 80, 112)):
+    def __init__(self, widths=SMALL):
         super().__init__()
+        self.widths = tuple(widths)
         w1, w2, w3, w4 = widths
         self.down1 = nn.Sequential(conv(3, w1, 5, stride=2), Residual(w1))
         self.down2 = nn.Sequential(conv(w1, w2, stride=2), Residual(w2))
@@ -82,8 +86,9 @@ def read_network(checkpoints):
     """The averaged weights of one checkpoint, or of several as the mean of their logits; in evaluation mode."""
     members = []
     for path in checkpoints:
-        member = RoadNet()
-        member.load_state_dict(torch.load(path, map_location="cpu")["averaged"])
+        state = torch.load(path, map_location="cpu")
+        member = RoadNet(state["widths"])
+        member.load_state_dict(state["averaged"])
         members.append(member.eval())
     return Ensemble(members) if len(members) > 1 else members[0]
 
@@ -91,10 +96,10 @@ def read_network(checkpoints):
 def mean_of_weights(checkpoints):
     """One network of the averaged weights' mean, for checkpoints of which one began with another (Wortsman et al. 2022,
     "Model soups"); in evaluation mode."""
-    states = [torch.load(path, map_location="cpu")["averaged"] for path in checkpoints]
-    network = RoadNet()
-    network.load_state_dict({name: torch.stack([state[name].double() for state in states]).mean(0).to(value.dtype)
-                             for name, value in states[0].items()})
+    states = [torch.load(path, map_location="cpu") for path in checkpoints]
+    network = RoadNet(states[0]["widths"])
+    network.load_state_dict({name: torch.stack([state["averaged"][name].double() for state in states]).mean(0).to(value.dtype)
+                             for name, value in states[0]["averaged"].items()})
     return network.eval()
 
 

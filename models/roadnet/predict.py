@@ -2,6 +2,7 @@
 import cv2
 import numpy as np
 import torch
+from torch.nn import functional as F
 
 from .normalise import network_input
 
@@ -10,10 +11,10 @@ MULTIPLE = 16
 
 def blob(image, seen):
     """1 x 3 x rows x columns; the sides are padded to the network's multiple with what was not seen."""
-    values = network_input(image, seen)
     height, width = image.shape[:2]
-    padded = cv2.copyMakeBorder(values, 0, -height % MULTIPLE, 0, -width % MULTIPLE, cv2.BORDER_CONSTANT, value=0)
-    return np.ascontiguousarray(padded.transpose(2, 0, 1)[None])
+    mask = np.ones((height, width), bool) if seen is None else seen
+    values = network_input(torch.from_numpy(image).permute(2, 0, 1)[None], torch.from_numpy(mask)[None, None])
+    return F.pad(values, (0, -width % MULTIPLE, 0, -height % MULTIPLE)).contiguous()
 
 
 class TorchNetwork:
@@ -21,10 +22,9 @@ class TorchNetwork:
         self.model, self.device = model, device
 
     def __call__(self, image, seen=None):
-        tensor = torch.from_numpy(blob(image, seen)).to(self.device)
         self.model.eval()
         with torch.no_grad():
-            return self.model(tensor)[0, 0].cpu().numpy()
+            return self.model(blob(image, seen).to(self.device))[0, 0].cpu().numpy()
 
 
 class OnnxNetwork:
@@ -32,7 +32,7 @@ class OnnxNetwork:
         self.net = cv2.dnn.readNetFromONNX(str(path))
 
     def __call__(self, image, seen=None):
-        self.net.setInput(blob(image, seen))
+        self.net.setInput(blob(image, seen).numpy())
         return self.net.forward()[0, 0]
 
 

@@ -10,6 +10,7 @@ from torch.utils.data import DataLoader, Sampler
 from .losses import distillation_loss, road_loss, taught_in_a_random_orientation
 from .metrics import evaluate_pairs
 from .network import RoadNet, read_network
+from .normalise import network_input
 from .predict import TorchNetwork
 
 
@@ -17,7 +18,6 @@ class Consecutive(Sampler):
     """Crop numbers from `first` on, so that a resumed run goes on with fresh ones."""
 
     def __init__(self, first, last):
-        super().__init__(None)
         self.first, self.last = first, last
 
     def __iter__(self):
@@ -41,12 +41,11 @@ def share_done(step, started, options):
 
 def average_into(averaged, model, step, decay=0.998):
     keep = min(decay, (step + 1) / (step + 10))
+    pairs = [list(group) for group in zip(*((t, s) for t, s in zip(averaged.state_dict().values(), model.state_dict().values())
+                                            if t.dtype.is_floating_point))]
     with torch.no_grad():
-        for target, source in zip(averaged.state_dict().values(), model.state_dict().values()):
-            if target.dtype.is_floating_point:
-                target.mul_(keep).add_(source, alpha=1 - keep)
-            else:
-                target.copy_(source)
+        torch._foreach_mul_(pairs[0], keep)
+        torch._foreach_add_(pairs[0], pairs[1], alpha=1 - keep)
 
 
 def save(path, **state):
@@ -58,69 +57,88 @@ def save(path, **state):
 def require_same_run(state, checkpoint, wanted):
     for name, value in wanted.items():
         if state[name] != value:
-            raise SystemExit(f"{checkpoint} is of a run with {name} {state[name]:g}, not {value:g}: name another folder with --out, "
+            raise SystemExit(f"{checkpoint} is of a run with {name} {state[name]}, not {value}: name another folder with --out, "
                              "or begin anew with --restart")
+
+
+class Run:
+    """A network in training, its average and its optimizer, and how they are kept in a checkpoint."""
+
+    def __init__(self, options, gsd_m):
+        self.device = torch.device(options.device)
+        self.identity = {"gsd_m": gsd_m, "seed": options.seed, "widths": tuple(options.widths)}
+        self.checkpoint = Path(options.out) / "checkpoint.pt"
+        start = read_network([options.begin_with]) if options.begin_with else RoadNet(options.widths)
+        if start.widths != self.identity["widths"]:
+            raise SystemExit(f"{options.begin_with} has the widths {start.widths}: give the same with --widths")
+        self.model = start.to(self.device, memory_format=torch.channels_last)
+        self.averaged = RoadNet(options.widths).to(self.device).requires_grad_(False)
+        self.averaged.load_state_dict(self.model.state_dict())
+        self.teacher = read_network(options.teacher).to(self.device, memory_format=torch.channels_last) if options.teacher else None
+        self.optimizer = torch.optim.AdamW(self.model.parameters(), lr=options.rate, weight_decay=1e-3)
+        self.step = 0
+        if self.checkpoint.exists() and not options.restart:
+            self.resume()
+
+    def resume(self):
+        state = torch.load(self.checkpoint, map_location=self.device)
+        require_same_run(state, self.checkpoint, self.identity)
+        for name in ("model", "averaged", "optimizer"):
+            getattr(self, name).load_state_dict(state[name])
+        self.step = state["step"]
+        print(f"resume from {self.checkpoint} at step {self.step}", flush=True)
+
+    def save(self):
+        states = {name: getattr(self, name).state_dict() for name in ("model", "averaged", "optimizer")}
+        save(self.checkpoint, **states, step=self.step, **self.identity)
+
+    def loss(self, crops, options):
+        """Of the labels and, where there is one, of the teacher."""
+        changed, seen, clean, clean_seen, label, weight = (part.to(self.device, non_blocking=True) for part in crops)
+        picture = network_input(changed, seen).contiguous(memory_format=torch.channels_last)
+        turns = torch.Generator().manual_seed(options.seed + self.step)
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16):
+            logits = self.model(picture).float()
+            with torch.no_grad():
+                taught = taught_in_a_random_orientation(self.teacher, network_input(clean, clean_seen), turns).float() if self.teacher else None
+        loss = road_loss(logits, label / 255, weight.float())
+        return (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture) if self.teacher else loss
+
+    def learn(self, crops, rate, options):
+        self.model.train()
+        for group in self.optimizer.param_groups:
+            group["lr"] = rate
+        loss = self.loss(crops, options)
+        self.optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
+        self.optimizer.step()
+        average_into(self.averaged, self.model, self.step)
+        self.step += 1
+        return loss.detach()
 
 
 def train(crops, options):
     torch.manual_seed(options.seed)
-    device = torch.device(options.device)
-    start = read_network([options.begin_with]) if options.begin_with else RoadNet()
-    model, averaged = start.to(device, memory_format=torch.channels_last), RoadNet().to(device)
-    averaged.load_state_dict(model.state_dict())
-    teacher = read_network(options.teacher).to(device, memory_format=torch.channels_last) if options.teacher else None
-    for parameter in averaged.parameters():
-        parameter.requires_grad_(False)
-    optimizer = torch.optim.AdamW(model.parameters(), lr=options.rate, weight_decay=1e-3)
-    first = 0
-    checkpoint = Path(options.out) / "checkpoint.pt"
-    if checkpoint.exists() and not options.restart:
-        state = torch.load(checkpoint, map_location=device)
-        require_same_run(state, checkpoint, {"gsd_m": crops.gsd_m, "seed": options.seed})
-        model.load_state_dict(state["model"])
-        averaged.load_state_dict(state["averaged"])
-        optimizer.load_state_dict(state["optimizer"])
-        first = state["step"]
-        print(f"resume from {checkpoint} at step {first}", flush=True)
-    turns = torch.Generator()
-    batches = Consecutive(first * options.batch, options.steps * options.batch)
-    loader = DataLoader(crops, options.batch, sampler=batches, num_workers=options.workers)
-    started, running = time.time(), None
-    over = False
-    for step, (image, clean, label, weight) in zip(range(first, options.steps), loader):
-        model.train()
-        for group in optimizer.param_groups:
-            group["lr"] = learning_rate(step, share_done(step, started, options), options.rate, options.cool)
-        turns.manual_seed(options.seed + step)
-        picture = image.to(device, memory_format=torch.channels_last)
-        with torch.autocast(device.type, torch.bfloat16, enabled=options.bf16):
-            logits = model(picture).float()
-            with torch.no_grad():
-                taught = taught_in_a_random_orientation(teacher, clean.to(device), turns).float() if teacher else None
-        loss = road_loss(logits, label.to(device), weight.to(device))
-        if teacher:
-            loss = (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture)
-        optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
-        optimizer.step()
-        average_into(averaged, model, step)
-        value = loss.item()
-        if not math.isfinite(value):
-            raise RuntimeError(f"the loss is {value} at step {step}: lower --rate")
-        running = value if running is None else 0.98 * running + 0.02 * value
-        done = step + 1
-        over = share_done(done, started, options) >= 1.0
-        if done % options.report == 0 or over:
-            pace = (time.time() - started) / (done - first)
-            print(f"step {done}/{options.steps}  loss {running:.4f}  {pace:.2f} s a step  "
-                  f"{pace * (options.steps - done) / 60:.0f} min left", flush=True)
-        if done % options.save_every == 0 or over:
-            save(checkpoint, model=model.state_dict(), averaged=averaged.state_dict(), optimizer=optimizer.state_dict(),
-                 step=done, gsd_m=crops.gsd_m, seed=options.seed)
-        if done % options.validate_every == 0 or over:
-            for name, figures in evaluate_pairs(TorchNetwork(averaged, device), crops.held_out, crops.gsd_m).items():
+    torch.backends.cudnn.benchmark = True  # every step has the same shape
+    run = Run(options, crops.gsd_m)
+    first, started, running = run.step, time.time(), None
+    numbers = Consecutive(first * options.batch, options.steps * options.batch)
+    for batch in DataLoader(crops, options.batch, sampler=numbers, num_workers=options.workers, pin_memory=run.device.type == "cuda"):
+        loss = run.learn(batch, learning_rate(run.step, share_done(run.step, started, options), options.rate, options.cool), options)
+        running = loss if running is None else 0.98 * running + 0.02 * loss
+        over = share_done(run.step, started, options) >= 1.0
+        if run.step % options.report == 0 or over:
+            if not math.isfinite(running.item()):
+                raise RuntimeError(f"the loss is {running.item()} at step {run.step}: lower --rate")
+            pace = (time.time() - started) / (run.step - first)
+            print(f"step {run.step}/{options.steps}  loss {running.item():.4f}  {pace:.3f} s a step  "
+                  f"{pace * (options.steps - run.step) / 60:.0f} min left", flush=True)
+        if run.step % options.save_every == 0 or over:
+            run.save()
+        if run.step % options.validate_every == 0 or over:
+            for name, figures in evaluate_pairs(TorchNetwork(run.averaged, run.device), crops.held_out, crops.gsd_m).items():
                 print(f"  held out {name}: {figures}", flush=True)
         if over:
             break
-    return averaged
+    return run.averaged

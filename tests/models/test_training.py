@@ -178,7 +178,7 @@ class Parts(unittest.TestCase):
             paths = [Path(place) / name for name in ("a.pt", "b.pt")]
             members = [network.RoadNet() for _ in paths]
             for path, member in zip(paths, members):
-                torch.save({"averaged": member.state_dict()}, path)
+                torch.save({"averaged": member.state_dict(), "widths": member.widths}, path)
             mean = network.mean_of_weights(paths)
             torch.testing.assert_close(mean.head.weight, (members[0].head.weight + members[1].head.weight) / 2)
             torch.testing.assert_close(network.mean_of_weights(paths[:1]).state_dict(), members[0].state_dict())

@@ -9,10 +9,10 @@ from pathlib import Path
 import cv2
 import torch
 
+from roadnet.checkpoints import mean_of_weights, read_network
 from roadnet.data import load_pairs, read_sets
 from roadnet.export import difference, export, fit_calibration
 from roadnet.metrics import logits_and_labels
-from roadnet.network import mean_of_weights, read_network
 from roadnet.predict import TorchNetwork
 
 

@@ -25,7 +25,7 @@ def arguments():
     parser.add_argument("--size-km", default="1x1")
     parser.add_argument("--gsd", default=0.5, type=float)
     parser.add_argument("--roads", default="", help="OpenStreetMap extract whose streets are rendered instead of invented ones")
-    parser.add_argument("--centre", default="", metavar="LAT,LON")
+    parser.add_argument("--centre", default="", metavar="LAT,LON", help="of the streets to render; south of the equator: --centre=-34.9,-56.2")
     return parser.parse_args()
 
 

@@ -25,8 +25,8 @@ def arguments():
                              "(against those of the manifest); may be given again")
     parser.add_argument("--only-pairs", action="store_true", help="train on --pairs alone")
     parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
-    parser.add_argument("--begin-with", type=Path, metavar="CHECKPOINT", help="its weights instead of random ones")
-    parser.add_argument("--teacher", type=Path, nargs="+", default=[], metavar="CHECKPOINT",
+    parser.add_argument("--begin-with", type=Path, metavar="FILE", help="weights of a checkpoint or of an exported network (.onnx) instead of random ones")
+    parser.add_argument("--teacher", type=Path, nargs="+", default=[], metavar="FILE",
                         help="learn too what the mean of these networks says of the crops before augmentation, in any "
                              "orientation: one network that answers like several in all of them")
     parser.add_argument("--trust", default=0.5, type=float, help="share of the loss that is the teacher's, the rest is the labels' (%(default)s)")

@@ -82,26 +82,5 @@ class Ensemble(nn.Module):
         return sum(member(x) for member in self.members) / len(self.members)
 
 
-def read_network(checkpoints):
-    """The averaged weights of one checkpoint, or of several as the mean of their logits; in evaluation mode."""
-    members = []
-    for path in checkpoints:
-        state = torch.load(path, map_location="cpu")
-        member = RoadNet(state["widths"])
-        member.load_state_dict(state["averaged"])
-        members.append(member.eval())
-    return Ensemble(members) if len(members) > 1 else members[0]
-
-
-def mean_of_weights(checkpoints):
-    """One network of the averaged weights' mean, for checkpoints of which one began with another (Wortsman et al. 2022,
-    "Model soups"); in evaluation mode."""
-    states = [torch.load(path, map_location="cpu") for path in checkpoints]
-    network = RoadNet(states[0]["widths"])
-    network.load_state_dict({name: torch.stack([state["averaged"][name].double() for state in states]).mean(0).to(value.dtype)
-                             for name, value in states[0]["averaged"].items()})
-    return network.eval()
-
-
 def twice(x):
     return F.interpolate(x, scale_factor=2.0, mode="nearest")

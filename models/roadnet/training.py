@@ -7,11 +7,16 @@ from pathlib import Path
 import torch
 from torch.utils.data import DataLoader, Sampler
 
+from .checkpoints import read_checkpoint, read_network
 from .losses import distillation_loss, road_loss, taught_in_a_random_orientation
 from .metrics import evaluate_pairs
-from .network import RoadNet, read_network
+from .network import RoadNet
 from .normalise import network_input
 from .predict import TorchNetwork
+from .unfold import settle
+
+
+SETTLED_WITH = 64  # crops
 
 
 class Consecutive(Sampler):
@@ -64,13 +69,16 @@ def require_same_run(state, checkpoint, wanted):
 class Run:
     """A network in training, its average and its optimizer, and how they are kept in a checkpoint."""
 
-    def __init__(self, options, gsd_m):
+    def __init__(self, options, crops):
         self.device = torch.device(options.device)
-        self.identity = {"gsd_m": gsd_m, "seed": options.seed, "widths": tuple(options.widths)}
+        self.identity = {"gsd_m": crops.gsd_m, "seed": options.seed, "widths": tuple(options.widths)}
         self.checkpoint = Path(options.out) / "checkpoint.pt"
         start = read_network([options.begin_with]) if options.begin_with else RoadNet(options.widths)
         if start.widths != self.identity["widths"]:
             raise SystemExit(f"{options.begin_with} has the widths {start.widths}: give the same with --widths")
+        if options.begin_with and options.begin_with.suffix == ".onnx":
+            settle(start, torch.cat([network_input(*map(torch.from_numpy, (picture[None], seen[None])))
+                                     for picture, seen, *_ in map(crops.__getitem__, range(SETTLED_WITH))]))
         self.model = start.to(self.device, memory_format=torch.channels_last)
         self.averaged = RoadNet(options.widths).to(self.device).requires_grad_(False)
         self.averaged.load_state_dict(self.model.state_dict())
@@ -81,7 +89,7 @@ class Run:
             self.resume()
 
     def resume(self):
-        state = torch.load(self.checkpoint, map_location=self.device)
+        state = read_checkpoint(self.checkpoint, self.device)
         require_same_run(state, self.checkpoint, self.identity)
         for name in ("model", "averaged", "optimizer"):
             getattr(self, name).load_state_dict(state[name])
@@ -96,13 +104,16 @@ class Run:
         """Of the labels and, where there is one, of the teacher."""
         changed, seen, clean, clean_seen, label, weight = (part.to(self.device, non_blocking=True) for part in crops)
         picture = network_input(changed, seen).contiguous(memory_format=torch.channels_last)
-        turns = torch.Generator().manual_seed(options.seed + self.step)
-        with torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16):
+        half = torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16)
+        with half:
             logits = self.model(picture).float()
-            with torch.no_grad():
-                taught = taught_in_a_random_orientation(self.teacher, network_input(clean, clean_seen), turns).float() if self.teacher else None
         loss = road_loss(logits, label / 255, weight.float())
-        return (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture) if self.teacher else loss
+        if not self.teacher:
+            return loss
+        turns = torch.Generator().manual_seed(options.seed + self.step)
+        with half, torch.no_grad():
+            taught = taught_in_a_random_orientation(self.teacher, network_input(clean, clean_seen), turns).float()
+        return (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture)
 
     def learn(self, crops, rate, options):
         self.model.train()
@@ -121,7 +132,7 @@ class Run:
 def train(crops, options):
     torch.manual_seed(options.seed)
     torch.backends.cudnn.benchmark = True  # every step has the same shape
-    run = Run(options, crops.gsd_m)
+    run = Run(options, crops)
     first, started, running = run.step, time.time(), None
     numbers = Consecutive(first * options.batch, options.steps * options.batch)
     for batch in DataLoader(crops, options.batch, sampler=numbers, num_workers=options.workers, pin_memory=run.device.type == "cuda"):

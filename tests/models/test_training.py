@@ -22,7 +22,7 @@ except ImportError as missing:
 MODELS = Path(__file__).resolve().parents[2] / "models"
 sys.path.insert(0, str(MODELS))
 
-from roadnet import augment, data, losses, metrics, network  # noqa: E402
+from roadnet import augment, checkpoints, data, export, losses, metrics, network, unfold  # noqa: E402
 
 
 def draw_pairs(folder, count=8, size=160):
@@ -88,11 +88,12 @@ class Training(unittest.TestCase):
             cv2.imwrite(str(mask), np.zeros_like(cv2.imread(str(mask), cv2.IMREAD_GRAYSCALE)))
         teacher = self.folder / "teacher/checkpoint.pt"
         self.train("pairs", "teacher", "--steps", 60, "--ramp", 1000000)
+        self.assertGreater(f1_of(teacher, self.folder), 0.5)
         self.train("unlabelled", "pupil", "--steps", 60, "--ramp", 1000000, "--teacher", teacher, "--trust", 1, "--seed", 2)
         self.assertGreater(f1_of(self.folder / "pupil/checkpoint.pt", self.folder), 0.5)
-        self.train("unlabelled", "heir", "--steps", 1, "--begin-with", teacher)
-        self.assertGreater(f1_of(self.folder / "heir/checkpoint.pt", self.folder), 0.5)
-
+        for beginning in (teacher, teacher.with_suffix(".onnx")):
+            self.train("unlabelled", "heir", "--steps", 1, "--restart", "--begin-with", beginning)
+            self.assertGreater(f1_of(self.folder / "heir/checkpoint.pt", self.folder), 0.5)
 
     def test_a_killed_run_ends_as_if_it_had_not_been_killed(self):
         teacher = self.folder / "teacher/checkpoint.pt"
@@ -179,9 +180,25 @@ class Parts(unittest.TestCase):
             members = [network.RoadNet() for _ in paths]
             for path, member in zip(paths, members):
                 torch.save({"averaged": member.state_dict(), "widths": member.widths}, path)
-            mean = network.mean_of_weights(paths)
+            mean = checkpoints.mean_of_weights(paths)
             torch.testing.assert_close(mean.head.weight, (members[0].head.weight + members[1].head.weight) / 2)
-            torch.testing.assert_close(network.mean_of_weights(paths[:1]).state_dict(), members[0].state_dict())
+            torch.testing.assert_close(checkpoints.mean_of_weights(paths[:1]).state_dict(), members[0].state_dict())
+
+    def test_an_exported_network_comes_back_and_answers_alike_while_it_learns(self):
+        torch.manual_seed(1)
+        trained, pictures = network.RoadNet((8, 12, 16, 20)), torch.randn(16, 3, 64, 64)
+        for module in trained.modules():
+            if isinstance(module, torch.nn.BatchNorm2d):
+                torch.nn.init.uniform_(module.bias, -0.5, 0.5)
+                torch.nn.init.uniform_(module.running_var, 0.5, 2.0)
+        with tempfile.TemporaryDirectory() as place, torch.no_grad():
+            export.export(trained, 1.0, Path(place) / "net.onnx", "net")
+            back = unfold.read_onnx(Path(place) / "net.onnx")
+            wanted = trained.eval()(pictures)
+            torch.testing.assert_close(back(pictures), wanted, rtol=1e-4, atol=1e-4)
+            unfold.settle(back, pictures)
+            torch.testing.assert_close(back(pictures), wanted, rtol=1e-3, atol=1e-3)
+            torch.testing.assert_close(back.train()(pictures), wanted, rtol=1e-2, atol=1e-2)
 
     def test_a_teacher_is_not_heard_where_the_pupil_saw_nothing(self):
         logits, taught, picture = torch.randn(1, 1, 8, 8), torch.randn(1, 1, 8, 8), torch.ones(1, 3, 16, 16)

@@ -1,0 +1,35 @@
+"""Networks as files: checkpoints of training runs, and exported ONNX files."""
+from pathlib import Path
+
+import torch
+
+from .network import SMALL, Ensemble, RoadNet
+from .unfold import read_onnx
+
+
+def read_checkpoint(path, device="cpu"):
+    """Runs from before networks had other widths do not name theirs."""
+    return {"widths": SMALL, **torch.load(path, map_location=device)}
+
+
+def read_network(checkpoints):
+    """The averaged weights of one checkpoint or ONNX file, or of several as the mean of their logits; in evaluation mode."""
+    members = [read_onnx(path) if Path(path).suffix == ".onnx" else averaged(path) for path in checkpoints]
+    return Ensemble(members) if len(members) > 1 else members[0]
+
+
+def averaged(path):
+    state = read_checkpoint(path)
+    network = RoadNet(state["widths"])
+    network.load_state_dict(state["averaged"])
+    return network.eval()
+
+
+def mean_of_weights(checkpoints):
+    """One network of the averaged weights' mean, for checkpoints of which one began with another (Wortsman et al. 2022,
+    "Model soups"); in evaluation mode."""
+    states = [read_checkpoint(path) for path in checkpoints]
+    network = RoadNet(states[0]["widths"])
+    network.load_state_dict({name: torch.stack([state["averaged"][name].double() for state in states]).mean(0).to(value.dtype)
+                             for name, value in states[0]["averaged"].items()})
+    return network.eval()

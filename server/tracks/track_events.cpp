@@ -1,45 +1,74 @@
-// What those who listen to a track are told.
+#include "server/tracks/track_events.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "server/http/errors.hpp"
-#include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
 
-std::shared_ptr<TrackRegistry::Listener> TrackRegistry::stream(const std::string& id, std::int64_t after) {
-  find(id);
+TrackEvents::TrackEvents(int most, Source source) : most_(most), source_(std::move(source)) {}
+
+std::shared_ptr<TrackEvents::Stream> TrackEvents::stream(const std::string& id, std::int64_t after) {
   const std::lock_guard lock(mutex_);
-  if (std::ssize(listeners_) >= limits_.streams) {
-    throw http::Busy(
-        fmt::format("{} event streams are open, the most allowed (serve --max-streams)", listeners_.size()),
-        std::chrono::seconds(5));
+  if (std::ssize(streams_) >= most_) {
+    throw http::Busy(fmt::format("{} event streams are open, the most allowed (serve --max-streams)", streams_.size()),
+                     std::chrono::seconds(5));
   }
-  return std::make_shared<Listener>(*this, id, after);
+  return std::make_shared<Stream>(*this, id, after);
 }
 
-TrackRegistry::Listener::Listener(TrackRegistry& registry, std::string id, std::int64_t after)
-    : registry_(registry), id_(std::move(id)), after_(after) {
-  registry_.listeners_.insert(this);
+int TrackEvents::streams() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(streams_.size());
 }
 
-TrackRegistry::Listener::~Listener() {
-  const std::lock_guard lock(registry_.mutex_);
-  registry_.listeners_.erase(this);
+void TrackEvents::announce() {
+  const std::lock_guard lock(mutex_);
+  ++changes_;
+  news_.notify_all();
 }
 
-std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
+void TrackEvents::end(const std::string& id, const EndInStore& end_in_store) {
+  const std::lock_guard lock(mutex_);
+  std::optional<std::int64_t> told;  // to those who listen to it, at least
+  for (const Stream* stream : streams_) {
+    if (stream->id_ == id) told = std::min(told.value_or(stream->after_), stream->after_);
+  }
+  const auto left = std::make_shared<const Stream::Steps>(end_in_store(told));
+  for (Stream* stream : streams_) {
+    if (stream->id_ == id && !stream->left_) stream->left_ = left;  // it may be ended twice at once
+  }
+  ++changes_;
+  news_.notify_all();
+}
+
+void TrackEvents::stop() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  news_.notify_all();
+}
+
+TrackEvents::Stream::Stream(TrackEvents& events, std::string id, std::int64_t after)
+    : events_(events), id_(std::move(id)), after_(after) {
+  events_.streams_.insert(this);
+}
+
+TrackEvents::Stream::~Stream() {
+  const std::lock_guard lock(events_.mutex_);
+  events_.streams_.erase(this);
+}
+
+std::optional<TrackEvents::News> TrackEvents::Stream::next() {
   constexpr int kBatch = 64;
   constexpr std::chrono::seconds kPatience{1};
-  std::unique_lock lock(registry_.mutex_);
-  const std::uint64_t seen = registry_.changes_;
+  std::unique_lock lock(events_.mutex_);
+  const std::uint64_t seen = events_.changes_;
   lock.unlock();
-  // In this order: of a track that has ended here, what the store no longer has is left below.
-  const auto track = registry_.store().find(id_);
-  const std::optional<TrackEnd> ended = track ? registry_.ended(*track) : TrackEnd::kFinished;
-  Steps steps = registry_.store().steps_after(id_, after_, kBatch);
+  auto [steps, ended] = events_.source_(id_, after_, kBatch);
   lock.lock();
   if (steps.empty() && left_) {
     const auto is_told = [&](const StoredStep& step) { return step.sequence <= after_; };
@@ -51,8 +80,8 @@ std::optional<TrackRegistry::Listener::News> TrackRegistry::Listener::next() {
     return News{std::move(steps), {}};
   }
   if (ended) return News{{}, ended};
-  registry_.news_.wait_for(lock, kPatience, [&] { return registry_.stopping_ || registry_.changes_ != seen; });
-  if (registry_.stopping_) return std::nullopt;
+  events_.news_.wait_for(lock, kPatience, [&] { return events_.stopping_ || events_.changes_ != seen; });
+  if (events_.stopping_) return std::nullopt;
   return News{};
 }
 

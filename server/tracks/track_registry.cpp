@@ -61,7 +61,8 @@ TrackRegistry::TrackRegistry(std::filesystem::path store, TrackLimits limits, co
       limits_(limits),
       maps_(maps),
       request_limits_(request_limits),
-      calibration_(std::move(calibration)) {}
+      calibration_(std::move(calibration)),
+      events_(limits.streams, [this](const auto& id, auto after, int count) { return news(id, after, count); }) {}
 
 /// Maps are served also while this fails; whoever wants a track is told why.
 TrackStore& TrackRegistry::store() const {
@@ -81,12 +82,6 @@ std::optional<std::string> TrackRegistry::problem() const {
   } catch (const Error& error) {
     return error.what();
   }
-}
-
-void TrackRegistry::stop() {
-  const std::lock_guard lock(mutex_);
-  stopping_ = true;
-  news_.notify_all();
 }
 
 StoredTrack TrackRegistry::create(const std::string& client, const std::string& request) {
@@ -123,11 +118,6 @@ std::optional<std::size_t> TrackRegistry::flying() const {
   } catch (const Error&) {
     return std::nullopt;
   }
-}
-
-int TrackRegistry::streams() const {
-  const std::lock_guard lock(mutex_);
-  return static_cast<int>(listeners_.size());
 }
 
 std::vector<StoredTrack> TrackRegistry::of_client(const std::string& client) const {
@@ -180,6 +170,16 @@ std::vector<StoredStep> TrackRegistry::steps_after(const std::string& id, std::i
   return store().steps_after(find(id).id, sequence, count);
 }
 
+std::shared_ptr<TrackEvents::Stream> TrackRegistry::stream(const std::string& id, std::int64_t after) {
+  return events_.stream(find(id).id, after);
+}
+
+TrackEvents::News TrackRegistry::news(const std::string& id, std::int64_t after, int count) const {
+  const auto track = store().find(id);
+  const std::optional<TrackEnd> how = track ? ended(*track) : TrackEnd::kFinished;
+  return {store().steps_after(id, after, count), how};
+}
+
 std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t count) {
   return live(id)->particles(count);
 }
@@ -217,18 +217,9 @@ std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
 
 void TrackRegistry::end(const std::string& id, TrackEnd how) {
   const std::lock_guard lock(mutex_);
-  std::optional<std::int64_t> told;  // to those who listen to it, at least
-  for (const Listener* listener : listeners_) {
-    if (listener->id_ == id) told = std::min(told.value_or(listener->after_), listener->after_);
-  }
-  const auto left = std::make_shared<const Listener::Steps>(store().end(id, how, told));
-  for (Listener* listener : listeners_) {
-    if (listener->id_ == id && !listener->left_) listener->left_ = left;  // it may be ended twice at once
-  }
+  events_.end(id, [&](const auto& after) { return store().end(id, how, after); });
   live_.erase(id);
   heard_.erase(id);
-  ++changes_;
-  news_.notify_all();
 }
 
 void TrackRegistry::finish(const std::string& id) { end(find(id).id, TrackEnd::kFinished); }
@@ -285,15 +276,16 @@ StepAnswer TrackRegistry::step(const std::string& id, const StepInput& input, st
     throw track_ended(id, TrackEnd::kFinished);
   }
   turn.settle(std::move(result.state));
-  const std::lock_guard registry_lock(mutex_);
-  if (live_.contains(id)) {  // else it has ended since
-    Heard& heard = heard_[id];
-    heard.taken = Clock::now();
-    heard.steps.push_back({input.sequence, came});
-    if (heard.steps.size() > kAged) heard.steps.pop_front();
+  {
+    const std::lock_guard registry_lock(mutex_);
+    if (live_.contains(id)) {  // else it has ended since
+      Heard& heard = heard_[id];
+      heard.taken = Clock::now();
+      heard.steps.push_back({input.sequence, came});
+      if (heard.steps.size() > kAged) heard.steps.pop_front();
+    }
   }
-  ++changes_;
-  news_.notify_all();
+  events_.announce();
   return {std::move(answer), std::move(text)};
 }
 

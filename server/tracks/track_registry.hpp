@@ -6,7 +6,6 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -15,7 +14,6 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +21,7 @@
 #include "server/api/limits.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/tracks/live_track.hpp"
+#include "server/tracks/track_events.hpp"
 #include "server/tracks/track_store.hpp"
 
 namespace roadfix::server {
@@ -56,9 +55,9 @@ class TrackRegistry {
   std::optional<std::string> problem() const;
   /// Tracks that fly, of all clients; nullopt where the store cannot say.
   std::optional<std::size_t> flying() const;
-  int streams() const;
+  int streams() const { return events_.streams(); }
   /// Ends the streams of events.
-  void stop();
+  void stop() { events_.stop(); }
 
   /// `request` is the JSON object of the client. Throws what parse_track and Tracker throw, NotFound ("map-not-found")
   /// and LimitExceeded ("too-many-tracks").
@@ -94,9 +93,8 @@ class TrackRegistry {
   StepAnswer step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
                   std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now());
 
-  /// One stream of events for as long as it lives. Throws Busy.
-  class Listener;
-  std::shared_ptr<Listener> stream(const std::string& id, std::int64_t after);
+  /// Throws as TrackEvents::stream and find().
+  std::shared_ptr<TrackEvents::Stream> stream(const std::string& id, std::int64_t after);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -106,6 +104,7 @@ class TrackRegistry {
   std::shared_ptr<LiveTrack> loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const;
   TrackerState stored_state(const std::string& id) const;
   std::optional<TrackEnd> ended(const StoredTrack& track) const;
+  TrackEvents::News news(const std::string& id, std::int64_t after, int count) const;
   void end(const std::string& id, TrackEnd how);
   void expire();
 
@@ -118,7 +117,6 @@ class TrackRegistry {
   mutable std::mutex store_mutex_;  ///< of opening it
   mutable std::unique_ptr<TrackStore> store_;
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
-  std::condition_variable news_;
   std::map<std::string, std::shared_ptr<LiveTrack>> live_;
   struct Arrival {
     std::int64_t sequence = 0;
@@ -129,35 +127,8 @@ class TrackRegistry {
     std::deque<Arrival> steps = {};
   };
   std::map<std::string, Heard> heard_;  ///< of the tracks that were heard since the start
-  std::uint64_t changes_ = 0;
-  std::set<Listener*> listeners_;
   int steps_waiting_ = 0;
-  bool stopping_ = false;
-};
-
-class TrackRegistry::Listener {
- public:
-  struct News {
-    std::vector<StoredStep> steps;
-    std::optional<TrackEnd> ended;  ///< as StoredTrack::ended
-  };
-
-  Listener(TrackRegistry& registry, std::string id, std::int64_t after);
-  ~Listener();
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  /// What was not handed out yet; waits for some, but not long. nullopt when the service stops.
-  std::optional<News> next();
-
- private:
-  friend class TrackRegistry;
-  using Steps = std::vector<StoredStep>;
-
-  TrackRegistry& registry_;
-  const std::string id_;
-  std::int64_t after_;                      ///< sequence number of what was handed out last; by the registry's mutex
-  std::shared_ptr<const Steps> left_ = {};  ///< by the track that ended: what may not have been handed out yet
+  TrackEvents events_;
 };
 
 }  // namespace roadfix::server

@@ -42,9 +42,9 @@ std::int64_t digest_of(const api::Content& content) {
 }
 
 json track_json(const Service& service, const StoredTrack& track) {
-  const double silent_s = std::chrono::duration<double>(service.tracks.silent(track)).count();
+  const double silent_s = std::chrono::duration<double>(service.tracks.times().silent(track)).count();
   const auto left =
-      std::max(service.tracks.limits().idle - service.tracks.idle(track.id), std::chrono::milliseconds(0));
+      std::max(service.tracks.limits().idle - service.tracks.times().idle(track.id), std::chrono::milliseconds(0));
   return {{"id", track.id},
           {"map", {{"name", track.map}, {"version", track.map_version}}},
           {"request", api::stored_json(track.request)},
@@ -91,7 +91,7 @@ http::Response formatted(const Service& service, const PostedStep& step, StepAns
   api::PositionFormat numbered = step.format;
   numbered.sender.sequence = static_cast<std::uint8_t>(step.input.sequence & 0xff);
   // A step that is sent again is as old as when it came first.
-  const auto age = service.tracks.age_of_step(step.track.id, step.input.sequence);
+  const auto age = service.tracks.times().age_of_step(step.track.id, step.input.sequence);
   return api::position_response(answer.answer, numbered, {step.input.time_us, age});
 }
 

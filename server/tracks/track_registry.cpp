@@ -19,11 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-std::int64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
 /// Nobody guesses it: who knows the id may fly the track.
 std::string new_id() {
   std::random_device random;
@@ -107,7 +102,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, {}};
   store().add(track);
   live_[track.id] = std::move(fresh);
-  heard_[track.id] = {Clock::now()};
+  times_.begin(track.id);
   return track;
 }
 
@@ -133,32 +128,8 @@ StoredTrack TrackRegistry::find(const std::string& id) const {
   return *track;
 }
 
-std::chrono::milliseconds TrackRegistry::silent(const StoredTrack& track) const {
-  const std::chrono::microseconds by_date(now_us() - track.touched_us);
-  const auto idle = this->idle(track.id);
-  const std::lock_guard lock(mutex_);
-  return heard_.contains(track.id) ? idle : std::max(idle, std::chrono::floor<std::chrono::milliseconds>(by_date));
-}
-
-std::chrono::milliseconds TrackRegistry::idle(const std::string& id) const {
-  const std::lock_guard lock(mutex_);
-  const auto heard = heard_.find(id);
-  const auto since = heard == heard_.end() ? began_ : heard->second.taken;
-  return std::chrono::floor<std::chrono::milliseconds>(Clock::now() - since);
-}
-
-std::optional<std::chrono::microseconds> TrackRegistry::age_of_step(const std::string& id,
-                                                                    std::int64_t sequence) const {
-  const std::lock_guard lock(mutex_);
-  const auto heard = heard_.find(id);
-  if (heard == heard_.end()) return std::nullopt;
-  const auto step = std::ranges::find(heard->second.steps, sequence, &Arrival::sequence);
-  if (step == heard->second.steps.end()) return std::nullopt;
-  return std::chrono::floor<std::chrono::microseconds>(Clock::now() - step->came);
-}
-
 std::optional<TrackEnd> TrackRegistry::ended(const StoredTrack& track) const {
-  if (!track.ended && idle(track.id) > limits_.idle) return TrackEnd::kExpired;
+  if (!track.ended && times_.idle(track.id) > limits_.idle) return TrackEnd::kExpired;
   return track.ended;
 }
 
@@ -219,7 +190,7 @@ void TrackRegistry::end(const std::string& id, TrackEnd how) {
   const std::lock_guard lock(mutex_);
   events_.end(id, [&](const auto& after) { return store().end(id, how, after); });
   live_.erase(id);
-  heard_.erase(id);
+  times_.forget(id);
 }
 
 void TrackRegistry::finish(const std::string& id) { end(find(id).id, TrackEnd::kFinished); }
@@ -260,7 +231,7 @@ void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequen
 }
 
 StepAnswer TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
-                               const StepLimits& limits, Clock::time_point came) {
+                               const StepLimits& limits, TrackTimes::Clock::time_point came) {
   const std::shared_ptr<LiveTrack> track = live(id);
   LiveTrack::Turn turn(*track, input.sequence, limits_.order_wait);
   if (auto before = answered(id, input.sequence, digest)) return *std::move(before);
@@ -278,12 +249,7 @@ StepAnswer TrackRegistry::step(const std::string& id, const StepInput& input, st
   turn.settle(std::move(result.state));
   {
     const std::lock_guard registry_lock(mutex_);
-    if (live_.contains(id)) {  // else it has ended since
-      Heard& heard = heard_[id];
-      heard.taken = Clock::now();
-      heard.steps.push_back({input.sequence, came});
-      if (heard.steps.size() > kAged) heard.steps.pop_front();
-    }
+    if (live_.contains(id)) times_.took_step(id, input.sequence, came);  // else it has ended since
   }
   events_.announce();
   return {std::move(answer), std::move(text)};

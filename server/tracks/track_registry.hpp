@@ -1,13 +1,9 @@
 // The tracks that fly: each with its tracker in memory and its state in the store. Steps of one track are taken one at
 // a time and in order; those of different tracks run side by side.
-//
-// When a track ends is told by a clock that nobody can set, and counts from the start of the service at the earliest: a
-// machine without GPS may learn the date in mid-flight.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -23,6 +19,7 @@
 #include "server/tracks/live_track.hpp"
 #include "server/tracks/track_events.hpp"
 #include "server/tracks/track_store.hpp"
+#include "server/tracks/track_times.hpp"
 
 namespace roadfix::server {
 
@@ -66,15 +63,7 @@ class TrackRegistry {
   std::vector<StoredTrack> of_client(const std::string& client) const;
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
-  /// Since its last step or its beginning. Of a track that was not heard since the service started the date tells how
-  /// long before that: silence that the clock makes up is better than a place from before taken for one of now.
-  std::chrono::milliseconds silent(const StoredTrack& track) const;
-  /// Since its last step, its beginning or the start of the service: a track has TrackLimits::idle from then.
-  std::chrono::milliseconds idle(const std::string& id) const;
-  /// How old the answer to a step is: since it came first, the time that it took included. Known of the last kAged
-  /// steps that were taken since the start of the service.
-  std::optional<std::chrono::microseconds> age_of_step(const std::string& id, std::int64_t sequence) const;
-  static constexpr std::size_t kAged = 100;
+  const TrackTimes& times() const { return times_; }
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
   /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").
@@ -91,13 +80,12 @@ class TrackRegistry {
   /// what Tracker::advance throws, InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
   /// `came` is when the step did.
   StepAnswer step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
-                  std::chrono::steady_clock::time_point came = std::chrono::steady_clock::now());
+                  TrackTimes::Clock::time_point came = TrackTimes::Clock::now());
 
   /// Throws as TrackEvents::stream and find().
   std::shared_ptr<TrackEvents::Stream> stream(const std::string& id, std::int64_t after);
 
  private:
-  using Clock = std::chrono::steady_clock;
   TrackStore& store() const;
   TrackSettings calibrated(TrackSettings settings) const;
   std::shared_ptr<LiveTrack> live(const std::string& id);
@@ -113,21 +101,12 @@ class TrackRegistry {
   const MapRegistry& maps_;
   const api::Limits& request_limits_;
   const std::shared_ptr<const Calibration> calibration_;
-  const Clock::time_point began_ = Clock::now();
   mutable std::mutex store_mutex_;  ///< of opening it
   mutable std::unique_ptr<TrackStore> store_;
   mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
   std::map<std::string, std::shared_ptr<LiveTrack>> live_;
-  struct Arrival {
-    std::int64_t sequence = 0;
-    Clock::time_point came;
-  };
-  struct Heard {
-    Clock::time_point taken;  ///< the last step, or the beginning
-    std::deque<Arrival> steps = {};
-  };
-  std::map<std::string, Heard> heard_;  ///< of the tracks that were heard since the start
   int steps_waiting_ = 0;
+  TrackTimes times_;
   TrackEvents events_;
 };
 

@@ -35,10 +35,10 @@ TEST_F(KeptTracks, SaysAfterARestartHowLongATrackHasBeenSilentWithoutEndingIt) {
   take(*registry(), id, 0);
   testing::open_sqlite(folder_ / "tracks.sqlite").execute("UPDATE tracks SET touched_us = touched_us - 100000000");
   const auto tracks = registry(limits);
-  EXPECT_GE(tracks->silent(tracks->find(id)), std::chrono::seconds(100));
-  EXPECT_LT(tracks->idle(id), limits.idle);
+  EXPECT_GE(tracks->times().silent(tracks->find(id)), std::chrono::seconds(100));
+  EXPECT_LT(tracks->times().idle(id), limits.idle);
   take(*tracks, id, 1);
-  EXPECT_LT(tracks->silent(tracks->find(id)), limits.idle);
+  EXPECT_LT(tracks->times().silent(tracks->find(id)), limits.idle);
 }
 
 TEST_F(KeptTracks, IsAsItWasAfterAStepThatTheFullStoreRefused) {
@@ -123,10 +123,10 @@ TEST_F(KeptTracks, DoesNotKnowHowOldAStepFromBeforeARestartIs) {
   const std::string id = begin(*registry());
   take(*registry(), id, 0);
   const auto tracks = registry();
-  EXPECT_FALSE(tracks->age_of_step(id, 0));
+  EXPECT_FALSE(tracks->times().age_of_step(id, 0));
   take(*tracks, id, 1);
-  EXPECT_FALSE(tracks->age_of_step(id, 0));
-  EXPECT_TRUE(tracks->age_of_step(id, 1));
+  EXPECT_FALSE(tracks->times().age_of_step(id, 0));
+  EXPECT_TRUE(tracks->times().age_of_step(id, 1));
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ struct Application::Parts {
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
                configuration.track_limits, maps, configuration.limits, configuration.calibration),
         search_threads(configuration.search_threads),
-        service{maps,     *detector, configuration.limits, configuration.http,       metrics,
-                pictures, tracks,    search_threads,       configuration.calibration},
+        service{maps,   *detector, configuration.limits, configuration.http,       metrics, pictures,
+                tracks, steps,     search_threads,       configuration.calibration},
         server(configuration.http, make_router(service), error_response(), metrics) {
     metrics.describe(kAnswers, "Fixes and steps of tracks by their status.");
     metrics.gauge("process_start_time_seconds", "When the service started, in seconds since 1970.",
@@ -67,6 +67,7 @@ struct Application::Parts {
   PictureCache pictures;
   http::Metrics metrics;
   TrackRegistry tracks;
+  TrackSteps steps{tracks};
   SearchThreads search_threads;
   const Service service;
   http::Server server;

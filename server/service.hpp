@@ -12,7 +12,7 @@
 #include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
 #include "server/search_threads.hpp"
-#include "server/tracks/track_registry.hpp"
+#include "server/tracks/track_steps.hpp"
 
 namespace roadfix::server {
 
@@ -24,6 +24,7 @@ struct Service {
   http::Metrics& metrics;
   PictureCache& pictures;
   TrackRegistry& tracks;
+  TrackSteps& steps;
   SearchThreads& search_threads;
   std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
 };

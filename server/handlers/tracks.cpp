@@ -119,7 +119,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   const StoredTrack& track = step.track;
   StepInput& input = step.input;
   const std::int64_t digest = digest_of(step.content);
-  if (auto answer = service.tracks.answered(track.id, input.sequence, digest)) {
+  if (auto answer = service.steps.answered(track.id, input.sequence, digest)) {
     return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);
@@ -134,13 +134,13 @@ http::Response take_step(const Service& service, const http::Request& request, P
   constexpr int kRestOfStep = 10;  // a tenth of the time
   limits.searches_end = request.deadline - api::time_left(request.deadline) / kRestOfStep;
   limits.stop = limit.token();
-  return step_response(service, step, service.tracks.step(track.id, input, digest, limits, request.received));
+  return step_response(service, step, service.steps.take(track.id, input, digest, limits, request.received));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first.
 std::function<http::Response()> post_step(const Service& service, const http::Request& request) {
   PostedStep step = read_step(service, request);
-  service.tracks.await_predecessor(step.track.id, step.input.sequence);
+  service.steps.await_predecessor(step.track.id, step.input.sequence);
   return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };
 }
 
@@ -157,7 +157,8 @@ http::Response get_track(const Service& service, const http::Request& request) {
   const auto last = service.tracks.last_step(track.id);
   if (last) answer["last"] = api::stored_json(last->answer);
   if (const auto count = fields.optional_integer("particles", 1, kMaxParticlesShown)) {
-    answer["particles"] = api::particles_json(service.tracks.particles(track.id, static_cast<std::size_t>(*count)));
+    answer["particles"] =
+        api::particles_json(service.tracks.live(track.id)->particles(static_cast<std::size_t>(*count)));
   }
   return json_response(answer);
 }

@@ -12,12 +12,9 @@
 #include "server/api/json_body.hpp"
 #include "server/api/track_json.hpp"
 #include "server/api/track_request.hpp"
-#include "server/http/errors.hpp"
 
 namespace roadfix::server {
 namespace {
-
-using nlohmann::json;
 
 /// Nobody guesses it: who knows the id may fly the track.
 std::string new_id() {
@@ -133,6 +130,10 @@ std::optional<TrackEnd> TrackRegistry::ended(const StoredTrack& track) const {
   return track.ended;
 }
 
+std::optional<StoredStep> TrackRegistry::step(const std::string& id, std::int64_t sequence) const {
+  return store().step(find(id).id, sequence);
+}
+
 std::optional<StoredStep> TrackRegistry::last_step(const std::string& id) const {
   return store().last_step(find(id).id);
 }
@@ -151,23 +152,6 @@ TrackEvents::News TrackRegistry::news(const std::string& id, std::int64_t after,
   return {store().steps_after(id, after, count), how};
 }
 
-std::vector<GeoPose> TrackRegistry::particles(const std::string& id, std::size_t count) {
-  return live(id)->particles(count);
-}
-
-std::shared_ptr<LiveTrack> TrackRegistry::loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const {
-  return std::make_shared<LiveTrack>(std::move(map), calibrated(stored_settings(track, request_limits_)),
-                                     stored_state(track.id));
-}
-
-TrackerState TrackRegistry::stored_state(const std::string& id) const {
-  const StoredState stored = store().state(id);
-  if (stored.counters.empty()) return {};
-  TrackerState state = api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
-  state.recent = RecentFrames::of_bytes(stored.frames);
-  return state;
-}
-
 std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   const StoredTrack track = find(id);
   const auto map = maps_.find(track.map);
@@ -183,7 +167,35 @@ std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   // It may have ended since it was found; while `mutex_` is held, none does.
   const auto now = store().find(id);
   if (const auto how = now ? now->ended : TrackEnd::kFinished) throw track_ended(id, *how);
-  return live_.emplace(id, loaded(track, map)).first->second;
+  auto loaded = std::make_shared<LiveTrack>(map, calibrated(stored_settings(track, request_limits_)), stored_state(id));
+  return live_.emplace(id, std::move(loaded)).first->second;
+}
+
+std::shared_ptr<LiveTrack> TrackRegistry::in_memory(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = live_.find(id);
+  return known == live_.end() ? nullptr : known->second;
+}
+
+TrackerState TrackRegistry::stored_state(const std::string& id) const {
+  const StoredState stored = store().state(id);
+  if (stored.counters.empty()) return {};
+  TrackerState state = api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
+  state.recent = RecentFrames::of_bytes(stored.frames);
+  return state;
+}
+
+void TrackRegistry::store_step(const std::string& id, const StoredStep& step, const TrackerState& state) {
+  const StoredState stored{json_text(api::counters_json(state)), to_bytes(state.filter), state.recent.to_bytes()};
+  if (!store().add_step(id, now_us(), stored, step)) throw track_ended(id, TrackEnd::kFinished);
+}
+
+void TrackRegistry::announce_step(const std::string& id, std::int64_t sequence, TrackTimes::Clock::time_point came) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (live_.contains(id)) times_.took_step(id, sequence, came);  // else it has ended since
+  }
+  events_.announce();
 }
 
 void TrackRegistry::end(const std::string& id, TrackEnd how) {
@@ -199,60 +211,6 @@ void TrackRegistry::expire() {
   for (const StoredTrack& track : store().flying()) {
     if (const auto how = ended(track)) end(track.id, *how);
   }
-}
-
-std::optional<StepAnswer> TrackRegistry::answered(const std::string& id, std::int64_t sequence,
-                                                  std::int64_t digest) const {
-  auto taken = store().step(find(id).id, sequence);
-  if (!taken) return std::nullopt;
-  if (taken->digest != digest) {
-    throw InvalidInput(
-        "step-differs",
-        fmt::format("step {} was already processed with different content: continue with the next number", sequence));
-  }
-  return StepAnswer{api::stored_json(taken->answer), std::move(taken->answer), true};
-}
-
-void TrackRegistry::await_predecessor(const std::string& id, std::int64_t sequence) {
-  std::unique_lock lock(mutex_);
-  const auto known = live_.find(id);
-  if (known == live_.end()) return;
-  // Each holds a connection's thread, and a step before it may take as long as a search.
-  if (steps_waiting_ >= limits_.steps_waiting) {
-    throw http::Busy(fmt::format("{} steps of tracks wait for those before them already; try again", steps_waiting_),
-                     std::chrono::seconds(1));
-  }
-  const std::shared_ptr<LiveTrack> track = known->second;
-  ++steps_waiting_;
-  lock.unlock();
-  track->await_predecessor(sequence, limits_.order_wait);
-  lock.lock();
-  --steps_waiting_;
-}
-
-StepAnswer TrackRegistry::step(const std::string& id, const StepInput& input, std::int64_t digest,
-                               const StepLimits& limits, TrackTimes::Clock::time_point came) {
-  const std::shared_ptr<LiveTrack> track = live(id);
-  LiveTrack::Turn turn(*track, input.sequence, limits_.order_wait);
-  if (auto before = answered(id, input.sequence, digest)) return *std::move(before);
-  if (turn.is_doubtful()) turn.settle(stored_state(id));
-  StepResult result = track->tracker().advance(turn.state(), input, limits);
-  json answer = api::to_json(result.estimate);
-  answer["track"] = id;
-  std::string text = json_text(answer);
-  const StoredState state{json_text(api::counters_json(result.state)), to_bytes(result.state.filter),
-                          result.state.recent.to_bytes()};
-  turn.doubt();
-  if (!store().add_step(id, now_us(), state, {input.sequence, digest, text})) {
-    throw track_ended(id, TrackEnd::kFinished);
-  }
-  turn.settle(std::move(result.state));
-  {
-    const std::lock_guard registry_lock(mutex_);
-    if (live_.contains(id)) times_.took_step(id, input.sequence, came);  // else it has ended since
-  }
-  events_.announce();
-  return {std::move(answer), std::move(text)};
 }
 
 }  // namespace roadfix::server

@@ -1,5 +1,5 @@
-// The tracks that fly: each with its tracker in memory and its state in the store. Steps of one track are taken one at
-// a time and in order; those of different tracks run side by side.
+// The tracks that fly, from their beginning to their end: each with its state in the store and, once it takes steps,
+// with its tracker in memory.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,13 +30,6 @@ struct TrackLimits {
   std::chrono::milliseconds order_wait{100};  ///< for a step that was overtaken on its way here
   int steps_waiting = 16;                     ///< for those before them, of all tracks
   std::int64_t store_bytes = std::int64_t{8} << 30;
-};
-
-/// What a step was answered.
-struct StepAnswer {
-  nlohmann::json answer;
-  std::string text;       ///< the same, byte by byte as it was told before and is stored
-  bool repeated = false;  ///< the step had been taken before
 };
 
 class TrackRegistry {
@@ -64,23 +56,22 @@ class TrackRegistry {
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
   const TrackTimes& times() const { return times_; }
+  std::optional<StoredStep> step(const std::string& id, std::int64_t sequence) const;
   std::optional<StoredStep> last_step(const std::string& id) const;
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
-  /// At most `count`; none before the first step. Throws InvalidInput ("map-replaced").
-  std::vector<GeoPose> particles(const std::string& id, std::size_t count);
   void finish(const std::string& id);
 
-  /// What a step was answered, if it was taken already. Throws InvalidInput ("step-differs") where that was another
-  /// step of the same number.
-  std::optional<StepAnswer> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
-  /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
-  /// the searches for that, so that it holds none meanwhile. Throws Busy where too many wait.
-  void await_predecessor(const std::string& id, std::int64_t sequence);
-  /// Takes the step, unless that was done meanwhile, and returns its answer once it cannot be lost any more. Throws
-  /// what Tracker::advance throws, InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
-  /// `came` is when the step did.
-  StepAnswer step(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
-                  TrackTimes::Clock::time_point came = TrackTimes::Clock::now());
+  /// The track with its tracker. Throws as find(), and InvalidInput ("map-replaced").
+  std::shared_ptr<LiveTrack> live(const std::string& id);
+  /// nullptr where it is not: no step has come since the start of the service.
+  std::shared_ptr<LiveTrack> in_memory(const std::string& id) const;
+
+  /// After the last step that was stored.
+  TrackerState stored_state(const std::string& id) const;
+  /// From then on neither the step nor the state after it is lost. Throws NotFound ("track-ended").
+  void store_step(const std::string& id, const StoredStep& step, const TrackerState& state);
+  /// Of a step that is in the store; `came` is when it did.
+  void announce_step(const std::string& id, std::int64_t sequence, TrackTimes::Clock::time_point came);
 
   /// Throws as TrackEvents::stream and find().
   std::shared_ptr<TrackEvents::Stream> stream(const std::string& id, std::int64_t after);
@@ -88,9 +79,6 @@ class TrackRegistry {
  private:
   TrackStore& store() const;
   TrackSettings calibrated(TrackSettings settings) const;
-  std::shared_ptr<LiveTrack> live(const std::string& id);
-  std::shared_ptr<LiveTrack> loaded(const StoredTrack& track, std::shared_ptr<const ServedMap> map) const;
-  TrackerState stored_state(const std::string& id) const;
   std::optional<TrackEnd> ended(const StoredTrack& track) const;
   TrackEvents::News news(const std::string& id, std::int64_t after, int count) const;
   void end(const std::string& id, TrackEnd how);
@@ -103,9 +91,10 @@ class TrackRegistry {
   const std::shared_ptr<const Calibration> calibration_;
   mutable std::mutex store_mutex_;  ///< of opening it
   mutable std::unique_ptr<TrackStore> store_;
-  mutable std::mutex mutex_;  ///< of what follows; never held while a step is taken
+  /// Held while a track begins or ends, so that none that has ended comes back into what follows; never while a step is
+  /// taken. Those of times_, events_ and the store are taken after it.
+  mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<LiveTrack>> live_;
-  int steps_waiting_ = 0;
   TrackTimes times_;
   TrackEvents events_;
 };

@@ -38,8 +38,10 @@ class OpenApi : public ::testing::Test {
   http::Metrics metrics_;
   server::PictureCache pictures_{1 << 20};
   server::TrackRegistry tracks_{folder_ / "tracks.sqlite", {}, maps_, limits_};
+  server::TrackSteps steps_{tracks_};
   server::SearchThreads search_threads_{1};
-  const server::Service service_{maps_, detector_, limits_, http_, metrics_, pictures_, tracks_, search_threads_};
+  const server::Service service_{maps_,     detector_, limits_, http_,          metrics_,
+                                 pictures_, tracks_,   steps_,  search_threads_};
   const http::Router router_ = server::make_router(service_);
 
   const json& resolved(const json& node) const {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/tracks/track_registry.hpp"
+#include "server/tracks/track_steps.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -39,7 +39,7 @@ class TrackRegistryTest : public ::testing::Test {
   }
   /// The answer without the name of the track.
   static std::string take(TrackRegistry& tracks, const std::string& id, std::int64_t sequence) {
-    nlohmann::json answer = tracks.step(id, step_of(sequence), sequence, {}).answer;
+    nlohmann::json answer = TrackSteps(tracks).take(id, step_of(sequence), sequence, {}).answer;
     answer.erase("track");
     return answer.dump();
   }

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <future>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <random>
 #include <thread>
 
 #include "tests/server/tracks/track_registry_fixture.hpp"
 #include "tests/support/code_of.hpp"
-#include "tests/support/eventually.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -20,21 +17,6 @@ using roadfix::testing::code_of;
 
 using nlohmann::json;
 
-TEST_F(TrackRegistryTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
-  const auto tracks = registry();
-  const std::string id = begin(*tracks);
-  const auto came = TrackTimes::Clock::now() - std::chrono::seconds(60);
-  const StepAnswer first = tracks->step(id, step_of(0), 0, {}, came);
-  const StepAnswer again = tracks->step(id, step_of(0), 0, {});
-  EXPECT_FALSE(first.repeated);
-  EXPECT_TRUE(again.repeated);
-  EXPECT_EQ(again.text, first.text);
-  EXPECT_EQ(again.answer, json::parse(first.text));
-  EXPECT_GE(tracks->times().age_of_step(id, 0), std::chrono::seconds(60));
-  tracks->finish(id);
-  EXPECT_FALSE(tracks->times().age_of_step(id, 0));
-}
-
 TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
   const auto tracks = registry();
   const long unused = maps_.find("town").use_count();
@@ -42,7 +24,7 @@ TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
     const std::string id = begin(*tracks);
     std::atomic<int> asked = 0;
     const std::jthread asks([&] {
-      while (code_of([&] { tracks->particles(id, 10); }) == "no error") ++asked;
+      while (code_of([&] { tracks->live(id)->particles(10); }) == "no error") ++asked;
     });
     while (asked < 10) std::this_thread::yield();
     tracks->finish(id);
@@ -73,7 +55,7 @@ TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
   const auto accepted = [&](const char* file, std::shared_ptr<const Calibration> calibration) {
     TrackRegistry tracks(folder_ / file, {}, maps_, limits_, std::move(calibration));
     const std::string id = tracks.create("::1", R"({"map": "town", "particles": 500})").id;
-    const json answer = tracks.step(id, first, 0, {}).answer;
+    const json answer = TrackSteps(tracks).take(id, first, 0, {}).answer;
     EXPECT_EQ(answer["measurement"], "searched");
     return !answer["since_accepted_s"].is_null();
   };
@@ -105,54 +87,6 @@ TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
   EXPECT_EQ(code_of([&] { take(*tracks, id, 0); }), "track-ended");
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "track-ended");
   EXPECT_TRUE(tracks->of_client("::1").empty());
-}
-
-TEST_F(TrackRegistryTest, ShowsParticlesWhileAStepIsUnderWay) {
-  const auto map = maps_.find("town");
-  LiveTrack track(map, {});
-  std::optional<LiveTrack::Turn> step(std::in_place, track, 0, std::chrono::milliseconds(0));
-  step->settle(track.tracker().advance(step->state(), step_of(0)).state);
-  auto shown = std::async(std::launch::async, [&] { return track.particles(100).size(); });
-  EXPECT_EQ(shown.wait_for(std::chrono::seconds(10)), std::future_status::ready);
-  step.reset();
-  EXPECT_EQ(shown.get(), 100U);
-}
-
-TEST_F(TrackRegistryTest, TakesStepsOfSeveralThreadsInOrder) {
-  TrackLimits limits;
-  limits.order_wait = std::chrono::minutes(10);
-  const auto tracks = registry(limits);
-  const std::vector<std::string> expected = undisturbed(40);
-  const std::string id = begin(*tracks);
-  take(*tracks, id, 0);
-  std::atomic<std::int64_t> next = 1;
-  std::atomic<int> different = 0;
-  std::vector<std::jthread> senders;
-  for (int i = 0; i < 4; ++i) {
-    senders.emplace_back([&] {
-      for (std::int64_t sequence = next++; sequence < 40; sequence = next++) {
-        if (take(*tracks, id, sequence) != expected[static_cast<std::size_t>(sequence)]) ++different;
-      }
-    });
-  }
-  senders.clear();
-  EXPECT_EQ(different, 0);
-}
-
-TEST_F(TrackRegistryTest, LetsNoMoreStepsWaitForThoseBeforeThemThanItMay) {
-  TrackLimits limits;
-  limits.order_wait = std::chrono::minutes(10);
-  limits.steps_waiting = 2;
-  const auto tracks = registry(limits);
-  const std::string id = begin(*tracks);
-  take(*tracks, id, 0);
-  std::vector<std::jthread> early;
-  for (int i = 0; i < 2; ++i) early.emplace_back([&] { tracks->await_predecessor(id, 2); });
-  const auto is_busy = [&] { return code_of([&] { tracks->await_predecessor(id, 1); }) == "server-busy"; };
-  EXPECT_TRUE(testing::eventually(is_busy));
-  take(*tracks, id, 1);
-  early.clear();
-  EXPECT_FALSE(is_busy());
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+#include "server/tracks/track_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
+#include "server/api/json_body.hpp"
+#include "server/api/track_json.hpp"
+#include "server/http/errors.hpp"
+
+namespace roadfix::server {
+
+std::optional<StepAnswer> TrackSteps::answered(const std::string& id, std::int64_t sequence,
+                                               std::int64_t digest) const {
+  auto taken = tracks_.step(id, sequence);
+  if (!taken) return std::nullopt;
+  if (taken->digest != digest) {
+    throw InvalidInput(
+        "step-differs",
+        fmt::format("step {} was already processed with different content: continue with the next number", sequence));
+  }
+  return StepAnswer{api::stored_json(taken->answer), std::move(taken->answer), true};
+}
+
+void TrackSteps::await_predecessor(const std::string& id, std::int64_t sequence) {
+  const std::shared_ptr<LiveTrack> track = tracks_.in_memory(id);
+  if (!track) return;
+  std::unique_lock lock(mutex_);
+  // Each holds a connection's thread, and a step before it may take as long as a search.
+  if (waiting_ >= tracks_.limits().steps_waiting) {
+    throw http::Busy(fmt::format("{} steps of tracks wait for those before them already; try again", waiting_),
+                     std::chrono::seconds(1));
+  }
+  ++waiting_;
+  lock.unlock();
+  track->await_predecessor(sequence, tracks_.limits().order_wait);
+  lock.lock();
+  --waiting_;
+}
+
+StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::int64_t digest,
+                            const StepLimits& limits, TrackTimes::Clock::time_point came) {
+  const std::shared_ptr<LiveTrack> track = tracks_.live(id);
+  LiveTrack::Turn turn(*track, input.sequence, tracks_.limits().order_wait);
+  if (auto before = answered(id, input.sequence, digest)) return *std::move(before);
+  if (turn.is_doubtful()) turn.settle(tracks_.stored_state(id));
+  StepResult result = track->tracker().advance(turn.state(), input, limits);
+  nlohmann::json answer = api::to_json(result.estimate);
+  answer["track"] = id;
+  std::string text = json_text(answer);
+  turn.doubt();
+  tracks_.store_step(id, {input.sequence, digest, text}, result.state);
+  turn.settle(std::move(result.state));
+  tracks_.announce_step(id, input.sequence, came);
+  return {std::move(answer), std::move(text)};
+}
+
+}  // namespace roadfix::server

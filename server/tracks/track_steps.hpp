@@ -1,0 +1,44 @@
+// Takes the steps of tracks: each once, those of one track in order and one at a time. Those of different tracks run
+// side by side.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "server/tracks/track_registry.hpp"
+
+namespace roadfix::server {
+
+/// What a step was answered.
+struct StepAnswer {
+  nlohmann::json answer;
+  std::string text;       ///< the same, byte by byte as it was told before and is stored
+  bool repeated = false;  ///< the step had been taken before
+};
+
+class TrackSteps {
+ public:
+  explicit TrackSteps(TrackRegistry& tracks) : tracks_(tracks) {}
+
+  /// What a step was answered, if it was taken already. Throws InvalidInput ("step-differs") where that was another
+  /// step of the same number.
+  std::optional<StepAnswer> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
+  /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
+  /// the searches for that, so that it holds none meanwhile. Throws Busy where too many wait.
+  void await_predecessor(const std::string& id, std::int64_t sequence);
+  /// Takes the step, unless that was done meanwhile, and returns its answer once it cannot be lost any more. Throws
+  /// what Tracker::advance throws, InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
+  /// `came` is when the step did.
+  StepAnswer take(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
+                  TrackTimes::Clock::time_point came = TrackTimes::Clock::now());
+
+ private:
+  TrackRegistry& tracks_;
+  std::mutex mutex_;
+  int waiting_ = 0;  ///< steps of all tracks, for those before them
+};
+
+}  // namespace roadfix::server

@@ -127,12 +127,12 @@ void refuse_the_map_itself(SourceFiles& files, const std::string& map) {
   }
 }
 
-void run(const IngestArguments& arguments, bool cell_given) {
+void run(const IngestArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   require_name(arguments.map);
-  if (!is_map_cell_size(arguments.cell_m)) {
+  if (arguments.cell_m && !is_map_cell_size(*arguments.cell_m)) {
     throw InvalidInput("cell-size-unknown", fmt::format("--cell {}: cells are a power of two of metres from {} to {}",
-                                                        arguments.cell_m, kMinCellM, kMaxCellM));
+                                                        *arguments.cell_m, kMinCellM, kMaxCellM));
   }
   std::vector<SourceRequest> requests;
   for (const std::string& source : arguments.sources) requests.push_back(request_of(arguments, source));
@@ -149,7 +149,7 @@ void run(const IngestArguments& arguments, bool cell_given) {
   const bool imagery =
       std::ranges::any_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; });
   const std::unique_ptr<RoadDetector> detector = imagery ? make_detector(arguments.detector) : nullptr;
-  const MapSettings settings = settings_of(arguments, requests.front(), detector.get(), cell_given);
+  const MapSettings settings = settings_of(arguments, requests.front(), detector.get());
   std::optional<MapWriter> writer;
   try {
     for (const SourceRequest& request : requests) {
@@ -170,10 +170,10 @@ void add_ingest_command(CLI::App& app) {
       "Builds or extends a road map from imagery (anything GDAL reads) and road data (anything OGR reads).\n"
       "Example: roadfix ingest city.tif roads.geojson --map city.gpkg\n"
       "To resume after an interruption, run the same command again.");
-  CLI::Option* cell = add_ingest_options(*command, *a);
-  command->callback([a, cell] {
+  add_ingest_options(*command, *a);
+  command->callback([a] {
     if (!a->name.empty() && a->sources.size() > 1) throw CLI::ValidationError("--name", "names a single SOURCE");
-    run(*a, cell->count() > 0);
+    run(*a);
   });
 }
 

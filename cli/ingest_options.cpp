@@ -25,7 +25,7 @@ RoadRules rules_of(const IngestArguments& arguments) {
   if (!arguments.classes.empty()) rules.select(arguments.classes);
   if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);
   if (!arguments.width_attribute.empty()) rules.set_width_attribute(arguments.width_attribute);
-  if (arguments.width_m > 0.0) rules.set_width_m(arguments.width_m);
+  if (arguments.width_m) rules.set_width_m(*arguments.width_m);
   return rules;
 }
 
@@ -105,18 +105,17 @@ void refuse_without_effect(const IngestArguments& a, std::span<const SourceReque
   refuse(!a.rules_file.empty(), "--rules", kPixels);
   refuse(!a.class_attribute.empty(), "--class-attribute", kPixels);
   refuse(!a.width_attribute.empty(), "--width-attribute", kPixels);
-  refuse(a.width_m > 0.0, "--width", kPixels);
+  refuse(a.width_m.has_value(), "--width", kPixels);
 }
 
-CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
+void add_ingest_options(CLI::App& command, IngestArguments& a) {
   command
       .add_option("SOURCE", a.sources,
                   "Files, or folders of images or vector files (one source each; where images of a folder overlap, the "
                   "first by name is used)")
       ->required();
   command.add_option("--map", a.map, "The map file to create or extend")->required();
-  CLI::Option* cell =
-      command.add_option("--cell", a.cell_m, "Cell size of a new map: 0.25, 0.5, 1, 2, 4, 8 or 16 m; default: 2");
+  command.add_option("--cell", a.cell_m, "Cell size of a new map: 0.25, 0.5, 1, 2, 4, 8 or 16 m; default: 2");
   command.add_option("--zone", a.zone, "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
   add_content_options(command, a);
   add_detector_options(command, a.detector);
@@ -126,7 +125,6 @@ CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& a) {
   command.add_flag("--replace", a.options.replace, "Replace a source of the same name, and what was told of it");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");
   command.add_flag("--json", a.json, "Print one line of JSON for each source");
-  return cell;
 }
 
 }  // namespace roadfix::cli

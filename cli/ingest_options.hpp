@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct IngestArguments {
   std::string map;
   std::string name;
   std::string meaning = "auto";
-  double cell_m = 2.0;
+  std::optional<double> cell_m;
   std::string zone;
   std::string crs;
   std::string collar;
@@ -26,7 +27,7 @@ struct IngestArguments {
   std::string classes;
   std::string class_attribute;
   std::string width_attribute;
-  double width_m = 0.0;
+  std::optional<double> width_m;
   VectorOptions vectors;
   DetectorChoice detector;
   UserProvenance told;
@@ -35,8 +36,8 @@ struct IngestArguments {
   bool json = false;
 };
 
-/// `arguments` must live as long as the command. Returns the option --cell, to tell whether it was given.
-CLI::Option* add_ingest_options(CLI::App& command, IngestArguments& arguments);
+/// `arguments` must live as long as the command.
+void add_ingest_options(CLI::App& command, IngestArguments& arguments);
 
 /// The source named `source` on the command line. Throws NotFound and InvalidInput about files and options.
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source);

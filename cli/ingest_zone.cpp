@@ -16,6 +16,7 @@
 namespace roadfix::cli {
 namespace {
 
+constexpr double kCellM = 2.0;  // of a new map
 constexpr double kFalseEastingM = 500e3;
 
 UtmZone parsed_zone(const std::string& text) {
@@ -78,15 +79,15 @@ void refuse_several_zones(const SourceRequest& request, const InvalidInput& erro
 
 }  // namespace
 
-MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector,
-                        bool cell_given) {
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector) {
   if (std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map)) {
-    if (cell_given) existing->cell_m = arguments.cell_m;
+    if (arguments.cell_m) existing->cell_m = *arguments.cell_m;
     if (!arguments.zone.empty()) existing->zone = parsed_zone(arguments.zone);
     return *existing;
   }
-  if (!arguments.zone.empty()) return {parsed_zone(arguments.zone), arguments.cell_m};
-  return settings_of_new_map(first, arguments.cell_m, detector);
+  const double cell_m = arguments.cell_m.value_or(kCellM);
+  if (!arguments.zone.empty()) return {parsed_zone(arguments.zone), cell_m};
+  return settings_of_new_map(first, cell_m, detector);
 }
 
 PlannedSource plan_source(const SourceRequest& request, const MapSettings& settings, const RoadDetector* detector) {

@@ -16,8 +16,7 @@
 namespace roadfix::cli {
 
 /// Those of the map, if it is there: then --cell and --zone must not contradict.
-MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector,
-                        bool cell_given);
+MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector);
 
 struct PlannedSource {
   std::unique_ptr<CellSource> cells;

@@ -44,8 +44,8 @@ json document(const FlyOptions& options, const Ground& ground, const std::vector
   return {{"roadfix", ROADFIX_VERSION},
           {"map", options.map},
           {"ground", ground.what},
-          {"seed", options.seed},
-          {"particles", options.particles},
+          {"seed", options.campaign.seed},
+          {"particles", options.service.filter.particles},
           {"footprint_m", {ground.footprint.width_m, ground.footprint.height_m}},
           {"filters", filters}};
 }
@@ -69,33 +69,26 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
 }
 
 fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
-  if (options.server.empty()) {
-    for (const std::string& filter : options.filters) fly::filter_named(filter, options.particles);
-    return fly::library_localizers(map, options.particles, options.measure_every, vehicle_of(options), stop);
+  fly::ServicePlan plan = options.service;
+  plan.filter.vehicle = vehicle_of(options);
+  if (plan.base.empty()) {
+    for (const std::string& filter : options.campaign.filters) fly::filter_named(filter, plan.filter.particles);
+    return fly::library_localizers(map, plan.filter, stop);
   }
-  fly::ServicePlan plan;
-  plan.base = options.server;
-  plan.map = options.served_map.empty() ? std::filesystem::path(options.map).stem().string() : options.served_map;
+  if (plan.map.empty()) plan.map = std::filesystem::path(options.map).stem().string();
   // The whole map is served: what lies around the square is not hidden from the track, but its start.
   if (options.area_m > 0.0) plan.area = geo_box_around(map.zone, map.extent);
-  plan.particles = options.particles;
-  plan.measure_every = options.measure_every;
-  plan.vehicle = vehicle_of(options);
-  plan.patience = std::chrono::seconds(options.patience_s);
-  plan.keeps_tracks = options.keep_tracks;
   plan.stop = stop;
   return fly::service_localizers(plan);
 }
 
 fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const Ground& ground,
                           const fly::FlightPlan& plan) {
-  fly::Campaign campaign;
+  fly::Campaign campaign = options.campaign;
+  if (options.vehicles > 0) campaign.jobs = options.vehicles;
   campaign.flights = flights_of(options, map, ground, plan);
   campaign.stop = stop_on_signals();
   campaign.localizer = localizers_of(options, map, campaign.stop);
-  campaign.filters = options.filters;
-  campaign.seed = options.seed;
-  campaign.jobs = options.vehicles > 0 ? options.vehicles : options.jobs;
   return campaign;
 }
 
@@ -118,8 +111,8 @@ void run_fly(const FlyOptions& options) {
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));
   std::FILE* out = printed_beside({options.json_file, options.csv_file, options.geojson_file});
-  fmt::print(out, "{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.seed, map.extent.width_m() / 1e3,
-             map.extent.height_m() / 1e3, fly::to_table(summaries, events));
+  fmt::print(out, "{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.campaign.seed,
+             map.extent.width_m() / 1e3, map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
   if (!options.json_file.empty()) {
     write_file(options.json_file, json_text(document(options, ground, results, events), 1) + '\n');

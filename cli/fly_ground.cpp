@@ -18,7 +18,7 @@ namespace roadfix::cli {
 namespace {
 
 void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
-  if (options.server.empty()) {
+  if (options.service.base.empty()) {
     throw InvalidInput("frames-without-service",
                        "--send frames leaves it to a service to detect roads: name it with --server");
   }
@@ -63,7 +63,7 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.cell_m = map.cell_m;
   recorded.step_s = options.plan.handling.step_s;
   recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
-  recorded.seed = options.seed;
+  recorded.seed = options.campaign.seed;
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
   ground.footprint = ground.recordings.front().frames.front().footprint;
@@ -162,7 +162,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
                        "--black-unseen is about recorded flights: name one with --over, or leave it out");
   }
   Ground ground;
-  ground.footprint = {options.footprint_m.front(), options.footprint_m.back()};
+  ground.footprint = options.footprint;
   if (over_a_map) {
     look_at_map(options, map, ground);
     return ground;
@@ -181,7 +181,6 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
 fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
   fly::FlightPlan plan = options.plan;
   plan.steps = options.steps.value_or(plan.steps);
-  plan.tells_odometry = !options.no_odometry;
   plan.registration_m =
       options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m(map.extent.centre()));
   const int steps = ground.recordings.empty() ? plan.steps : frames_of_the_longest(ground.recordings);
@@ -199,10 +198,9 @@ fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Gro
 }
 
 VehicleNoise vehicle_of(const FlyOptions& options) {
-  VehicleNoise vehicle;
+  VehicleNoise vehicle = options.service.filter.vehicle;
   vehicle.wind = Wind::of(options.wind_sigma_m_s, options.wind_walk);
-  vehicle.scale_range = options.scale_range;
-  if (!options.no_odometry) return vehicle;
+  if (options.plan.tells_odometry) return vehicle;
   const fly::Handling& handling = options.plan.handling;
   vehicle.planar =
       VehicleNoise::Planar{{handling.speed_m_s, 0.1 * handling.speed_m_s}, {0.0, 0.5 * handling.turn_rate.radians()}};

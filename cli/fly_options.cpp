@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/fly/localizer.hpp"
+#include <chrono>
+
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
@@ -17,6 +18,7 @@ CLI::Option* add_angle(CLI::App& command, const char* name, Angle& angle, const 
 }
 
 void add_basics(CLI::App& command, FlyOptions& o) {
+  fly::FilterPlan& filter = o.service.filter;
   command.add_option("map", o.map, "Map file (GeoPackage) to localize on")->required();
   command.add_option(
       "--over", o.over,
@@ -26,25 +28,28 @@ void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_flag("--black-unseen", o.black_unseen,
                    "Recorded flights: black areas at the rim of a frame were not seen");
   command
-      .add_option("--filter", o.filters, std::string("One or more of ") + fly::kFilterNames + ", over the same flights")
+      .add_option("--filter", o.campaign.filters,
+                  std::string("One or more of ") + fly::kFilterNames + ", over the same flights")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--particles", o.particles, "At most")->capture_default_str()->check(CLI::Range(10, 1'000'000));
-  command.add_option("--measure-every", o.measure_every, "Weight by every k-th frame only")
+  command.add_option("--particles", filter.particles, "At most")
+      ->capture_default_str()
+      ->check(CLI::Range(10, 1'000'000));
+  command.add_option("--measure-every", filter.measure_every, "Weight by every k-th frame only")
       ->capture_default_str()
       ->check(positive());
   command
       .add_option("--runs", o.runs, "Flights, with seeds that count up; of a recorded flight so many of each sequence")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
-  command.add_option("--seed", o.seed, "Of the first flight")->capture_default_str()->check(seed());
-  add_threads_option(command, "--jobs", o.jobs, "Flights at a time; results do not depend on it");
+  command.add_option("--seed", o.campaign.seed, "Of the first flight")->capture_default_str()->check(seed());
+  add_threads_option(command, "--jobs", o.campaign.jobs, "Flights at a time; results do not depend on it");
 }
 
 void add_belief_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "What the filters take to be uncertain";
   command
-      .add_option("--scale-range", o.scale_range,
+      .add_option("--scale-range", o.service.filter.vehicle.scale_range,
                   "The altitude: the ground seen may be smaller by this share, or larger by as much, for long")
       ->capture_default_str()
       ->group(kGroup)
@@ -78,7 +83,12 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
       ->check(positive());
   add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(not_negative());
   add_angle(command, "--turn-rate", o.plan.handling.turn_rate, "Fastest turn in degrees per second")->group(kGroup);
-  add("--footprint-m", o.footprint_m, "Ground that a frame shows: side, or width,height")
+  const auto show = [&o](const std::vector<double>& sides) { o.footprint = {sides.front(), sides.back()}; };
+  command
+      .add_option_function<std::vector<double>>("--footprint-m", show,
+                                                "Ground that a frame shows: side, or width,height")
+      ->default_str(fmt::format("[{:g}]", o.footprint.width_m))
+      ->group(kGroup)
       ->delimiter(',')
       ->expected(1, 2)
       ->check(positive());
@@ -126,7 +136,10 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
                   "Feature maps: metres per axis between ground and map, once for a flight; default: what the map says")
       ->check(not_negative())
       ->group(kGroup);
-  command.add_flag("--no-odometry", o.no_odometry, "Tell no odometry: equation (4) with known speed, unknown turns")
+  command
+      .add_flag_callback(
+          "--no-odometry", [&o] { o.plan.tells_odometry = false; },
+          "Tell no odometry: equation (4) with known speed, unknown turns")
       ->group(kGroup);
 }
 
@@ -154,10 +167,10 @@ void add_output_options(CLI::App& command, FlyOptions& o) {
 
 void add_service_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "Over a running service";
-  command.add_option("--server", o.server, "http://HOST:PORT; the vehicles are followed by its tracks")
+  command.add_option("--server", o.service.base, "http://HOST:PORT; the vehicles are followed by its tracks")
       ->type_name("URL")
       ->group(kGroup);
-  command.add_option("--map", o.served_map, "The map's name there; default: that of the file")
+  command.add_option("--map", o.service.map, "The map's name there; default: that of the file")
       ->needs("--server")
       ->group(kGroup);
   command
@@ -171,12 +184,15 @@ void add_service_options(CLI::App& command, FlyOptions& o) {
       .add_option("--vehicles", o.vehicles, "So many flights, all at the same time; default: --runs, --jobs of them")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);
-  command.add_option("--patience", o.patience_s, "Seconds in which a step is sent again when no answer comes")
-      ->capture_default_str()
+  command
+      .add_option_function<int>(
+          "--patience", [&o](int seconds) { o.service.patience = std::chrono::seconds(seconds); },
+          "Seconds in which a step is sent again when no answer comes")
+      ->default_str(fmt::format("{}", o.service.patience.count()))
       ->needs("--server")
       ->check(CLI::Range(0, 86'400))
       ->group(kGroup);
-  command.add_flag("--keep-tracks", o.keep_tracks, "Leave the tracks in the service after the flights")
+  command.add_flag("--keep-tracks", o.service.keeps_tracks, "Leave the tracks in the service after the flights")
       ->needs("--server")
       ->group(kGroup);
 }

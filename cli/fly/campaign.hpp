@@ -34,7 +34,7 @@ struct Flights {
 struct Campaign {
   Flights flights;
   LocalizerFactory localizer;
-  std::vector<std::string> filters;
+  std::vector<std::string> filters{"default"};
   std::uint64_t seed = 1;  ///< of the first flight; the next ones count up
   int jobs = 1;            ///< flights at a time; results do not depend on it
   /// Of the first flight, from one thread, filter by filter.
@@ -47,7 +47,6 @@ struct Campaign {
 std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone);
 
 /// Filters of the library on one map.
-LocalizerFactory library_localizers(const MapView& map, int particles, int measure_every, const VehicleNoise& vehicle,
-                                    std::stop_token stop);
+LocalizerFactory library_localizers(const MapView& map, const FilterPlan& plan, std::stop_token stop);
 
 }  // namespace roadfix::fly

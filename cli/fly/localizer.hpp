@@ -25,6 +25,13 @@ class Localizer {
 /// The tracker of the library, for flights whose vehicle detects roads itself.
 std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSettings& settings, std::stop_token stop);
 
+/// What all filters are asked for alike.
+struct FilterPlan {
+  int particles = 10'000;  ///< at most
+  int measure_every = 1;   ///< weights by every k-th frame only
+  VehicleNoise vehicle = {};
+};
+
 /// From the paper's filter to the default, one improvement after the other, and the default that weighs cells one by
 /// one (LikelihoodKind::kDetectionRates).
 inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default, rates";

@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <string>
 
+#include "cli/fly/localizer.hpp"
 #include "core/geodesy/geo_box.hpp"
-#include "core/locate/tracker.hpp"
 
 namespace roadfix::fly {
 
@@ -15,9 +15,7 @@ struct ServicePlan {
   std::string base;            ///< "http://HOST:PORT"
   std::string map;             ///< its name there
   std::optional<GeoBox> area;  ///< where tracks begin, if not anywhere on the map
-  int particles = 10'000;
-  int measure_every = 1;
-  VehicleNoise vehicle;
+  FilterPlan filter;
   /// How long a request that gets no answer, or one that may pass, is sent again and again: long enough for a service
   /// that was killed to come back.
   std::chrono::seconds patience{60};

@@ -79,25 +79,26 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
     throw InvalidInput("filter-unknown",
                        fmt::format("a service has no filter '{}': take default or paper, or fly without it", filter));
   }
+  const VehicleNoise& vehicle = plan.filter.vehicle;
   json request{{"map", plan.map},
                {"filter", filter == "paper" ? "paper" : "adaptive"},
-               {"particles", plan.particles},
-               {"measure_every", plan.measure_every},
+               {"particles", plan.filter.particles},
+               {"measure_every", plan.filter.measure_every},
                {"seed", seed},
-               {"odometry_share", plan.vehicle.odometry_share},
-               {"wind_sigma_m_s", plan.vehicle.wind.sigma_m_s},
-               {"wind_walk", plan.vehicle.wind.walk},
-               {"scale_range", plan.vehicle.scale_range}};
+               {"odometry_share", vehicle.odometry_share},
+               {"wind_sigma_m_s", vehicle.wind.sigma_m_s},
+               {"wind_walk", vehicle.wind.walk},
+               {"scale_range", vehicle.scale_range}};
   if (const auto& area = plan.area) {
     request["bbox"] = {area->south_west.lon_deg, area->south_west.lat_deg, area->north_east.lon_deg,
                        area->north_east.lat_deg};
   }
-  if (plan.vehicle.planar) {
+  if (vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };
-    request["speed_m_s"] = plan.vehicle.planar->speed_m_s.mean;
-    request["speed_sigma_m_s"] = plan.vehicle.planar->speed_m_s.sigma;
-    request["turn_rate_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.mean);
-    request["turn_rate_sigma_deg_s"] = degrees(plan.vehicle.planar->turn_rate_rad_s.sigma);
+    request["speed_m_s"] = vehicle.planar->speed_m_s.mean;
+    request["speed_sigma_m_s"] = vehicle.planar->speed_m_s.sigma;
+    request["turn_rate_deg_s"] = degrees(vehicle.planar->turn_rate_rad_s.mean);
+    request["turn_rate_sigma_deg_s"] = degrees(vehicle.planar->turn_rate_rad_s.sigma);
   }
   return request;
 }

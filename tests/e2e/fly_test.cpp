@@ -37,7 +37,7 @@ class Vehicles : public ::testing::Test {
     campaign_.watch = [](const std::string&, const Record&, const Localizer&) {};
     campaign_.progress = [](std::int64_t, std::int64_t) {};
     plan_.map = "town";
-    plan_.particles = 500;
+    plan_.filter.particles = 500;
     plan_.patience = 1h;
     plan_.keeps_tracks = true;
   }

@@ -29,7 +29,7 @@ class Campaigns : public ::testing::Test {
       const GridBox box{{600'420.0, 6'399'720.0}, {600'580.0, 6'399'880.0}};
       return fly(plan, box, *make_random_pilot(box, plan.handling), *sensor, seed, seen);
     };
-    campaign.localizer = library_localizers(map, 200, 1, {}, {});
+    campaign.localizer = library_localizers(map, {200}, {});
     campaign.filters = {"default", "paper"};
     campaign.flights.number = 2;
     campaign.watch = [](const std::string&, const Record&, const Localizer&) {};
@@ -63,7 +63,7 @@ TEST_F(Campaigns, GiveTheSameFlightsToAllFiltersWhateverTheNumberOfJobs) {
 
 TEST_F(Campaigns, TheDefaultFilterFollowsAVehicleOverGoodFeatureMaps) {
   campaign.filters = {"default"};
-  campaign.localizer = library_localizers(map, 500, 1, {}, {});
+  campaign.localizer = library_localizers(map, {500}, {});
   const auto results = run(campaign, map.zone);
   ASSERT_EQ(results[0].runs.size(), static_cast<std::size_t>(campaign.flights.number));
   for (const fly::Run& flight : results[0].runs) EXPECT_LT(flight.records.back().error_m, 25.0);

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
-#include "tiles/sources/bare_rim.hpp"
-#include "tiles/sources/position_error.hpp"
 #include "tiles/sources/stray_roads.hpp"
 
 namespace roadfix {
@@ -56,48 +53,30 @@ void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer) {
   if (layer.lines() > 0 && box) refuse_degrees_as_metres(*box, file.crs_of(layer.layer()), file.path());
 }
 
-void add_datum_error(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts) {
+PositionError datum_error_of(VectorFile& file, const RoadLayer& layer, UtmZone zone) {
   const std::optional<OGREnvelope> box = layer.extent_seen();
-  if (layer.lines() == 0 || !box) return;
+  if (layer.lines() == 0 || !box) return {};
   const OGRSpatialReference crs = file.crs_of(layer.layer());
   double east_m = (box->MinX + box->MaxX) / 2.0;
   double north_m = (box->MinY + box->MaxY) / 2.0;
   const GdalMessages messages;
-  if (!on_old_ellipsoid(crs) || layer.to_plane().Transform(1, &east_m, &north_m) == FALSE) return;
-  PositionError error = datum_error(crs, zone, zone.unproject({east_m, north_m}), file.path());
-  RoadNetwork& network = parts.network_of(layer);
-  if (error.sigma_m <= network.datum_sigma_m) return;
-  network.datum_sigma_m = error.sigma_m;
-  network.notes.push_back(std::move(error.reason));
+  if (!on_old_ellipsoid(crs) || layer.to_plane().Transform(1, &east_m, &north_m) == FALSE) return {};
+  return datum_error(crs, zone, zone.unproject({east_m, north_m}), file.path());
 }
 
-void add_covered(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts) {
+std::optional<LayerGround> ground_of(VectorFile& file, const RoadLayer& layer, const RoadNetwork& network,
+                                     std::span<const RoadLine> lines, UtmZone zone) {
   const bool tile = vector_tile_of(file.path()).has_value();
-  if (layer.lines() == 0 && !tile) return;  // shops say nothing about roads
+  if (layer.lines() == 0 && !tile) return std::nullopt;  // shops say nothing about roads
   std::optional<OGREnvelope> box = file.cut_out(layer.layer());
   if (!box) box = layer.extent_seen();
-  if (!box) return;
-  const std::span<const RoadLine> lines = parts.lines_of_file(layer);
-  const double side_m = min_side_m(lines);
-  const PlanePolygon covered =
-      box_on_plane(with_sides_of(*box, side_m, layer.to_plane()), layer.to_plane(), file.path());
-  if (layer.classified() || tile) parts.classified.covered.push_back(covered);
-  if (!layer.classified() || tile) parts.plain.covered.push_back(covered);
-  if (tile) return;
-  RoadNetwork& network = parts.network_of(layer);
-  const auto strays = note_on_stray_roads(network, lines, covered.box(), zone);
-  require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path(), strays.value_or(""));
-  if (parts.strays_noted) return;
-  if (strays) {
-    network.notes.push_back(fmt::format("{}: {}", file.path(), *strays));
-    parts.strays_noted = true;
-    return;
-  }
-  if (parts.bare_rim_noted) return;
-  if (const auto note = note_on_bare_rim(network, lines)) {
-    network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
-    parts.bare_rim_noted = true;
-  }
+  if (!box) return std::nullopt;
+  OGRCoordinateTransformation& to_plane = layer.to_plane();
+  LayerGround ground{box_on_plane(with_sides_of(*box, min_side_m(lines), to_plane), to_plane, file.path()), {}};
+  if (tile) return ground;
+  ground.strays = note_on_stray_roads(network, lines, ground.covered.box(), zone);
+  require_one_side_of_the_earth(*box, file.crs_of(layer.layer()), file.path(), ground.strays.value_or(""));
+  return ground;
 }
 
 }  // namespace roadfix

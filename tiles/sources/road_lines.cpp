@@ -8,18 +8,46 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/units/error.hpp"
 #include "core/units/shell_word.hpp"
+#include "tiles/sources/bare_rim.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
+#include "tiles/sources/road_notes.hpp"
 #include "tiles/sources/stated_extent.hpp"
 #include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 namespace {
+
+/// Of the layers that tell roads apart, or of those that do not.
+struct RoadPart {
+  RoadNetwork network;
+  std::size_t lines_before = 0;  ///< of the files before the one that is read
+
+  std::span<const RoadLine> lines_of_file() const { return std::span(network.lines).subspan(lines_before); }
+};
+
+/// What the files hold. Which part is drawn is known once all are read.
+struct RoadParts {
+  RoadPart classified;
+  RoadPart plain;
+  std::string crs;  ///< of the first layer
+  bool any_layer = false;
+  bool any_classified = false;
+  std::int64_t features = 0;
+  LineCounts counts;
+  bool strays_noted = false;
+  bool bare_rim_noted = false;
+  /// Layers of lines without classes by name: the first file that has them, and their attributes.
+  std::map<std::string, std::pair<std::string, std::string>> plain_layers;
+
+  RoadPart& of(const RoadLayer& layer) { return layer.classified() ? classified : plain; }
+};
 
 std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
   const auto found = std::ranges::find(network.classes, road_class);
@@ -31,12 +59,13 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
 /// Takes down what is known of a layer once all its features were seen.
 void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, RoadParts& parts) {
   if (layer.lines() == 0) return;
-  parts.lines += layer.lines();
-  for (const auto& [name, count] : layer.unknown_classes()) parts.unknown_classes[name] += count;
-  parts.without_class += layer.lines_without_class();
-  if (!layer.tells_other_lines()) parts.roads_without_class += layer.lines_without_class();
+  LineCounts& counts = parts.counts;
+  counts.lines += layer.lines();
+  for (const auto& [name, count] : layer.unknown_classes()) counts.unknown_classes[name] += count;
+  counts.without_class += layer.lines_without_class();
+  if (!layer.tells_other_lines()) counts.roads_without_class += layer.lines_without_class();
   for (const auto& [name, widths] : layer.stated_widths()) {
-    std::vector<double>& of_all = parts.network_of(layer).stated_widths[name];
+    std::vector<double>& of_all = parts.of(layer).network.stated_widths[name];
     of_all.insert(of_all.end(), widths.begin(), widths.end());
   }
   if (!layer.classified()) {
@@ -45,7 +74,7 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
   }
   parts.any_classified = true;
   if (layer.class_attribute() == rules.class_attribute()) return;
-  RoadNetwork& network = parts.classified;
+  RoadNetwork& network = parts.classified.network;
   if (network.class_attribute.empty()) network.class_attribute = layer.class_attribute();
   const std::string about = fmt::format("layer '{}' of ", layer.name());
   if (std::ranges::any_of(network.notes, [&](const auto& note) { return note.starts_with(about); })) return;
@@ -53,17 +82,42 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
                                       layer.class_attribute()));
 }
 
+void add_datum_error(PositionError error, RoadNetwork& network) {
+  if (error.sigma_m <= network.datum_sigma_m) return;
+  network.datum_sigma_m = error.sigma_m;
+  network.notes.push_back(std::move(error.reason));
+}
+
+/// With a note, for the first file only, where a few roads stretch it or much of it is bare.
+void add_ground(VectorFile& file, const RoadLayer& layer, UtmZone zone, RoadParts& parts) {
+  RoadPart& part = parts.of(layer);
+  const auto ground = ground_of(file, layer, part.network, part.lines_of_file(), zone);
+  if (!ground) return;
+  if (vector_tile_of(file.path())) {  // all of it was looked at for roads of either part
+    for (RoadPart* either : {&parts.classified, &parts.plain}) either->network.covered.push_back(ground->covered);
+    return;
+  }
+  part.network.covered.push_back(ground->covered);
+  if (parts.strays_noted) return;
+  std::optional<std::string> note = ground->strays;
+  parts.strays_noted = note.has_value();
+  if (!note && !parts.bare_rim_noted) {
+    note = note_on_bare_rim(part.network, part.lines_of_file());
+    parts.bare_rim_noted = note.has_value();
+  }
+  if (note) part.network.notes.push_back(fmt::format("{}: {}", file.path(), *note));
+}
+
 void add_file(const std::string& path, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
               RoadParts& parts) {
   VectorFile file(path, options);
-  parts.classified_before = parts.classified.lines.size();
-  parts.plain_before = parts.plain.lines.size();
+  for (RoadPart* part : {&parts.classified, &parts.plain}) part->lines_before = part->network.lines.size();
   const OGRSpatialReference plane = utm_reference(zone);
   std::map<const OGRLayer*, RoadLayer> layers;
   for (OGRLayer* layer : file.layers()) {
     parts.any_layer = true;
     const OGRSpatialReference crs = file.crs_of(*layer);
-    if (parts.plain.crs.empty()) parts.plain.crs = parts.classified.crs = crs_name(crs);
+    if (parts.crs.empty()) parts.crs = crs_name(crs);
     layers.emplace(layer, RoadLayer(*layer, transformation(crs, plane, path), rules));
   }
   file.for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
@@ -72,7 +126,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     if (found == layers.end() || geometry == nullptr) return;
     ++parts.features;
     RoadLayer& layer = found->second;
-    RoadNetwork& network = parts.network_of(layer);
+    RoadNetwork& network = parts.of(layer).network;
     const std::optional<double> width = layer.see(feature);
     if (!width ||
         !add_geometry(*geometry, layer.to_plane(), {*width, index_of(layer.class_of(feature), network)}, network)) {
@@ -83,15 +137,16 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     const RoadLayer& layer = layers.at(of);
     refuse_degrees_as_metres(file, layer);
     add_layer(layer, rules, path, parts);
-    add_datum_error(file, layer, zone, parts);
-    if (options.extent.empty()) add_covered(file, layer, zone, parts);
+    add_datum_error(datum_error_of(file, layer, zone), parts.of(layer).network);
+    if (options.extent.empty()) add_ground(file, layer, zone, parts);
   }
 }
 
 /// Where some layers tell roads apart, the lines of the others are rivers, railways or bus routes.
 RoadNetwork join(RoadParts& parts, const RoadRules& rules) {
-  RoadNetwork network = std::move(parts.any_classified ? parts.classified : parts.plain);
-  const RoadNetwork& other = parts.any_classified ? parts.plain : parts.classified;
+  RoadNetwork network = std::move((parts.any_classified ? parts.classified : parts.plain).network);
+  const RoadNetwork& other = (parts.any_classified ? parts.plain : parts.classified).network;
+  network.crs = parts.crs;
   network.left_out += other.left_out + static_cast<std::int64_t>(other.lines.size());
   for (const auto& [name, about] : parts.plain_layers) {
     const auto& [path, attributes] = about;
@@ -105,83 +160,6 @@ RoadNetwork join(RoadParts& parts, const RoadRules& rules) {
                           name, path, rules.class_attribute(), attributes));
   }
   return network;
-}
-
-/// The most frequent of them: "Autobahn (12), Feldweg (3)".
-std::string most_frequent(const std::map<std::string, std::int64_t>& counts) {
-  constexpr std::size_t kNamed = 8;
-  std::vector<std::pair<std::int64_t, std::string>> order;
-  for (const auto& [name, count] : counts) order.emplace_back(-count, name);
-  std::ranges::sort(order);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(order.size(), kNamed); ++i) {
-    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", order[i].second, -order[i].first);
-  }
-  return order.size() > kNamed ? text + " and others" : text;
-}
-
-/// A few features of odd classes are in every extract of OpenStreetMap; more of them are missing roads.
-void note_unknown_classes(const RoadParts& parts, RoadNetwork& network) {
-  constexpr double kWorthNoting = 0.02;
-  std::int64_t unknown = 0;
-  for (const auto& [name, count] : parts.unknown_classes) unknown += count;
-  if (static_cast<double>(unknown) <= kWorthNoting * static_cast<double>(parts.lines)) return;
-  network.notes.push_back(fmt::format(
-      "{} of {} lines are not drawn, since the road rules do not know their classes: {}. --rules FILE gives "
-      "widths to them; it replaces the built-in rules, so name all classes that are roads in it",
-      unknown, parts.lines, most_frequent(parts.unknown_classes)));
-}
-
-std::string class_attribute_of(const RoadNetwork& network, const RoadRules& rules) {
-  return network.class_attribute.empty() ? rules.class_attribute() : network.class_attribute;
-}
-
-/// Whoever draws roads by hand forgets an attribute now and then.
-void note_roads_without_class(const RoadParts& parts, const RoadRules& rules, RoadNetwork& network) {
-  if (parts.roads_without_class == 0) return;
-  network.notes.push_back(
-      fmt::format("{} of {} lines are not drawn, since their attribute '{}' is empty. If they are roads, fill it in",
-                  parts.roads_without_class, parts.lines, class_attribute_of(network, rules)));
-}
-
-/// Roads three times as wide as they are make a map that fits nowhere.
-void note_widths(const RoadRules& rules, RoadNetwork& network) {
-  const auto is_asked = [&](const auto& stated) { return rules.is_width_attribute(stated.first); };
-  if (!rules.width_attribute().empty() && std::ranges::none_of(network.stated_widths, is_asked)) {
-    network.notes.push_back(
-        fmt::format("no road states a width in the attribute '{}', which --width-attribute names: widths come from "
-                    "elsewhere. It is read where it says 7.5, '7.5 m' or '24 ft', from 0.5 to 100 m",
-                    rules.width_attribute()));
-  }
-  for (auto& [attribute, widths] : network.stated_widths) {
-    const auto middle = widths.begin() + std::ssize(widths) / 2;
-    std::ranges::nth_element(widths, middle);
-    const bool feet = rules.unit_of(attribute) == WidthUnit::kFoot;
-    network.notes.push_back(fmt::format(
-        "widths of {} roads from the attribute '{}', plain numbers taken for {}: median {:.3g} m{}", widths.size(),
-        attribute, feet ? "feet" : "metres", *middle,
-        feet ? "" : fmt::format(". If they are feet, give --width-attribute {}", shell_word(attribute + ":ft"))));
-  }
-}
-
-std::string why_none_is_drawn(const RoadParts& parts, const RoadNetwork& network, const RoadRules& rules) {
-  if (parts.lines == 0) {
-    return "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, burn them "
-           "into a raster (gdal_rasterize -burn 255 -init 0 -ot Byte) and ingest that with --as roads";
-  }
-  if (parts.without_class == parts.lines) {
-    return fmt::format("their attribute '{}' is empty; fill it in, or name another with --class-attribute",
-                       class_attribute_of(network, rules));
-  }
-  if (!parts.unknown_classes.empty()) {
-    return fmt::format(
-        "the road rules do not know their classes, {}; give them widths with --rules FILE, which replaces the built-in "
-        "rules, or name another attribute with --class-attribute",
-        most_frequent(parts.unknown_classes));
-  }
-  return fmt::format(
-      "the rules leave them out ({}); name the attribute with --class-attribute or the layer with --layer",
-      rules.describe());
 }
 
 [[noreturn]] void refuse_layer(const std::string& path, const VectorOptions& options) {
@@ -223,11 +201,9 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
   if (network.lines.empty() || network.covered.empty()) {
     throw InvalidInput("source-without-roads",
                        fmt::format("{}: none of its {} features is drawn as a road: {}", paths.front(),
-                                   network.left_out, why_none_is_drawn(parts, network, rules)));
+                                   network.left_out, why_none_is_drawn(parts.counts, network, rules)));
   }
-  note_unknown_classes(parts, network);
-  note_roads_without_class(parts, rules, network);
-  note_widths(rules, network);
+  add_notes(parts.counts, rules, network);
   return network;
 }
 

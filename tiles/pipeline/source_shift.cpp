@@ -80,40 +80,65 @@ class ShiftSums {
   cv::Mat1d ab_ = n_.clone();
 };
 
+/// Counted in steps from no shift.
+struct Place {
+  int east = 0;
+  int north = 0;
+};
+
+/// The best correlation of all shifts but those up to `steps` from a place; nowhere, -1.
+struct Best {
+  Place at;
+  double correlation = -1.0;
+};
+
+Best best_beyond(const ShiftSums& sums, const Place& place, double steps) {
+  constexpr double kMinShare = 0.5;  // of the squares in place: a narrow overlap fits somewhere by chance
+  const double least = kMinShare * sums.squares(kMaxShift, kMaxShift);
+  Best best;
+  for (int row = 0; row < kShifts; ++row) {
+    for (int col = 0; col < kShifts; ++col) {
+      const Place here{col - kMaxShift, kMaxShift - row};
+      if (sums.squares(row, col) < least || std::hypot(here.east - place.east, here.north - place.north) <= steps) {
+        continue;
+      }
+      const double correlation = sums.correlation(row, col);
+      if (correlation > best.correlation) best = {here, correlation};
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m, double own_sigma_m) {
   constexpr double kMinCorrelation = 0.15;
-  constexpr double kMinGain = 1.3;
+  constexpr double kMinGain = 1.3;  // over the correlation in place
+  constexpr double kMinLead = 1.5;  // over all that are kApartM away: chance, a lone road and regular streets have none
+  constexpr double kApartM = 12.0;
   constexpr double kMinSteps = 1.5;
   constexpr double kSigmas = 2.0;
-  constexpr double kMinSquares = 4000.0;  // in place; fewer say nothing of how well the sources fit
-  constexpr double kMinShare = 0.5;       // of them elsewhere: a narrow overlap fits somewhere by chance
+  constexpr double kMinSquares = 4000.0;
+  constexpr double kMinGroundM2 = 0.25e6;  // of 0.1 km^2 two out of three fit somewhere that have nothing in common
+  const double step_m = kStep * cell_m;
   ShiftSums sums;
   for (const SharedEvidence::Tile& tile : shared_evidence.tiles) sums.add(tile);
-  const double in_place = sums.squares(kMaxShift, kMaxShift);
-  if (in_place < kMinSquares) return std::nullopt;
-  SourceShift best;
-  best.correlation = best.correlation_in_place = sums.correlation(kMaxShift, kMaxShift);
-  const double step_m = kStep * cell_m;
-  for (int row = 0; row < kShifts; ++row) {
-    for (int col = 0; col < kShifts; ++col) {
-      if (sums.squares(row, col) < kMinShare * in_place) continue;
-      const double correlation = sums.correlation(row, col);
-      if (correlation <= best.correlation) continue;
-      best.correlation = correlation;
-      best.east_m = step_m * (col - kMaxShift);
-      best.north_m = step_m * (kMaxShift - row);
-    }
-  }
+  const double squares = sums.squares(kMaxShift, kMaxShift);
+  if (squares < std::max(kMinSquares, kMinGroundM2 / (step_m * step_m))) return std::nullopt;
+
+  const Best best = best_beyond(sums, {}, -1.0);
+  const double rival = best_beyond(sums, best.at, std::max(3.0, kApartM / step_m)).correlation;
+  const SourceShift shift{.east_m = step_m * best.at.east,
+                          .north_m = step_m * best.at.north,
+                          .correlation = best.correlation,
+                          .correlation_in_place = sums.correlation(kMaxShift, kMaxShift)};
+  const double length_m = std::hypot(shift.east_m, shift.north_m);
   const double explained_m =
       std::max(kMinSteps * step_m, kSigmas * std::hypot(own_sigma_m, shared_evidence.others_sigma_m));
-  const double rim_m = step_m * kMaxShift;
-  const bool at_rim = std::max(std::abs(best.east_m), std::abs(best.north_m)) == rim_m;
-  const bool elsewhere = !at_rim && std::hypot(best.east_m, best.north_m) > explained_m &&
-                         best.correlation >= kMinCorrelation &&
-                         best.correlation >= kMinGain * best.correlation_in_place;
-  return elsewhere ? std::optional(best) : std::nullopt;
+  const bool at_rim = std::max(std::abs(best.at.east), std::abs(best.at.north)) == kMaxShift;
+  const bool sure = best.correlation >= kMinCorrelation && best.correlation >= kMinLead * rival;
+  const bool elsewhere = !at_rim && length_m > explained_m && best.correlation >= kMinGain * shift.correlation_in_place;
+  return sure && elsewhere ? std::optional(shift) : std::nullopt;
 }
 
 }  // namespace roadfix

@@ -17,8 +17,8 @@ struct SourceShift {
 };
 
 /// Over shifts of up to 50 cells, in steps of two. nullopt where the source fits the others in place, hardly worse, or
-/// nowhere near, where both observed too little ground to tell, and where the shift is no larger than the registration
-/// errors explain (2 sigma).
+/// nowhere near; where they share less than 0.25 km^2, or fit nearly as well elsewhere; and where the shift is no
+/// larger than the registration errors explain (2 sigma).
 std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m, double own_sigma_m);
 
 }  // namespace roadfix

@@ -90,5 +90,46 @@ TEST(SourceShift, IsNoneWhereTooLittleGroundIsSharedToTell) {
   EXPECT_TRUE(shift_of(overlapping(100, 12, -8), kCellM, 0.0));
 }
 
+/// One road from the west to the east, on every tile; that of the source lies so many cells to the north.
+SharedEvidence one_road(int north) {
+  SharedEvidence result;
+  for (int i = 0; i < 9; ++i) {
+    SharedEvidence::Tile tile{CellArray(kTileCells, kTileCells, kNoRoad), CellArray(kTileCells, kTileCells, kNoRoad)};
+    for (int col = 0; col < kTileCells; ++col) {
+      for (int row = 100; row < 104; ++row) {
+        tile.own.at(col, row - north) = kRoad;
+        tile.others.at(col, row) = kRoad;
+      }
+    }
+    result.tiles.push_back(std::move(tile));
+  }
+  return result;
+}
+
+TEST(SourceShift, IsNoneThatASingleRoadTells) {
+  EXPECT_FALSE(shift_of(one_road(12), kCellM, 0.0)) << "how far along the road, nobody knows";
+}
+
+TEST(SourceShift, IsNoneOfRegularStreetsThatFitABlockAwayAsWell) {
+  const CellArray blocks = testing::grid_city({kCellM, {0, 0}, 600, 600}, 60.0).cells;
+  SharedEvidence city;
+  city.tiles.push_back({CellArray(kTileCells, kTileCells), CellArray(kTileCells, kTileCells)});
+  paste(blocks, city.tiles[0].own, -90, -100);
+  paste(blocks, city.tiles[0].others, -100, -100);
+  EXPECT_FALSE(shift_of(city, kCellM, 0.0));
+}
+
+TEST(SourceShift, IsHardlyEverOneOfFewRoadsThatHaveNothingInCommon) {
+  int shifts = 0;
+  for (std::uint64_t seed = 100; seed < 108; ++seed) {
+    for (SharedEvidence::Tile& tile : shared_evidence(0, 0, seed).tiles) {
+      SharedEvidence one;
+      one.tiles.push_back(std::move(tile));
+      if (shift_of(one, kCellM, 0.0)) ++shifts;
+    }
+  }
+  EXPECT_LE(shifts, 1) << "of 72 overlaps of 0.26 km^2";
+}
+
 }  // namespace
 }  // namespace roadfix

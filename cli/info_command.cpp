@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/shift_text.hpp"
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
@@ -23,19 +24,21 @@ struct InfoArguments {
 json source_json(const SourceStatus& source) {
   const SourceRecord& r = source.record;
   const Provenance& p = r.provenance;
-  return {{"name", r.name},
-          {"kind", r.kind},
-          {"location", r.location},
-          {"fingerprint", r.fingerprint},
-          {"date", p.date},
-          {"licence", p.licence},
-          {"attribution", p.attribution},
-          {"method", r.method},
-          {"registration_sigma_m", p.registration_sigma_m},
-          {"complete", source.complete && !source.is_damaged()},
-          {"blocks_total", source.blocks_total},
-          {"blocks_done", source.blocks_done},
-          {"ingested_at", source.ingested_at}};
+  json answer{{"name", r.name},
+              {"kind", r.kind},
+              {"location", r.location},
+              {"fingerprint", r.fingerprint},
+              {"date", p.date},
+              {"licence", p.licence},
+              {"attribution", p.attribution},
+              {"method", r.method},
+              {"registration_sigma_m", p.registration_sigma_m},
+              {"complete", source.complete && !source.is_damaged()},
+              {"blocks_total", source.blocks_total},
+              {"blocks_done", source.blocks_done},
+              {"ingested_at", source.ingested_at}};
+  if (source.shift) answer["shift"] = shift_json(*source.shift);
+  return answer;
 }
 
 json bbox_of(const MapInfo& info) {
@@ -97,7 +100,11 @@ void print_source(const SourceStatus& source) {
        {std::pair{"date", p.date}, std::pair{"licence", p.licence}, std::pair{"attribution", p.attribution}}) {
     if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);
   }
-  fmt::print("  position      {:.2g} m (1 sigma)\n", p.registration_sigma_m);
+  fmt::print("  position      {:.3g} m (1 sigma)\n", source.registration_sigma_m());
+  if (source.shift) {
+    fmt::print("                not the {:.3g} m stated: it would fit the other sources better {}\n",
+               p.registration_sigma_m, directions_of(*source.shift));
+  }
 }
 
 void print_text(const std::string& path, const MapInfo& info) {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +22,6 @@
 #include "core/units/shell_word.hpp"
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
-#include "tiles/pipeline/source_shift.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -37,27 +36,14 @@ void note_twins(MapWriter& writer, const std::string& source, const std::string&
   }
 }
 
-std::string directions_of(const SourceShift& shift) {
-  const auto part = [](double metres, const char* positive, const char* negative) {
-    return fmt::format("{:.0f} m to the {}", std::abs(metres), metres > 0.0 ? positive : negative);
-  };
-  if (shift.north_m == 0.0) return part(shift.east_m, "east", "west");
-  const std::string north = part(shift.north_m, "north", "south");
-  return shift.east_m == 0.0 ? north : part(shift.east_m, "east", "west") + " and " + north;
-}
-
-/// A map of two sources that lie beside each other has each street twice.
-void note_shift(MapWriter& writer, const SourceRecord& record) {
-  constexpr std::int64_t kTiles = 64;
-  const auto shift = shift_of(writer.shared_evidence(record.name, kTiles), writer.settings().cell_m,
-                              record.provenance.registration_sigma_m);
-  if (!shift) return;
-  fmt::print(
-      stderr,
-      "note: '{}' would fit the other sources of the map better about {} from where it lies (correlation of the roads "
-      "{:.2f} instead of {:.2f}): check the georeference of both (--crs); until then places are wrong by as much, "
-      "and fewer are found\n",
-      record.name, directions_of(*shift), shift->correlation, shift->correlation_in_place);
+/// Of the source, and of those beside it, for which it may be the other side.
+void note_shifts(const std::string& map, const std::string& source, const std::map<std::string, SourceShift>& shifts) {
+  std::vector<std::string> names;
+  for (const auto& [name, shift] : shifts) names.insert(name == source ? names.begin() : names.end(), name);
+  for (const std::string& name : names) {
+    const double stated_m = MapWriter::records_of(map, name).front().provenance.registration_sigma_m;
+    print_shift_note(name, shifts.at(name), stated_m, name == names.front());
+  }
 }
 
 /// In megapixels of the source; without meaning for lines.
@@ -108,8 +94,8 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   }
   if (report.blocks_before < report.blocks) {
     note_twins(*writer, record.name, arguments.map);
-    note_shift(*writer, record);
   }
+  note_shifts(arguments.map, record.name, report.shifts);
   print_report(json, report, cell_size_mp(settings, summary), arguments.json);
 }
 

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
+#include "cli/shift_text.hpp"
 #include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
@@ -51,6 +53,7 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
+  for (const auto& [name, shift] : report.shifts) json["shifts"][name] = shift_json(shift);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = json.contains("features");
   const double amount =
@@ -64,6 +67,21 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
   fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} {}/s), {:.1f} s fusing\n",
              json["source"].get<std::string>(), report.blocks, report.blocks_before, report.reading_s, rate,
              lines ? "features" : "MP", report.fusing_s);
+}
+
+void print_shift_note(const std::string& source, const SourceShift& shift, double stated_sigma_m, bool advised) {
+  fmt::print(
+      stderr,
+      "note: '{}' would fit the other sources of the map better about {} from where it lies (correlation of the "
+      "roads {:.2f} instead of {:.2f}): places on its ground count as known within {:.3g} m (1 sigma) instead of "
+      "{:.3g} m\n",
+      source, directions_of(shift), shift.correlation, shift.correlation_in_place, shift.sigma_m, stated_sigma_m);
+  if (!advised) return;
+  fmt::print(stderr,
+             "      Nobody knows which of them is right, and fewer places are found: check the georeference of both "
+             "(--crs). Where one is known to be wrong, ingest that one with --registration-sigma {:.0f}, and the other "
+             "one keeps what it states\n",
+             std::ceil(shift.sigma_m));
 }
 
 void print_notes(const SourceFiles& files, const SourceSummary& summary) {

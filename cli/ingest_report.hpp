@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/sources/cell_source.hpp"
@@ -19,7 +20,10 @@ void print_plan(nlohmann::json json, bool as_json);
 /// Rates count the source's own pixels, of its observed ground; `cell_mp` is how many megapixels a cell has.
 void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json);
 
-/// On stderr, so that --json stays clean.
+/// On stderr, so that --json stays clean. What the shift of a source means and, where `advised`, what to do about it.
+void print_shift_note(const std::string& source, const SourceShift& shift, double stated_sigma_m, bool advised);
+
+/// On stderr, too.
 void print_notes(const SourceFiles& files, const SourceSummary& summary);
 
 }  // namespace roadfix::cli

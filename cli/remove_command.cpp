@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 #include <string>
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
+#include "tiles/pipeline/source_shift.hpp"
+#include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_writer.hpp"
 
 namespace roadfix::cli {
@@ -15,6 +18,13 @@ struct RemoveArguments {
   std::string map;
   std::string source;
 };
+
+std::set<std::string> names_of(const std::string& map) {
+  const MapReader reader(map);
+  std::set<std::string> names;
+  for (const SourceStatus& source : reader.info().sources) names.insert(source.record.name);
+  return names;
+}
 
 void remove_source(const RemoveArguments& options) {
   const std::stop_token stop = stop_on_signals();
@@ -26,6 +36,8 @@ void remove_source(const RemoveArguments& options) {
     Progress progress("fusing", "tiles");
     was_there = writer.remove_source(options.source, progress.updates(), stop);
   }
+  // It may have been what others lay beside.
+  measure_shifts(writer, names_of(options.map));
   fmt::print("{}: source '{}' {}\n", options.map, options.source,
              was_there ? "is removed" : "was not there any more; what was left to fuse is fused");
 }

@@ -31,6 +31,9 @@ json source_json(const SourceStatus& source) {
               {"blocks_total", source.blocks_total},
               {"blocks_done", source.blocks_done}};
   if (source.complete) answer["ingested_at"] = source.ingested_at;
+  if (const auto& shift = source.shift) {
+    answer["shift"] = {{"east_m", shift->east_m}, {"north_m", shift->north_m}, {"sigma_m", shift->sigma_m}};
+  }
   return answer;
 }
 

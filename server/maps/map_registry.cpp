@@ -53,7 +53,7 @@ std::map<std::string, fs::path> map_files(const fs::path& folder) {
 /// decoded tiles again and again.
 bool says_the_same(const MapInfo& a, const MapInfo& b) {
   const auto alike = [](const SourceStatus& x, const SourceStatus& y) {
-    return x.record == y.record && x.complete == y.complete && x.ingested_at == y.ingested_at;
+    return x.record == y.record && x.complete == y.complete && x.ingested_at == y.ingested_at && x.shift == y.shift;
   };
   return a.version == b.version && a.pending == b.pending && std::ranges::equal(a.sources, b.sources, alike);
 }

@@ -4,11 +4,13 @@
 
 #include <cassert>
 #include <chrono>
+#include <set>
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "core/units/splitmix.hpp"
 #include "tiles/pipeline/block_flow.hpp"
+#include "tiles/pipeline/source_shift.hpp"
 
 namespace roadfix {
 namespace {
@@ -28,6 +30,14 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 [[noreturn]] void outside_map(const std::string& source, const MapSettings& settings) {
   throw InvalidInput("source-outside-map",
                      fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map", source, settings.zone.epsg()));
+}
+
+/// The source and those that share ground with it. While it is replaced, with what it was.
+std::set<std::string> names_beside(MapWriter& writer, const std::string& source) {
+  const std::vector<std::string> others = writer.sources_beside(source);
+  std::set<std::string> names(others.begin(), others.end());
+  names.insert(source);
+  return names;
 }
 
 }  // namespace
@@ -63,6 +73,7 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
                     const IngestOptions& options) {
   assert(options.jobs >= 1);
   const std::vector<TileIndex> blocks = plan_blocks(source, record.name, writer.settings());
+  std::set<std::string> touched = names_beside(writer, record.name);
   const std::vector<TileIndex> open = writer.begin_source(record, blocks, options.replace);
   IngestReport report;
   report.blocks = std::ssize(blocks);
@@ -75,6 +86,8 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
   const Clock::time_point fusing = Clock::now();
   writer.finish_source(record.name, options.on_fusing, options.stop);
   report.fusing_s = seconds_since(fusing);
+  touched.merge(names_beside(writer, record.name));
+  report.shifts = measure_shifts(writer, touched);
   return report;
 }
 

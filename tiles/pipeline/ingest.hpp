@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -32,6 +33,7 @@ struct IngestReport {
   std::int64_t observed_cells = 0;  ///< of the blocks of this run
   double reading_s = 0.0;           ///< reading and detecting
   double fusing_s = 0.0;
+  std::map<std::string, SourceShift> shifts{};  ///< of this source and those beside it, by name
 };
 
 /// Tiles of the map's lattice that the source touches, row by row from the north-west, at least one. `name`
@@ -41,9 +43,10 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
 /// Seed of a block's random numbers.
 std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
 
-/// Carries the source into the map or goes on where an earlier call was stopped. `record.fingerprint` must tell
-/// everything that changes the cells. Throws Interrupted "ingest-stopped" when asked to stop, and whatever source and
-/// writer throw; what was finished until then stays.
+/// Carries the source into the map or goes on where an earlier call was stopped, and measures which sources of its
+/// ground lie beside the others (source_shift.hpp). `record.fingerprint` must tell everything that changes the cells.
+/// Throws Interrupted "ingest-stopped" when asked to stop, and whatever source and writer throw; what was finished
+/// until then stays.
 IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWriter& writer,
                     const IngestOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 #include "core/grid/cell.hpp"
@@ -111,7 +112,7 @@ Best best_beyond(const ShiftSums& sums, const Place& place, double steps) {
 
 }  // namespace
 
-std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m, double own_sigma_m) {
+std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m) {
   constexpr double kMinCorrelation = 0.15;
   constexpr double kMinGain = 1.3;  // over the correlation in place
   constexpr double kMinLead = 1.5;  // over all that are kApartM away: chance, a lone road and regular streets have none
@@ -128,17 +129,31 @@ std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, doubl
 
   const Best best = best_beyond(sums, {}, -1.0);
   const double rival = best_beyond(sums, best.at, std::max(3.0, kApartM / step_m)).correlation;
-  const SourceShift shift{.east_m = step_m * best.at.east,
-                          .north_m = step_m * best.at.north,
-                          .correlation = best.correlation,
-                          .correlation_in_place = sums.correlation(kMaxShift, kMaxShift)};
+  SourceShift shift{.east_m = step_m * best.at.east,
+                    .north_m = step_m * best.at.north,
+                    .correlation = best.correlation,
+                    .correlation_in_place = sums.correlation(kMaxShift, kMaxShift)};
   const double length_m = std::hypot(shift.east_m, shift.north_m);
+  shift.sigma_m = 0.5 * length_m;
   const double explained_m =
-      std::max(kMinSteps * step_m, kSigmas * std::hypot(own_sigma_m, shared_evidence.others_sigma_m));
+      std::max(kMinSteps * step_m, kSigmas * std::hypot(shared_evidence.own_sigma_m, shared_evidence.others_sigma_m));
   const bool at_rim = std::max(std::abs(best.at.east), std::abs(best.at.north)) == kMaxShift;
   const bool sure = best.correlation >= kMinCorrelation && best.correlation >= kMinLead * rival;
   const bool elsewhere = !at_rim && length_m > explained_m && best.correlation >= kMinGain * shift.correlation_in_place;
   return sure && elsewhere ? std::optional(shift) : std::nullopt;
+}
+
+std::map<std::string, SourceShift> measure_shifts(MapWriter& writer, const std::set<std::string>& sources) {
+  constexpr std::int64_t kTiles = 64;
+  std::map<std::string, std::optional<SourceShift>> measured;
+  std::map<std::string, SourceShift> beside;
+  for (const std::string& source : sources) {
+    const auto shift = shift_of(writer.shared_evidence(source, kTiles), writer.settings().cell_m);
+    measured.emplace(source, shift);
+    if (shift) beside.emplace(source, *shift);
+  }
+  writer.put_shifts(measured);
+  return beside;
 }
 
 }  // namespace roadfix

@@ -2,23 +2,25 @@
 // roads by a few metres to a hundred, and a map of both has each street twice.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "tiles/store/map_records.hpp"
+#include "tiles/store/map_writer.hpp"
 
 namespace roadfix {
-
-/// Where the roads of a source fit those of the others best.
-struct SourceShift {
-  double east_m = 0.0;  ///< by which the source would have to be moved
-  double north_m = 0.0;
-  double correlation = 0.0;  ///< Pearson's, of the cells that both observed, moved so
-  double correlation_in_place = 0.0;
-};
 
 /// Over shifts of up to 50 cells, in steps of two. nullopt where the source fits the others in place, hardly worse, or
 /// nowhere near; where they share less than 0.25 km^2, or fit nearly as well elsewhere; and where the shift is no
 /// larger than the registration errors explain (2 sigma).
-std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m, double own_sigma_m);
+///
+/// Which side is right, nobody knows, and a fix may lie on either: it is as likely as not off by the whole shift. Hence
+/// `sigma_m`, half of its length per axis: the 95 % ellipse around a place on the one side holds that on the other.
+std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m);
+
+/// Measures these sources in force anew and tells the map. Returns those that lie beside the others.
+std::map<std::string, SourceShift> measure_shifts(MapWriter& writer, const std::set<std::string>& sources);
 
 }  // namespace roadfix

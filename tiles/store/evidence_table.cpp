@@ -75,6 +75,7 @@ SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::in
       CellArray cells = decode_tile(evidence.blob(0), TileDepth::kEvidence);
       if (evidence.integer(1) == 1) {
         tile.own = std::move(cells);
+        result.own_sigma_m = evidence.real(2);
       } else {
         others.push_back(std::move(cells));
         result.others_sigma_m = std::max(result.others_sigma_m, evidence.real(2));
@@ -84,6 +85,17 @@ SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::in
     result.tiles.push_back(std::move(tile));
   }
   return result;
+}
+
+std::vector<std::string> EvidenceTable::sources_beside(const std::string& source) {
+  std::vector<std::string> names;
+  Statement beside(map_,
+                   "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1) SELECT DISTINCT "
+                   "s.name FROM roadfix_evidence e JOIN roadfix_evidence o ON o.tile_row = e.tile_row AND "
+                   "o.tile_column = e.tile_column JOIN roadfix_sources s ON s.id = o.source_id WHERE e.source_id IN "
+                   "own AND s.in_force = 1 AND s.name <> ?1 ORDER BY s.name");
+  for (beside.with(source); beside.step();) names.push_back(beside.text(0));
+  return names;
 }
 
 std::vector<std::string> EvidenceTable::drop_damaged() {

@@ -21,8 +21,9 @@ class EvidenceTable {
   bool put(std::int64_t source_id, TileIndex block, const CellArray& cells);
   /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
   std::vector<std::string> twins_of(const std::string& source);
-  /// See MapWriter.
+  /// These two: see MapWriter.
   SharedEvidence shared_evidence(const std::string& source, std::int64_t count);
+  std::vector<std::string> sources_beside(const std::string& source);
   /// Drops what cannot be read, or stands for no block that the ledger calls done. Returns the sources that lost some,
   /// each once. Their fingerprint is emptied: they are not what was ingested. Part of the caller's transaction.
   std::vector<std::string> drop_damaged();

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/grid/lattice.hpp"
+#include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -73,6 +76,17 @@ void check_registration(Connection& map, std::vector<MapProblem>& problems) {
   }
 }
 
+void check_shifts(Connection& map, std::vector<MapProblem>& problems) {
+  for (const auto& [name, shift] : read_shifts(map)) {
+    if (shift.sigma_m > 0.0 && std::isfinite(shift.sigma_m)) continue;
+    problems.push_back(
+        {"registration-wrong",
+         fmt::format("source '{}' is said to lie beside the others by an impossible distance (it counts with a "
+                     "registration error of {} m). Ingest it again, which measures that anew",
+                     name, shift.sigma_m)});
+  }
+}
+
 }  // namespace
 
 std::vector<MapProblem> problems_of_description(Connection& map, const MapSettings& settings) {
@@ -81,6 +95,7 @@ std::vector<MapProblem> problems_of_description(Connection& map, const MapSettin
   check_coverage(map, problems);
   check_tile_scales(map, problems);
   check_registration(map, problems);
+  check_shifts(map, problems);
   return problems;
 }
 

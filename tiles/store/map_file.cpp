@@ -10,6 +10,7 @@
 #include "core/units/shell_word.hpp"
 #include "core/units/text.hpp"
 #include "tiles/store/map_error.hpp"
+#include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -29,10 +30,6 @@ std::string meta_value(Connection& map, const char* key) {
   if (select.with(key).step()) return select.text(0);
   throw CorruptData("map-corrupt",
                     fmt::format("{}: roadfix_meta has no {}. Restore the map from a copy", map.path().string(), key));
-}
-
-bool has_table(Connection& map, const char* name) {
-  return Statement(map, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1").with(name).step();
 }
 
 void require_ours(Connection& map) {
@@ -142,6 +139,10 @@ bool is_there(const fs::path& path) {
   throw IoFailure("map-io", fmt::format("{}: {}", path.string(), error.message()));
 }
 
+bool has_table(Connection& map, const char* name) {
+  return Statement(map, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1").with(name).step();
+}
+
 void recover_map(const fs::path& path) {
   Connection map(path, Access::kReadWrite, map_error);
   number(map, "SELECT count(*) FROM sqlite_master");
@@ -197,6 +198,7 @@ MapInfo read_info(Connection& map) {
                     "(SELECT count(*) FROM roadfix_blocks b WHERE b.source_id = s.id), "
                     "(SELECT total(done) FROM roadfix_blocks b WHERE b.source_id = s.id) "
                     "FROM roadfix_sources s ORDER BY name, in_force DESC");
+  const auto shifts = read_shifts(map);
   while (sources.step()) {
     SourceStatus status{.record = {.name = sources.text(0),
                                    .kind = sources.text(1),
@@ -211,6 +213,8 @@ MapInfo read_info(Connection& map) {
     status.ingested_at = sources.text(10);
     status.blocks_total = sources.integer(11);
     status.blocks_done = sources.integer(12);
+    const auto shift = shifts.find(status.record.name);
+    if (status.complete && shift != shifts.end()) status.shift = shift->second;
     info.sources.push_back(std::move(status));
   }
   return info;

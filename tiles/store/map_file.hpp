@@ -24,6 +24,8 @@ sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access ac
 /// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to.
 void recover_map(const std::filesystem::path& path);
 
+bool has_table(sqlite::Connection& map, const char* name);
+
 MapSettings read_settings(sqlite::Connection& map);
 std::string read_version(sqlite::Connection& map);
 MapInfo read_info(sqlite::Connection& map);

@@ -13,6 +13,7 @@
 #include "core/units/error.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
+#include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_cache.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
@@ -182,9 +183,10 @@ std::optional<double> MapReader::registration_sigma_m(const GridBox& box) const 
   return state_->with_channel([&](Channel& channel) -> std::optional<double> {
     Statement largest(
         *channel.map,
-        "SELECT s.registration_sigma_m FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id "
-        "WHERE s.in_force = 1 AND e.tile_column BETWEEN ?1 AND ?2 AND e.tile_row BETWEEN ?3 AND ?4 ORDER BY "
-        "s.registration_sigma_m DESC LIMIT 1");
+        fmt::format(
+            "SELECT {} FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE s.in_force = 1 AND "
+            "e.tile_column BETWEEN ?1 AND ?2 AND e.tile_row BETWEEN ?3 AND ?4 ORDER BY 1 DESC LIMIT 1",
+            registration_in_force(*channel.map)));
     largest.with(cols.min.col, cols.max.col, tile_row(rows.min, zoom), tile_row(rows.max, zoom));
     return largest.step() ? std::optional(largest.real(0)) : std::nullopt;
   });

@@ -36,8 +36,8 @@ class MapReader {
   /// Row by row from the north-west.
   std::vector<TileIndex> tiles(int level) const;
 
-  /// The largest registration error (1 sigma per axis) of the sources in force that observed something on the tiles of
-  /// a box, now; nullopt where none did. Thread-safe.
+  /// The largest registration error (1 sigma per axis; SourceStatus) of the sources in force that observed something on
+  /// the tiles of a box, now; nullopt where none did. Thread-safe.
   std::optional<double> registration_sigma_m(const GridBox& box) const;
 
   std::size_t cached_bytes() const;

@@ -30,7 +30,9 @@ namespace {
 std::vector<Provenance> parts_of(const MapInfo& info) {
   std::vector<Provenance> parts;
   for (const SourceStatus& source : info.sources) {
-    if (source.complete) parts.push_back(source.record.provenance);
+    if (!source.complete) continue;
+    parts.push_back(source.record.provenance);
+    parts.back().registration_sigma_m = source.registration_sigma_m();
   }
   return parts;
 }

@@ -1,7 +1,9 @@
 // What a map file says about itself: settings, sources with provenance, tiles.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,19 @@ struct SharedEvidence {
     CellArray others;
   };
   std::vector<Tile> tiles;
-  double others_sigma_m = 0.0;  ///< the largest registration error of these others
+  double own_sigma_m = 0.0;     ///< the registration error that it states
+  double others_sigma_m = 0.0;  ///< the largest that these others state
+};
+
+/// Where the roads of a source fit those of the others best, if that is beside where it lies.
+struct SourceShift {
+  double east_m = 0.0;  ///< by which the source would have to be moved
+  double north_m = 0.0;
+  double correlation = 0.0;  ///< Pearson's, of the cells that both observed, moved so
+  double correlation_in_place = 0.0;
+  double sigma_m = 0.0;  ///< registration error per axis that explains it
+
+  friend bool operator==(const SourceShift&, const SourceShift&) = default;
 };
 
 /// A name occurs twice while a source is being replaced: the complete one is in force until the other is complete.
@@ -62,6 +76,12 @@ struct SourceStatus {
   std::int64_t blocks_total = 0;
   std::int64_t blocks_done = 0;
   std::string ingested_at = {};  ///< RFC 3339, empty while incomplete
+  std::optional<SourceShift> shift = {};
+
+  /// 1 sigma per axis: what the source states, or what its shift says where that is more.
+  double registration_sigma_m() const {
+    return std::max(record.provenance.registration_sigma_m, shift ? shift->sigma_m : 0.0);
+  }
 
   /// Blocks of it are missing, as verify --repair leaves it.
   bool is_damaged() const { return complete && blocks_done < blocks_total; }

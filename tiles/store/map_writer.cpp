@@ -9,6 +9,7 @@
 #include "tiles/store/evidence_table.hpp"
 #include "tiles/store/fusion_queue.hpp"
 #include "tiles/store/map_file.hpp"
+#include "tiles/store/shift_table.hpp"
 #include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_table.hpp"
@@ -73,7 +74,9 @@ struct MapWriter::State {
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
         evidence(map, tiles.finest_zoom()),
-        fusion(map, tiles) {}
+        fusion(map, tiles) {
+    make_shift_table(map);
+  }
 
   NotFound no_source(const std::string& name) const {
     return {"source-not-found",
@@ -195,6 +198,14 @@ std::vector<std::string> MapWriter::twins_of(const std::string& source) { return
 
 SharedEvidence MapWriter::shared_evidence(const std::string& source, std::int64_t count) {
   return state_->evidence.shared_evidence(source, count);
+}
+
+std::vector<std::string> MapWriter::sources_beside(const std::string& source) {
+  return state_->evidence.sources_beside(source);
+}
+
+void MapWriter::put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts) {
+  roadfix::put_shifts(state_->map, shifts);
 }
 
 void MapWriter::remove_if_new_and_empty() {

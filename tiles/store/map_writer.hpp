@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,6 +62,12 @@ class MapWriter {
 
   /// Of up to `count` tiles, spread evenly over those that the source shares with others in force.
   SharedEvidence shared_evidence(const std::string& source, std::int64_t count);
+
+  /// Other sources in force that say something of a tile that this one in force does, too.
+  std::vector<std::string> sources_beside(const std::string& source);
+
+  /// Tells the map which of these sources in force lie beside the others; nullopt for one that does not.
+  void put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts);
 
   /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
   /// leaves no map. Nothing but the destructor may be called afterwards.

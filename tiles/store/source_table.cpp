@@ -72,7 +72,7 @@ void SourceTable::put_in_force(std::int64_t id) {
 void SourceTable::remove(std::int64_t id) {
   for (const char* sql :
        {"DELETE FROM roadfix_evidence WHERE source_id = ?1", "DELETE FROM roadfix_blocks WHERE source_id = ?1",
-        "DELETE FROM roadfix_sources WHERE id = ?1"}) {
+        "DELETE FROM roadfix_shifts WHERE source_id = ?1", "DELETE FROM roadfix_sources WHERE id = ?1"}) {
     Statement(map_, sql).with(id).run();
   }
 }

@@ -15,8 +15,8 @@ std::function<double(GridPoint)> registration_around(std::shared_ptr<const MapRe
   double largest_m = 0.0;
   for (const SourceStatus& source : reader->info().sources) {
     if (!source.complete) continue;
-    least_m = std::min(least_m, source.record.provenance.registration_sigma_m);
-    largest_m = std::max(largest_m, source.record.provenance.registration_sigma_m);
+    least_m = std::min(least_m, source.registration_sigma_m());
+    largest_m = std::max(largest_m, source.registration_sigma_m());
   }
   if (least_m >= largest_m) return [largest_m](GridPoint) { return largest_m; };
   return [largest_m, reader = std::move(reader)](GridPoint place) {

@@ -76,6 +76,19 @@ TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame
   EXPECT_EQ(registry.find("city")->view.registration_sigma_m({}), 12.0) << "else ellipses stay too small";
 }
 
+TEST(MapRegistry, NoticesThatASourceLiesBesideTheOthers) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  {
+    MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
+    const std::string source = registry.find("city")->reader->info().sources.front().record.name;
+    writer.put_shifts({{source, SourceShift{.east_m = 24.0, .sigma_m = 12.0}}});
+  }
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->view.registration_sigma_m({}), 12.0);
+}
+
 TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   const TemporaryFolder folder;
   make_map(folder / "good.gpkg", 1);

@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "core/grid/resample.hpp"
+#include "tests/support/put_block.hpp"
 #include "tests/support/street_map.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
 namespace {
@@ -30,7 +37,7 @@ SharedEvidence shared_evidence(int east, int south, std::uint64_t others_seed = 
 }
 
 TEST(SourceShift, IsWhereASourceFitsTheOthers) {
-  const auto shift = shift_of(shared_evidence(12, -8), kCellM, 0.0);
+  const auto shift = shift_of(shared_evidence(12, -8), kCellM);
   ASSERT_TRUE(shift);
   EXPECT_EQ(shift->east_m, -24.0);
   EXPECT_EQ(shift->north_m, -16.0);
@@ -39,17 +46,30 @@ TEST(SourceShift, IsWhereASourceFitsTheOthers) {
 }
 
 TEST(SourceShift, IsNoneWhereTheyAgreeOrHaveNothingInCommon) {
-  EXPECT_FALSE(shift_of(shared_evidence(0, 0), kCellM, 0.0));
-  EXPECT_FALSE(shift_of(shared_evidence(1, -1), kCellM, 0.0)) << "no more than a step";
-  EXPECT_FALSE(shift_of(shared_evidence(0, 0, 6), kCellM, 0.0)) << "another town";
-  EXPECT_FALSE(shift_of({}, kCellM, 0.0));
+  EXPECT_FALSE(shift_of(shared_evidence(0, 0), kCellM));
+  EXPECT_FALSE(shift_of(shared_evidence(1, -1), kCellM)) << "no more than a step";
+  EXPECT_FALSE(shift_of(shared_evidence(0, 0, 6), kCellM)) << "another town";
+  EXPECT_FALSE(shift_of({}, kCellM));
+}
+
+TEST(SourceShift, StandsForARegistrationErrorWhoseEllipseOf95PercentHoldsTheOtherSide) {
+  for (const int east : {6, 9, 20}) {
+    const auto shift = shift_of(shared_evidence(east, 0), kCellM);
+    ASSERT_TRUE(shift) << east;
+    const double length_m = std::hypot(shift->east_m, shift->north_m);
+    constexpr double kSigmasOf95 = 2.45;
+    EXPECT_GT(kSigmasOf95 * shift->sigma_m, length_m);
+    EXPECT_LT(2.0 * shift->sigma_m, length_m + 1e-9) << "and not much more";
+  }
 }
 
 TEST(SourceShift, IsNoneThatTheRegistrationErrorsExplain) {
   SharedEvidence both = shared_evidence(12, 0);
   both.others_sigma_m = 8.0;
-  EXPECT_TRUE(shift_of(both, kCellM, 8.0)) << "24 m, 2 sigma are 23 m";
-  EXPECT_FALSE(shift_of(both, kCellM, 9.0));
+  both.own_sigma_m = 8.0;
+  EXPECT_TRUE(shift_of(both, kCellM)) << "24 m, 2 sigma are 23 m";
+  both.own_sigma_m = 9.0;
+  EXPECT_FALSE(shift_of(both, kCellM));
 }
 
 TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
@@ -59,7 +79,7 @@ TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
       for (int col = 0; col < kTileCells / 2; ++col) tile.own.at(col, row) = kUnobserved;
     }
   }
-  const auto shift = shift_of(half, kCellM, 0.0);
+  const auto shift = shift_of(half, kCellM);
   ASSERT_TRUE(shift);
   EXPECT_EQ(shift->east_m, -24.0);
   EXPECT_EQ(shift->north_m, 0.0);
@@ -82,12 +102,12 @@ SharedEvidence overlapping(int cols, int east, int south) {
 }
 
 TEST(SourceShift, IsNoneOfANarrowOverlapThatFitsInPlace) {
-  for (int cols = 4; cols <= 124; cols += 12) EXPECT_FALSE(shift_of(overlapping(cols, 0, 0), kCellM, 0.0)) << cols;
+  for (int cols = 4; cols <= 124; cols += 12) EXPECT_FALSE(shift_of(overlapping(cols, 0, 0), kCellM)) << cols;
 }
 
 TEST(SourceShift, IsNoneWhereTooLittleGroundIsSharedToTell) {
-  EXPECT_FALSE(shift_of(overlapping(16, 12, -8), kCellM, 0.0));
-  EXPECT_TRUE(shift_of(overlapping(100, 12, -8), kCellM, 0.0));
+  EXPECT_FALSE(shift_of(overlapping(16, 12, -8), kCellM));
+  EXPECT_TRUE(shift_of(overlapping(100, 12, -8), kCellM));
 }
 
 /// One road from the west to the east, on every tile; that of the source lies so many cells to the north.
@@ -107,7 +127,7 @@ SharedEvidence one_road(int north) {
 }
 
 TEST(SourceShift, IsNoneThatASingleRoadTells) {
-  EXPECT_FALSE(shift_of(one_road(12), kCellM, 0.0)) << "how far along the road, nobody knows";
+  EXPECT_FALSE(shift_of(one_road(12), kCellM)) << "how far along the road, nobody knows";
 }
 
 TEST(SourceShift, IsNoneOfRegularStreetsThatFitABlockAwayAsWell) {
@@ -116,7 +136,7 @@ TEST(SourceShift, IsNoneOfRegularStreetsThatFitABlockAwayAsWell) {
   city.tiles.push_back({CellArray(kTileCells, kTileCells), CellArray(kTileCells, kTileCells)});
   paste(blocks, city.tiles[0].own, -90, -100);
   paste(blocks, city.tiles[0].others, -100, -100);
-  EXPECT_FALSE(shift_of(city, kCellM, 0.0));
+  EXPECT_FALSE(shift_of(city, kCellM));
 }
 
 TEST(SourceShift, IsHardlyEverOneOfFewRoadsThatHaveNothingInCommon) {
@@ -125,10 +145,74 @@ TEST(SourceShift, IsHardlyEverOneOfFewRoadsThatHaveNothingInCommon) {
     for (SharedEvidence::Tile& tile : shared_evidence(0, 0, seed).tiles) {
       SharedEvidence one;
       one.tiles.push_back(std::move(tile));
-      if (shift_of(one, kCellM, 0.0)) ++shifts;
+      if (shift_of(one, kCellM)) ++shifts;
     }
   }
   EXPECT_LE(shifts, 1) << "of 72 overlaps of 0.26 km^2";
+}
+
+/// Sources of four tiles of one town, each so many cells too far east.
+class MeasuredShifts : public ::testing::Test {
+ protected:
+  MeasuredShifts() : writer(folder / "m.gpkg", {*UtmZone::from_epsg(32637), kCellM}) {}
+
+  void put(const std::string& name, int east, double sigma_m = 2.5) {
+    const SourceRecord record{.name = name,
+                              .kind = "roads",
+                              .fingerprint = name + std::to_string(east),
+                              .provenance = {.registration_sigma_m = sigma_m}};
+    const std::vector<TileIndex> blocks{{847, -8165}, {848, -8165}, {847, -8164}, {848, -8164}};
+    for (const TileIndex block : writer.begin_source(record, blocks, true)) {
+      CellArray cells(kTileCells, kTileCells);
+      paste(town, cells, east - 100 - kTileCells * (block.col - 847), -100 - kTileCells * (block.row + 8165));
+      testing::put_block(writer, name, block, cells);
+    }
+    writer.finish_source(name);
+  }
+
+  testing::TemporaryFolder folder;
+  const CellArray town = testing::street_map(5, {kCellM, {0, 0}, 712, 712}).cells;
+  MapWriter writer;
+};
+
+TEST_F(MeasuredShifts, OfTwoThatDifferBothCountAsUncertain) {
+  put("a", 0);
+  put("b", 10);
+  const auto shifts = measure_shifts(writer, {"a", "b"});
+  ASSERT_EQ(shifts.size(), 2U);
+  EXPECT_EQ(shifts.at("b").east_m, -20.0);
+  EXPECT_EQ(shifts.at("a").east_m, 20.0);
+  const MapReader reader(folder / "m.gpkg");
+  for (const SourceStatus& source : reader.info().sources) {
+    EXPECT_EQ(source.registration_sigma_m(), 10.0) << source.record.name;
+    EXPECT_EQ(source.record.provenance.registration_sigma_m, 2.5);
+  }
+  EXPECT_EQ(measure_shifts(writer, {"a", "b"}), shifts) << "what was measured before takes no part";
+}
+
+TEST_F(MeasuredShifts, OfThreeOnlyTheOneThatTwoContradictDoes) {
+  put("a", 0);
+  put("b", 10);
+  put("c", 0);
+  const auto shifts = measure_shifts(writer, {"a", "b", "c"});
+  ASSERT_EQ(shifts.size(), 1U);
+  EXPECT_EQ(shifts.count("b"), 1U);
+}
+
+TEST_F(MeasuredShifts, AreForgottenWhenTheSourceIsReplacedByOneThatFitsOrStatesItsError) {
+  put("a", 0);
+  put("b", 10);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).size(), 2U);
+  put("b", 10, 10.0);
+  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).empty()) << "2 sigma explain it";
+  const auto info = [&]() -> MapInfo { return MapReader(folder / "m.gpkg").info(); };
+  EXPECT_EQ(info().sources[0].registration_sigma_m(), 2.5);
+  EXPECT_EQ(info().sources[1].registration_sigma_m(), 10.0);
+  put("b", 10, 2.5);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).size(), 2U);
+  put("b", 0);
+  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).empty());
+  EXPECT_EQ(info().sources[0].registration_sigma_m(), 2.5);
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
   const SharedEvidence all = writer.shared_evidence("a", 9);
   const std::vector<TileIndex> shared = some_blocks(2, 1);
   ASSERT_EQ(all.tiles.size(), shared.size());
+  EXPECT_EQ(all.own_sigma_m, 2.5);
   EXPECT_EQ(all.others_sigma_m, 2.5);
   for (const TileIndex block : shared) {
     std::vector<CellArray> others{random_cells(2, block)};
@@ -56,6 +57,19 @@ TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
   }
   EXPECT_EQ(writer.shared_evidence("a", 2).tiles.size(), 2U);
   EXPECT_TRUE(writer.shared_evidence("none", 2).tiles.empty());
+}
+
+TEST(EvidenceTable, NamesTheOtherSourcesInForceOfTheSameTiles) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  ingest(writer, {"a", 1, some_blocks(2)});
+  ingest(writer, {"b", 2, some_blocks(2, 1)});
+  ingest(writer, {"far", 3, some_blocks(1, 5)});
+  writer.begin_source(TestSource{"unfinished", 4, some_blocks(1)}.record(), some_blocks(1), false);
+  EXPECT_EQ(writer.sources_beside("a"), std::vector<std::string>{"b"});
+  EXPECT_EQ(writer.sources_beside("b"), std::vector<std::string>{"a"});
+  EXPECT_TRUE(writer.sources_beside("far").empty());
+  EXPECT_TRUE(writer.sources_beside("unfinished").empty());
 }
 
 }  // namespace

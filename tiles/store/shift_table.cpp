@@ -1,0 +1,62 @@
+#include "tiles/store/shift_table.hpp"
+
+#include "schema/schema.hpp"
+#include "tiles/store/map_file.hpp"
+
+namespace roadfix {
+namespace {
+
+using sqlite::Connection;
+using sqlite::Statement;
+using sqlite::Transaction;
+
+constexpr const char* kTable = "roadfix_shifts";
+
+}  // namespace
+
+void make_shift_table(Connection& map) {
+  if (has_table(map, kTable)) return;
+  Transaction transaction(map, Transaction::Kind::kWrite);
+  map.execute(std::string(schema::map_shifts_sql()).c_str());
+  transaction.commit();
+}
+
+void put_shifts(Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts) {
+  Transaction transaction(map, Transaction::Kind::kWrite);
+  Statement forget(map,
+                   "DELETE FROM roadfix_shifts WHERE source_id IN (SELECT id FROM roadfix_sources WHERE name = ?1 AND "
+                   "in_force = 1)");
+  Statement put(map,
+                "INSERT INTO roadfix_shifts (source_id, east_m, north_m, correlation, correlation_in_place, sigma_m) "
+                "SELECT id, ?2, ?3, ?4, ?5, ?6 FROM roadfix_sources WHERE name = ?1 AND in_force = 1");
+  for (const auto& [name, shift] : shifts) {
+    forget.with(name).run();
+    if (!shift) continue;
+    put.with(name, shift->east_m, shift->north_m, shift->correlation, shift->correlation_in_place, shift->sigma_m)
+        .run();
+  }
+  transaction.commit();
+}
+
+std::map<std::string, SourceShift> read_shifts(Connection& map) {
+  std::map<std::string, SourceShift> shifts;
+  if (!has_table(map, kTable)) return shifts;
+  Statement select(map,
+                   "SELECT s.name, h.east_m, h.north_m, h.correlation, h.correlation_in_place, h.sigma_m FROM "
+                   "roadfix_shifts h JOIN roadfix_sources s ON s.id = h.source_id WHERE s.in_force = 1");
+  while (select.step()) {
+    shifts[select.text(0)] = {.east_m = select.real(1),
+                              .north_m = select.real(2),
+                              .correlation = select.real(3),
+                              .correlation_in_place = select.real(4),
+                              .sigma_m = select.real(5)};
+  }
+  return shifts;
+}
+
+std::string_view registration_in_force(Connection& map) {
+  if (!has_table(map, kTable)) return "s.registration_sigma_m";
+  return "max(s.registration_sigma_m, coalesce((SELECT sigma_m FROM roadfix_shifts h WHERE h.source_id = s.id), 0))";
+}
+
+}  // namespace roadfix

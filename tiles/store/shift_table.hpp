@@ -1,0 +1,28 @@
+// Which sources of a map file lie beside the others (table roadfix_shifts, which maps of before lack). Shared by
+// reader, writer and verifier; not for other modules.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
+
+namespace roadfix {
+
+/// Where it is not there yet.
+void make_shift_table(sqlite::Connection& map);
+
+/// Of sources in force, by their names; nullopt for one that fits the others, or of which that cannot be told.
+void put_shifts(sqlite::Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts);
+
+/// Of sources in force, by their names.
+std::map<std::string, SourceShift> read_shifts(sqlite::Connection& map);
+
+/// SQL for the registration error that counts of a source `s`: what it states, or what its shift says where that is
+/// more.
+std::string_view registration_in_force(sqlite::Connection& map);
+
+}  // namespace roadfix

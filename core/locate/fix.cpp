@@ -37,6 +37,8 @@ double variance_of(const CellArray& cells) {
 // holds.
 constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
+constexpr double kOnePlaceM = 25.0;  // places farther apart are two, however badly either is known
+
 struct Refusal {
   const char* reason;
   std::string explanation;
@@ -158,11 +160,16 @@ bool is_beyond(const MapView& map, const Calibration& calibration, double nadir_
   return squared > kRegionSigmas * kRegionSigmas;
 }
 
-/// Another peak that the region of the best mode leaves out is a place of its own, however near it is.
+/// Another peak that the region of the best mode leaves out is a place of its own, however near it is; so is one that
+/// no operator would take for the same, however wide the region.
 void count_nearby(const MapView& map, const Calibration& calibration, double nadir_sigma_m, SearchResult& found) {
   if (!found.nearby) return;
   const SearchMode& nearby = *found.nearby;
-  if (!is_beyond(map, calibration, nadir_sigma_m, found.modes.front(), nearby.pose.position)) return;
+  const SearchMode& best = found.modes.front();
+  if (distance_m(best.pose.position, nearby.pose.position) <= kOnePlaceM &&
+      !is_beyond(map, calibration, nadir_sigma_m, best, nearby.pose.position)) {
+    return;
+  }
   const auto lower = [&](const SearchMode& mode) { return mode.score < nearby.score; };
   found.modes.insert(std::find_if(found.modes.begin() + 1, found.modes.end(), lower), nearby);
   std::vector<double>& rivals = found.background.rivals_within;

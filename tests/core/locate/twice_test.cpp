@@ -66,5 +66,16 @@ TEST_F(LocateTwice, CopiesWithinTheErrorThatTheMapStatesAreOnePlace) {
   EXPECT_GE(fixes, 2);
 }
 
+TEST_F(LocateTwice, CopiesFartherApartThanOnePlaceAreTwoHoweverBadlyTheMapIsRegistered) {
+  const RoadGrid twice = with_copy(12, 8);  // 29 m
+  MapView view = testing::view_of(twice);
+  view.registration_sigma_m = [](GridPoint) { return 16.0; };
+  for (int i = 0; i < 3; ++i) {
+    const GridPose truth = pose_within(view_.extent, 500.0, random_);
+    const FeatureMap frame = observed_at(map_, truth, kFrameCells, kFrameCells, 2.0, {0.2, 0.2}, random_);
+    EXPECT_NE(locate(view, frame, around(truth), {}).status, FixStatus::kFix);
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -12,13 +12,13 @@ namespace roadfix::server {
 
 TrackEvents::TrackEvents(int most, Source source) : most_(most), source_(std::move(source)) {}
 
-std::shared_ptr<TrackEvents::Stream> TrackEvents::stream(const std::string& id, std::int64_t after) {
+std::shared_ptr<TrackEvents::Subscription> TrackEvents::stream(const std::string& id, std::int64_t after) {
   const std::lock_guard lock(mutex_);
   if (std::ssize(streams_) >= most_) {
     throw http::Busy(fmt::format("{} event streams are open, the most allowed (serve --max-streams)", streams_.size()),
                      std::chrono::seconds(5));
   }
-  return std::make_shared<Stream>(*this, id, after);
+  return std::make_shared<Subscription>(*this, id, after);
 }
 
 int TrackEvents::streams() const {
@@ -35,11 +35,11 @@ void TrackEvents::announce() {
 void TrackEvents::end(const std::string& id, const EndInStore& end_in_store) {
   const std::lock_guard lock(mutex_);
   std::optional<std::int64_t> told;  // to those who listen to it, at least
-  for (const Stream* stream : streams_) {
+  for (const Subscription* stream : streams_) {
     if (stream->id_ == id) told = std::min(told.value_or(stream->after_), stream->after_);
   }
-  const auto left = std::make_shared<const Stream::Steps>(end_in_store(told));
-  for (Stream* stream : streams_) {
+  const auto left = std::make_shared<const Subscription::Steps>(end_in_store(told));
+  for (Subscription* stream : streams_) {
     if (stream->id_ == id && !stream->left_) stream->left_ = left;  // it may be ended twice at once
   }
   ++changes_;
@@ -52,17 +52,17 @@ void TrackEvents::stop() {
   news_.notify_all();
 }
 
-TrackEvents::Stream::Stream(TrackEvents& events, std::string id, std::int64_t after)
+TrackEvents::Subscription::Subscription(TrackEvents& events, std::string id, std::int64_t after)
     : events_(events), id_(std::move(id)), after_(after) {
   events_.streams_.insert(this);
 }
 
-TrackEvents::Stream::~Stream() {
+TrackEvents::Subscription::~Subscription() {
   const std::lock_guard lock(events_.mutex_);
   events_.streams_.erase(this);
 }
 
-std::optional<TrackEvents::News> TrackEvents::Stream::next() {
+std::optional<TrackEvents::News> TrackEvents::Subscription::next() {
   constexpr int kBatch = 64;
   constexpr std::chrono::seconds kPatience{1};
   std::unique_lock lock(events_.mutex_);

@@ -30,8 +30,8 @@ class TrackEvents {
   TrackEvents(int most, Source source);
 
   /// One stream for as long as it lives, which must not be longer than this. Throws Busy.
-  class Stream;
-  std::shared_ptr<Stream> stream(const std::string& id, std::int64_t after);
+  class Subscription;
+  std::shared_ptr<Subscription> stream(const std::string& id, std::int64_t after);
   int streams() const;
 
   /// Of a step that is in the store.
@@ -48,17 +48,17 @@ class TrackEvents {
       mutex_;  ///< of what follows, and of what `end` tells streams; never held while the source is asked
   std::condition_variable news_;
   std::uint64_t changes_ = 0;
-  std::set<Stream*> streams_;
+  std::set<Subscription*> streams_;
   bool stopping_ = false;
 };
 
-class TrackEvents::Stream {
+class TrackEvents::Subscription {
  public:
   /// Holding the mutex of `events`.
-  Stream(TrackEvents& events, std::string id, std::int64_t after);
-  ~Stream();
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
+  Subscription(TrackEvents& events, std::string id, std::int64_t after);
+  ~Subscription();
+  Subscription(const Subscription&) = delete;
+  Subscription& operator=(const Subscription&) = delete;
 
   /// What was not handed out yet; waits for some, but not long. nullopt when the service stops.
   std::optional<News> next();

@@ -142,7 +142,7 @@ std::vector<StoredStep> TrackRegistry::steps_after(const std::string& id, std::i
   return store().steps_after(find(id).id, sequence, count);
 }
 
-std::shared_ptr<TrackEvents::Stream> TrackRegistry::stream(const std::string& id, std::int64_t after) {
+std::shared_ptr<TrackEvents::Subscription> TrackRegistry::stream(const std::string& id, std::int64_t after) {
   return events_.stream(find(id).id, after);
 }
 

@@ -74,7 +74,7 @@ class TrackRegistry {
   void announce_step(const std::string& id, std::int64_t sequence, TrackTimes::Clock::time_point came);
 
   /// Throws as TrackEvents::stream and find().
-  std::shared_ptr<TrackEvents::Stream> stream(const std::string& id, std::int64_t after);
+  std::shared_ptr<TrackEvents::Subscription> stream(const std::string& id, std::int64_t after);
 
  private:
   TrackStore& store() const;

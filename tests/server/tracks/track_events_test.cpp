@@ -27,7 +27,7 @@ class TrackEventsTest : public ::testing::Test {
   }
   void end(TrackEnd how) {
     events_.end("a", [&](const auto& after) {
-      const auto left = after ? steps_after(*after) : std::vector<StoredStep>();
+      auto left = after ? steps_after(*after) : std::vector<StoredStep>();
       ended_ = how;
       steps_.clear();
       return left;
@@ -52,7 +52,7 @@ TEST_F(TrackEventsTest, HandsOutStepsThatWereAnsweredBeforeTheEnd) {
   for (int i = 1; i < 100; ++i) take(i);
   end(TrackEnd::kFinished);
   end(TrackEnd::kExpired);  // by another thread at the same time
-  const auto rest_of = [](TrackEvents::Stream& stream) {
+  const auto rest_of = [](TrackEvents::Subscription& stream) {
     std::vector<std::int64_t> told;
     for (auto news = stream.next(); !news->ended; news = stream.next()) {
       for (const StoredStep& step : news->steps) told.push_back(step.sequence);

@@ -23,8 +23,10 @@ constexpr int kMaxAcross = 128;
 
 constexpr double kApartCells = 3.0;  // by which roads must have moved before views are compared
 constexpr double kMinShareInCommon = 0.25;
-constexpr double kStillCorrelation = 0.75;  // of views that lie as before
-constexpr double kStillMargin = 0.3;        // by which they correlate better so than as the odometry tells
+// Of 537 views of 16 flights over Montevideo and Adiyaman none correlated by more than 0.51 with one before as if
+// nothing had moved. One that stands still, with 3 % of its cells turned over, does so by 0.9.
+constexpr double kStillCorrelation = 0.75;
+constexpr double kStillMargin = 0.3;  // by which it correlates better so than as the odometry tells
 
 bool shows_road(const FeatureMap& features) {
   return std::ranges::any_of(features.cells.cells(),

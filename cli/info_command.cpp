@@ -9,6 +9,7 @@
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/source_json.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
@@ -22,22 +23,10 @@ struct InfoArguments {
 };
 
 json source_json(const SourceStatus& source) {
-  const SourceRecord& r = source.record;
-  const Provenance& p = r.provenance;
-  json answer{{"name", r.name},
-              {"kind", r.kind},
-              {"location", r.location},
-              {"fingerprint", r.fingerprint},
-              {"date", p.date},
-              {"licence", p.licence},
-              {"attribution", p.attribution},
-              {"method", r.method},
-              {"registration_sigma_m", p.registration_sigma_m},
-              {"complete", source.complete && !source.is_damaged()},
-              {"blocks_total", source.blocks_total},
-              {"blocks_done", source.blocks_done},
-              {"ingested_at", source.ingested_at}};
-  if (source.shift) answer["shift"] = shift_json(*source.shift);
+  json answer = api::to_json(source);
+  answer["location"] = source.record.location;
+  answer["fingerprint"] = source.record.fingerprint;
+  answer["ingested_at"] = source.ingested_at;
   return answer;
 }
 

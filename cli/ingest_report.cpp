@@ -10,6 +10,7 @@
 
 #include "cli/shift_text.hpp"
 #include "core/units/json_text.hpp"
+#include "server/api/source_json.hpp"
 
 namespace roadfix::cli {
 
@@ -53,7 +54,7 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
-  for (const auto& [name, shift] : report.shifts) json["shifts"][name] = shift_json(shift);
+  for (const auto& [name, shift] : report.shifts) json["shifts"][name] = api::to_json(shift);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = json.contains("features");
   const double amount =

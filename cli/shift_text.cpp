@@ -15,8 +15,4 @@ std::string directions_of(const SourceShift& shift) {
   return shift.east_m == 0.0 ? north : part(shift.east_m, "east", "west") + " and " + north;
 }
 
-nlohmann::json shift_json(const SourceShift& shift) {
-  return {{"east_m", shift.east_m}, {"north_m", shift.north_m}, {"sigma_m", shift.sigma_m}};
-}
-
 }  // namespace roadfix::cli

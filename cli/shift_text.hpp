@@ -1,7 +1,6 @@
 // A source that lies beside the others, in words.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tiles/store/map_records.hpp"
@@ -10,7 +9,5 @@ namespace roadfix::cli {
 
 /// "12 m to the east and 16 m to the north".
 std::string directions_of(const SourceShift& shift);
-
-nlohmann::json shift_json(const SourceShift& shift);
 
 }  // namespace roadfix::cli

@@ -58,15 +58,7 @@ std::optional<double> correlation_of(const FeatureMap& features, const PlacedFea
     for (int col = 0; col < features.cells.cols(); ++col) {
       const Cell now = features.cells.at(col, row);
       const Cell before = bilinear(earlier.features.cells, placement.source_of(col + 0.5, row + 0.5));
-      if (!is_observed(now) || !is_observed(before)) continue;
-      const double l = probability(now);
-      const double m = probability(before);
-      ++sums.n;
-      sums.m += m;
-      sums.l += l;
-      sums.mm += m * m;
-      sums.ll += l * l;
-      sums.ml += m * l;
+      if (is_observed(now) && is_observed(before)) sums.add(probability(before), probability(now));
     }
   }
   if (static_cast<double>(sums.n) < kMinShareInCommon * static_cast<double>(features.cells.observed_count())) {

@@ -14,6 +14,16 @@ struct MatchSums {
   double mm = 0.0;
   double ll = 0.0;
   double ml = 0.0;
+
+  /// A cell that is `m_cell` in the map and `l_cell` in the feature map.
+  void add(double m_cell, double l_cell) {
+    ++n;
+    m += m_cell;
+    l += l_cell;
+    mm += m_cell * m_cell;
+    ll += l_cell * l_cell;
+    ml += m_cell * l_cell;
+  }
 };
 
 /// Equation (5) with the common mean (6). nullopt where it is undefined: no cell in common, or m and l constant at

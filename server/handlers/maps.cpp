@@ -3,6 +3,7 @@
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/source_json.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -15,26 +16,6 @@ const char* status_of(const MapInfo& info) {
   if (std::ranges::any_of(info.sources, &SourceStatus::is_damaged)) return "damaged";
   if (info.extent.empty()) return "empty";
   return info.pending > 0 ? "incomplete" : "ready";
-}
-
-json source_json(const SourceStatus& source) {
-  const SourceRecord& r = source.record;
-  const Provenance& p = r.provenance;
-  json answer{{"name", r.name},
-              {"kind", r.kind},
-              {"date", p.date},
-              {"licence", p.licence},
-              {"attribution", p.attribution},
-              {"method", r.method},
-              {"registration_sigma_m", p.registration_sigma_m},
-              {"complete", source.complete && !source.is_damaged()},
-              {"blocks_total", source.blocks_total},
-              {"blocks_done", source.blocks_done}};
-  if (source.complete) answer["ingested_at"] = source.ingested_at;
-  if (const auto& shift = source.shift) {
-    answer["shift"] = {{"east_m", shift->east_m}, {"north_m", shift->north_m}, {"sigma_m", shift->sigma_m}};
-  }
-  return answer;
 }
 
 json summary(const ServedMap& map) {
@@ -63,7 +44,7 @@ json details(const ServedMap& map) {
                           info.extent.max.north_m};
   }
   answer["sources"] = json::array();
-  for (const SourceStatus& source : info.sources) answer["sources"].push_back(source_json(source));
+  for (const SourceStatus& source : info.sources) answer["sources"].push_back(api::to_json(source));
   return answer;
 }
 

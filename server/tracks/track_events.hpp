@@ -44,8 +44,8 @@ class TrackEvents {
  private:
   const int most_;
   const Source source_;
-  mutable std::mutex
-      mutex_;  ///< of what follows, and of what `end` tells streams; never held while the source is asked
+  /// Of what follows, and of what `end` tells streams; never held while the source is asked.
+  mutable std::mutex mutex_;
   std::condition_variable news_;
   std::uint64_t changes_ = 0;
   std::set<Subscription*> streams_;

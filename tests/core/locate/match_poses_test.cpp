@@ -9,7 +9,6 @@
 #include "core/grid/resample.hpp"
 #include "core/grid/sampling.hpp"
 #include "tests/support/map_view.hpp"
-#include "tests/support/match_sums.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
@@ -67,7 +66,7 @@ MatchSums by_brute_force(const RoadGrid& map, const FeatureMap& features, const 
       const Cell seen = bilinear(features.cells, {features.nadir.col + at.right_m / features.cell_m,
                                                   features.nadir.row - at.forward_m / features.cell_m});
       const Cell mapped = map.cells.at(col, row);
-      if (is_observed(seen) && is_observed(mapped)) testing::add_cell(sums, probability(mapped), probability(seen));
+      if (is_observed(seen) && is_observed(mapped)) sums.add(probability(mapped), probability(seen));
     }
   }
   return sums;

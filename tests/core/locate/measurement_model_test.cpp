@@ -7,7 +7,6 @@
 #include <random>
 
 #include "core/units/draws.hpp"
-#include "tests/support/match_sums.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -16,7 +15,7 @@ namespace {
 /// Sums over binary cells, road in the map where `m`, in the feature map where `l`.
 MatchSums sums_of(const std::vector<bool>& m, const std::vector<bool>& l) {
   MatchSums s;
-  for (std::size_t i = 0; i < m.size(); ++i) testing::add_cell(s, m[i] ? 1.0 : 0.0, l[i] ? 1.0 : 0.0);
+  for (std::size_t i = 0; i < m.size(); ++i) s.add(m[i] ? 1.0 : 0.0, l[i] ? 1.0 : 0.0);
   return s;
 }
 

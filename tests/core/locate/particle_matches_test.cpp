@@ -10,7 +10,6 @@
 #include "core/units/draws.hpp"
 #include "tests/support/flight.hpp"
 #include "tests/support/map_view.hpp"
-#include "tests/support/match_sums.hpp"
 
 namespace roadfix {
 namespace {
@@ -38,7 +37,7 @@ TEST(ParticleMatches, AreThoseOfEquation5AtTheirPoses) {
     for (int r = 0; r < 90; ++r) {
       for (int c = 0; c < 100; ++c) {
         if (!is_observed(below.cells.at(c, r))) continue;
-        testing::add_cell(exact, probability(below.cells.at(c, r)), probability(features.cells.at(c, r)));
+        exact.add(probability(below.cells.at(c, r)), probability(features.cells.at(c, r)));
       }
     }
     difference += std::abs(*rho(sums[i]) - *rho(exact)) / 299.0;

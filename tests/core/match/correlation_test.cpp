@@ -5,14 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/support/match_sums.hpp"
-
 namespace roadfix {
 namespace {
 
 MatchSums sums_of(const std::vector<double>& m, const std::vector<double>& l) {
   MatchSums s;
-  for (std::size_t i = 0; i < m.size(); ++i) testing::add_cell(s, m[i], l[i]);
+  for (std::size_t i = 0; i < m.size(); ++i) s.add(m[i], l[i]);
   return s;
 }
 

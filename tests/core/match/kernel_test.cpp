@@ -8,7 +8,6 @@
 #include "core/grid/resample.hpp"
 #include "core/match/kernel_vnni.hpp"
 #include "tests/support/ascii_map.hpp"
-#include "tests/support/match_sums.hpp"
 #include "tests/support/padded_cells.hpp"
 #include "tests/support/random_cells.hpp"
 
@@ -28,7 +27,7 @@ MatchSums scalar_sums(const CellArray& map, const FeatureMap& north_up, PlaneCel
       const Cell m = map.get(place.col + c - nadir_col, place.row + r - nadir_row);
       const Cell l = north_up.cells.at(c, r);
       if (!is_observed(m) || !is_observed(l)) continue;
-      testing::add_cell(s, probability(m), probability(l));
+      s.add(probability(m), probability(l));
     }
   }
   return s;

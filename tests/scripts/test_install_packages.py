@@ -1,0 +1,64 @@
+#!/usr/bin/python3
+"""What scripts/install-packages says meanwhile, with an apt that installs nothing."""
+import os
+import pty
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(__file__).resolve().parents[2] / "scripts" / "install-packages"
+APT = """#!/bin/sh
+case " $* " in
+  *" -qq "*) ;;
+  *" update "*) echo "Get:1 bookworm" ;;
+  *" --assume-no "*)
+    echo "0 upgraded, 2 newly installed, 0 to remove."
+    echo "Need to get 593 kB of archives."
+    echo "Abort."
+    exit 1 ;;
+  *) echo "Get:2 cmake" ;;
+esac
+case " $* " in *" install "*) echo "Unpacking cmake" ;; esac
+"""
+NOTHING = "#!/bin/sh\n"
+SUDO = """#!/bin/sh
+[ "$1" != -n ] || shift
+exec "$@"
+"""
+
+
+class Installation(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        for name, text in (("apt-get", APT), ("dpkg-query", NOTHING), ("sudo", SUDO)):
+            program = Path(folder.name, name)
+            program.write_text(text)
+            program.chmod(0o755)
+        self.environment = {**os.environ, "PATH": f"{folder.name}:{os.environ['PATH']}"}
+
+    def run_program(self, **streams):
+        return subprocess.run([str(PROGRAM), "build"], env=self.environment, stdin=subprocess.DEVNULL, timeout=60,
+                              check=True, **streams)
+
+    def test_tells_a_log_how_much_is_to_come_and_nothing_more(self):
+        done = self.run_program(capture_output=True, text=True)
+        self.assertEqual(done.stdout, "")
+        installing, *told = done.stderr.splitlines()
+        self.assertIn("installing g++ cmake", installing)
+        self.assertEqual(told, ["0 upgraded, 2 newly installed, 0 to remove.", "Need to get 593 kB of archives."])
+
+    def test_shows_a_terminal_what_apt_shows(self):
+        ours, terminal = pty.openpty()
+        done = self.run_program(stdout=subprocess.PIPE, stderr=terminal)
+        os.close(terminal)
+        shown = os.read(ours, 65536).decode()
+        os.close(ours)
+        self.assertEqual(done.stdout, b"")
+        for text in ("Get:1 bookworm", "Get:2 cmake", "Unpacking cmake"):
+            self.assertIn(text, shown)
+
+
+if __name__ == "__main__":
+    unittest.main()

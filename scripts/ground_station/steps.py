@@ -59,7 +59,9 @@ class NewestLine:
             while not self._changed.wait_for(lambda: self._newest is not None or self._ended, timeout=1.0):
                 pass  # without a limit Ctrl-C would not be heard everywhere
             if self._newest is None:
-                raise StopIteration
+                if not self._lines:
+                    raise StopIteration
+                self._newest = len(self._lines) - 1  # those behind the last picture: the flight ends with them
             *passed, line = self._lines[:self._newest + 1]
             del self._lines[:self._newest + 1]
             self._newest = None

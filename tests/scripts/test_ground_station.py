@@ -101,6 +101,13 @@ class Lines(unittest.TestCase):
     def test_that_wait_when_the_input_ends_are_still_given(self):
         self.assertEqual([line.number for line in NewestLine(io.StringIO("\n{}\n"))], [2])
 
+    def test_without_a_picture_behind_the_last_picture_are_given_when_the_input_ends(self):
+        lines = NewestLine(io.StringIO('{"image": "1"}\n{}\n{}\n'))
+        with lines._changed:
+            lines._changed.wait_for(lambda: lines._ended, timeout=10.0)
+        self.assertEqual([(line.number, [passed.number for passed in line.passed]) for line in lines],
+                         [(1, []), (3, [2])])
+
     def test_end_when_the_input_cannot_be_read_any_more(self):
         def broken():
             yield "{}"

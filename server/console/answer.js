@@ -1,6 +1,7 @@
 // The answer to the question where a picture was taken. It stands only for the picture, the numbers and the map that it
 // was asked with: when one of them is another, it stays to be read, as an old one.
 import { attempt, drawModes, LastQuestion, moveTo, request, reveal, showFix, showOld, showStatus } from './show.js';
+import { upload } from './upload.js';
 
 /// A browser gives no bytes of a file that was written anew since it was chosen.
 async function bytesOf(picture) {
@@ -11,9 +12,10 @@ async function bytesOf(picture) {
   }
 }
 
-/// Over a slow link it is the sending that takes long.
-function sizeText({ size }) {
-  return size > 300_000 ? `${(size / 1e6).toFixed(1)} MB are sent for it` : '';
+/// How far the question is.
+function showSent(output, sent, size) {
+  if (sent < size) showStatus(output, 'sending …', [`${Math.round(sent / 1000)} of ${Math.round(size / 1000)} kB are sent`]);
+  else showStatus(output, 'searching …', []);
 }
 
 export class Answer {
@@ -29,10 +31,12 @@ export class Answer {
   async ask(url, picture) {
     this.forget();
     const signal = this.#questions.next();
-    showStatus(this.output, 'searching …', [sizeText(picture)]);
+    showStatus(this.output, 'reading the picture …', []);
     await attempt(this.output, async () => {
       const body = await bytesOf(picture);
-      this.#fix = await request(url, { method: 'POST', body, headers: { 'Content-Type': picture.type }, signal });
+      const progress = (sent) => showSent(this.output, sent, body.byteLength);
+      progress(0);
+      this.#fix = await request(url, { method: 'POST', body, headers: { 'Content-Type': picture.type }, signal, progress }, upload);
       showFix(this.output, this.#fix, picture.name);
       this.#draw(this.#fix.status);
       const { pose } = this.#fix;

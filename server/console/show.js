@@ -10,8 +10,8 @@ function problemOfProxy({ status }) {
 }
 
 /// The JSON of an answer, never one that a cache kept; throws the problem (RFC 9457) of any other.
-export async function request(url, options) {
-  const answer = await fetch(url, { cache: 'no-cache', ...options });
+export async function request(url, options, send = fetch) {
+  const answer = await send(url, { cache: 'no-cache', ...options });
   const body = await answer.json().catch((error) => {
     throw error instanceof SyntaxError ? problemOfProxy(answer) : error;
   });

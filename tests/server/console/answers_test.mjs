@@ -1,6 +1,6 @@
 // What the page shows of its answers when the question is another one by then: node answers_test.mjs FOLDER/OF/THE/PAGE
 import assert from 'node:assert/strict';
-import { colours, drawn, GREEN, load, node, RED, run, service, view } from './page.mjs';
+import { colours, drawn, GREEN, load, node, RED, run, service, uploads, view } from './page.mjs';
 
 const { Answer } = await load('answer.js');
 const { Places } = await load('places.js');
@@ -50,6 +50,32 @@ await run({
     assert.ok(!output.revealed);
     await ask();
     assert.ok(output.revealed);
+  },
+  async 'it is said how much of a picture is sent, and no more of it once the question is another one'() {
+    let give;
+    service.answers = { '/fix': () => new Promise((later) => { give = later; }) };
+    const large = { name: 'a.png', type: 'image/png', arrayBuffer: async () => new ArrayBuffer(8_400_000) };
+    const asked = answer.ask('/fix', large);
+    await new Promise(setImmediate);
+    assert.match(output.textContent, /^sending …\n0 of 8400 kB/);
+    uploads.last.upload.onprogress({ loaded: 2_100_000 });
+    assert.match(output.textContent, /2100 of 8400 kB/);
+    uploads.last.upload.onload();
+    assert.match(output.textContent, /^searching/);
+    give(fix);
+    await asked;
+    assert.match(output.textContent, /^fix/);
+    answer.ask('/fix', large);
+    await new Promise(setImmediate);
+    answer.questionChanged();
+    answer.questionChanged();
+    uploads.last.upload.onprogress({ loaded: 2_100_000 });
+    assert.equal(output.textContent, '');
+  },
+  async 'a service that cannot be reached while a picture is sent is said to be so'() {
+    service.answers = {};
+    await answer.ask('/fix', picture('a.png'));
+    assert.match(output.textContent, /The service gives no answer/);
   },
   async 'a feature map takes no time to detect'() {
     service.answers = { '/fix': { ...fix, time_ms: { search: 7.4 } } };

@@ -49,12 +49,20 @@ json json_of(const LastView& view) {
           {"earlier", base64_encoded({reinterpret_cast<const std::uint8_t*>(earlier.data()), earlier.size()})}};
 }
 
+RecentFrames frames_of(const std::string& base64) {
+  const Base64Result decoded = base64_decoded(base64);
+  if (decoded.bad_byte) {
+    throw CorruptData("track-frames-corrupt",
+                      "the stored frames of a track are no base64: delete the track and begin a new one");
+  }
+  return RecentFrames::of_bytes(std::as_bytes(std::span(decoded.bytes)));
+}
+
 LastView view_of(const json& view) {
   if (view.is_null()) return {};
   // Programs from before compared no earlier view.
-  const Base64Result earlier = base64_decoded(view.value("earlier", std::string()));
   return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad"),
-          view.value("stands_still", false), RecentFrames::of_bytes(std::as_bytes(std::span(earlier.bytes)))};
+          view.value("stands_still", false), frames_of(view.value("earlier", std::string()))};
 }
 
 /// Throws where it is no whole number; get() would take any, and one beyond the range for anything.

@@ -85,6 +85,17 @@ TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
   }
 }
 
+TEST(TrackCounters, WithAnEarlierViewThatIsDamagedAreRefused) {
+  const nlohmann::json good = counters_json(flown());
+  const std::string whole = good["last_view"]["earlier"];
+  for (const std::string& text :
+       {"!" + whole, whole.substr(0, 9) + "!" + whole.substr(10), whole + "!", whole.substr(0, 8)}) {
+    nlohmann::json damaged = good;
+    damaged["last_view"]["earlier"] = text;
+    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-frames-corrupt") << text;
+  }
+}
+
 std::string answer_at(double lon_deg) {
   return nlohmann::json{{"sequence", 1},
                         {"time_us", 1},

@@ -7,6 +7,9 @@
 namespace roadfix {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr GridBox kNowhere{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+
 double central_meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 183.0; }
 
 /// Degrees; longitudes are counted from the central meridian of the zone.
@@ -14,18 +17,31 @@ struct NearBox {
   double south, north, west, east;
 };
 
-NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
+/// Of the box turned around the Earth.
+NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place, double turn_deg) {
   constexpr double kMarginDeg = 0.1;
   const double meridian = central_meridian_deg(zone);
   const GeoBox around = geo_box_around(zone, place);
   const double first = std::remainder(around.south_west.lon_deg - meridian, 360.0);
   const double last = first + around.north_east.lon_deg - around.south_west.lon_deg;
-  double west = std::remainder(box.south_west.lon_deg - meridian, 360.0);
-  if (west > last + kMarginDeg) west -= 360.0;  // it may reach the place around the Earth
+  const double west = std::remainder(box.south_west.lon_deg - meridian, 360.0) + turn_deg;
   const double east = west + box.north_east.lon_deg - box.south_west.lon_deg;
   return {std::max(box.south_west.lat_deg, around.south_west.lat_deg - kMarginDeg),
           std::min(box.north_east.lat_deg, around.north_east.lat_deg + kMarginDeg), std::max(west, first - kMarginDeg),
           std::min(east, last + kMarginDeg)};
+}
+
+GridBox on_plane(const UtmZone& zone, const NearBox& part) {
+  GridBox result = kNowhere;
+  if (!(part.south < part.north) || !(part.west < part.east)) return result;
+  // A parallel turns at the central meridian, a meridian at the equator.
+  for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
+    for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
+      const GridPoint p = zone.project({lat, central_meridian_deg(zone) + lon});
+      result = united(result, {p, p});
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -52,17 +68,10 @@ GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
 }
 
 GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  GridBox result = kNowhere;
   if (place.empty()) return result;
-  const NearBox part = near_place(zone, box, place);
-  if (!(part.south < part.north) || !(part.west < part.east)) return result;
-  // A parallel turns at the central meridian, a meridian at the equator.
-  for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
-    for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
-      const GridPoint p = zone.project({lat, central_meridian_deg(zone) + lon});
-      result = united(result, {p, p});
-    }
+  for (const double turn_deg : {0.0, -360.0}) {  // it may reach the place around the Earth, or from both sides
+    result = united(result, on_plane(zone, near_place(zone, box, place, turn_deg)));
   }
   return result;
 }

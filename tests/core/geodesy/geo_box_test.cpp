@@ -54,6 +54,20 @@ TEST(GridBoxAround, HoldsABoxAtTheMiddleOfALongSideOfThePlace) {
   expect_same(grid_box_around(zone, box, place), walked(zone, box));
 }
 
+TEST(GridBoxAround, HoldsAPlaceAtTheAntimeridianWhereTheBoxEndsThereOrGoesAroundTheEarth) {
+  const UtmZone fiji = zone_of(32760);
+  const GridPoint meridian = fiji.project({-17.0, 180.0});
+  const GridBox place = grown({meridian, meridian}, 20'000.0);
+  const GridBox around_the_earth = grid_box_around(fiji, {{-18.0, -180.0}, {-16.0, 180.0}}, place);
+  EXPECT_TRUE(around_the_earth.contains(place.min) && around_the_earth.contains(place.max));
+  const GridBox to_the_east = grid_box_around(fiji, {{-18.0, 179.0}, {-16.0, 180.0}}, place);
+  EXPECT_TRUE(to_the_east.contains(place.min));
+  EXPECT_NEAR(to_the_east.max.east_m, meridian.east_m, 1000.0) << "a meridian leans on the plane";
+  const GridBox from_the_west = grid_box_around(fiji, {{-18.0, -180.0}, {-16.0, -179.0}}, place);
+  EXPECT_TRUE(from_the_west.contains(place.max));
+  EXPECT_NEAR(from_the_west.min.east_m, meridian.east_m, 1000.0);
+}
+
 TEST(GridBoxAround, IsEmptyWhereTheBoxIsFarFromThePlaceOrThereIsNone) {
   const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
   EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 100.0}, {42.0, 120.0}}, city).empty());

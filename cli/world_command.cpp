@@ -10,6 +10,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
+#include "tiles/world/real_streets.hpp"
 #include "tiles/world/world.hpp"
 
 namespace roadfix::cli {
@@ -27,7 +28,11 @@ void render(const WorldArguments& options) {
   settings.width_m = options.size_km[0] * 1000.0;
   settings.height_m = options.size_km[1] * 1000.0;
   require_name(options.folder);
-  require_apart({std::filesystem::path(options.folder) / "roads.geojson"}, {settings.roads});
+  const std::filesystem::path truth = std::filesystem::path(options.folder) / "roads.geojson";
+  require_apart({truth}, {settings.roads});
+  if (std::filesystem::is_directory(settings.roads)) {
+    for (const std::string& file : world::road_files(settings.roads)) require_apart({truth}, {file});
+  }
   if (!options.centre.empty()) settings.centre = LatLon{options.centre[0], options.centre[1]};
   const std::stop_token stop = stop_on_signals();
   const world::WorldReport report = [&] {
@@ -77,8 +82,11 @@ void add_world_command(CLI::App& app) {
       ->expected(2)
       ->type_name("LAT,LON");
   command
-      ->add_option("--roads", settings.roads, "Render the roads of this file (any OGR format) instead of invented ones")
-      ->type_name("FILE");
+      ->add_option(
+          "--roads", settings.roads,
+          "Render these roads instead of invented ones: a file of any OGR format, or a folder or ZIP archive of "
+          "such files, vector tiles too")
+      ->type_name("SOURCE");
   command->add_option("--collapsed", settings.collapsed_share, "Share of the buildings that fall")
       ->capture_default_str();
   command->add_flag("--varied", settings.varied, "Choose sun, air, season and camera at random, for training data");

@@ -39,6 +39,11 @@ TEST(WorldCommand, KeepsTheRoadsThatItIsGiven) {
   const ProgramResult world = run_program(folder.path(), "world " + folder.path().string() + " --roads " + roads);
   EXPECT_THAT(world.err, HasSubstr("target-is-source"));
   EXPECT_EQ(testing::text_of(roads), "mine");
+
+  const ProgramResult of_folder =
+      run_program(folder.path(), "world " + folder.path().string() + " --roads " + folder.path().string());
+  EXPECT_THAT(of_folder.err, HasSubstr("target-is-source"));
+  EXPECT_EQ(testing::text_of(roads), "mine");
 }
 
 TEST(WorldCommand, RendersALandThatItKnowsOnly) {

@@ -7,6 +7,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/sources/road_lines.hpp"
+#include "tiles/sources/source_files.hpp"
 #include "tiles/world/street_network.hpp"
 
 namespace roadfix::world {
@@ -46,9 +47,20 @@ VectorOptions around(const Placement& placement, const cv::Rect2d& wanted) {
 
 }  // namespace
 
-std::vector<Street> read_streets(const std::string& path, const Placement& placement) {
+std::vector<std::string> road_files(const std::string& source) {
+  SourceFiles files = find_source(source, SourceMeaning::kRoads);
+  const bool is_one_file = files.paths == std::vector{source};  // it may hold lines beside pixels
+  if (files.kind == SourceKind::kRoadVectors || is_one_file) return std::move(files.paths);
+  throw InvalidInput("world-roads-are-pictures",
+                     fmt::format("{}: holds pictures ({} is one), and streets are made of lines: name a file of road "
+                                 "lines, or a folder of such files alone",
+                                 source, files.paths.front()));
+}
+
+std::vector<Street> read_streets(const std::string& source, const Placement& placement) {
   const cv::Rect2d wanted = picture(placement, kSurroundingsM);
-  const RoadNetwork network = read_road_network({path}, around(placement, wanted), RoadRules(), placement.zone);
+  const RoadNetwork network =
+      read_road_network(road_files(source), around(placement, wanted), RoadRules(), placement.zone);
   std::vector<Street> streets;
   for (const RoadLine& road : network.lines) {
     Polyline line = plan_line(network, road, placement);
@@ -60,8 +72,8 @@ std::vector<Street> read_streets(const std::string& path, const Placement& place
     throw InvalidInput(
         "world-without-roads",
         fmt::format("{}: no road of it lies in the picture around the chosen centre; name a place inside "
-                    "the file's extent with --centre",
-                    path));
+                    "its extent with --centre",
+                    source));
   }
   sort_by_width(streets);
   return streets;

@@ -18,9 +18,10 @@ struct WorldSettings {
   double width_m = 2000.0;
   double height_m = 2000.0;
   double gsd_m = 0.5;
-  /// Of the pictures; by default a town in south-eastern Anatolia, or the middle of `roads`.
+  /// Of the pictures; by default a town in south-eastern Anatolia, or the middle of `roads` (of several
+  /// files, of the first).
   std::optional<LatLon> centre;
-  /// File of road lines to render instead of invented ones; empty to invent them.
+  /// File, folder or ZIP archive of road lines to render instead of invented ones; empty to invent them.
   std::string roads;
   double collapsed_share = 0.1;  ///< of the buildings
   bool varied = false;           ///< sun, air, season and camera drawn from the seed instead of the two usual days

@@ -26,7 +26,7 @@ enum Stream : std::uint64_t { kStreets = 1, kBuildings, kTrees, kTraffic, kDisas
 
 LatLon centre_of(const WorldSettings& settings) {
   if (settings.centre) return *settings.centre;
-  return settings.roads.empty() ? kDefaultCentre : centre_of_roads({settings.roads}, {});
+  return settings.roads.empty() ? kDefaultCentre : centre_of_roads(road_files(settings.roads), {});
 }
 
 Plan empty_plan(const Placement& placement) {

@@ -173,6 +173,17 @@ TEST(World, CanBeDrawnAroundRealRoads) {
   EXPECT_NEAR(report.road_km, 0.66, 0.02);
   EXPECT_THAT(bytes_of(folder / "world" / "roads.geojson"), ::testing::HasSubstr(R"("highway":"primary")"));
 
+  settings.roads = folder / "roads";
+  std::filesystem::create_directory(settings.roads);
+  std::filesystem::copy(roads, folder / "roads" / "first.geojson");
+  std::ofstream(folder / "roads" / "second.geojson") << R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","properties":{"highway":"residential"},
+     "geometry":{"type":"LineString","coordinates":[[11.966,57.69],[11.966,57.71]]}}]})";
+  EXPECT_EQ(render(settings, folder / "several").road_lines, 3) << "of both files";
+  std::ofstream(folder / "roads" / "picture.png") << "one";
+  EXPECT_EQ(failure(settings, folder / "elsewhere"), "world-roads-are-pictures");
+
+  settings.roads = roads;
   settings.centre = LatLon{57.80, 11.965};
   EXPECT_EQ(failure(settings, folder / "elsewhere"), "world-without-roads");
   EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere"));

@@ -7,12 +7,22 @@ Writes OUT/images and OUT/masks. Each seed gives two pictures of one place, on t
 import argparse
 import json
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
 import cv2
 import numpy as np
 from osgeo import gdal, osr
+
+
+def with_centre_joined(words):
+    """argparse would take -34.9,-56.2 for an option, unless an equals sign joins it to its own."""
+    words = list(words)
+    if "--centre" in words[:-1]:
+        at = words.index("--centre")
+        words[at:at + 2] = [f"--centre={words[at + 1]}"]
+    return words
 
 
 def arguments():
@@ -24,9 +34,9 @@ def arguments():
     parser.add_argument("--land", choices=("town", "country"), default="town", help="what is rendered (%(default)s)")
     parser.add_argument("--size-km", default="1x1")
     parser.add_argument("--gsd", default=0.5, type=float)
-    parser.add_argument("--roads", default="", help="OpenStreetMap extract whose streets are rendered instead of invented ones")
-    parser.add_argument("--centre", default="", metavar="LAT,LON", help="of the streets to render; south of the equator: --centre=-34.9,-56.2")
-    return parser.parse_args()
+    parser.add_argument("--roads", default="", help="file or folder whose streets are rendered instead of invented ones")
+    parser.add_argument("--centre", default="", metavar="LAT,LON", help="of the streets to render")
+    return parser.parse_args(with_centre_joined(sys.argv[1:]))
 
 
 def render(options, seed, folder):

@@ -1,6 +1,7 @@
 #include "cli/bench/roads_method.hpp"
 
 #include <chrono>
+#include <optional>
 #include <vector>
 
 #include "cli/bench/agreement_picture.hpp"
@@ -8,9 +9,13 @@
 #include "core/detect/frame.hpp"
 #include "core/grid/combine.hpp"
 #include "core/locate/match_poses.hpp"
+#include "core/locate/told_frames.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix::bench {
 namespace {
+
+constexpr const char* kRepeated = "frames-repeated";
 
 class RoadsMethod : public Method {
  public:
@@ -20,12 +25,16 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<PlacedFeatures> parts = parts_of(query);
-    const FeatureMap features = together(parts);
+    const std::optional<FeatureMap> features = together(parts);
+    Answer answer;
+    if (!features) {
+      answer.reason = kRepeated;
+      return answer;
+    }
     FixOptions options = options_.fix;
     options.scale_range = query.scale_range;
     if (parts.size() > 1) options.own_frame = parts.front().features;
-    const Fix fix = locate(map_, features, query.prior, options);
-    Answer answer;
+    const Fix fix = locate(map_, *features, query.prior, options);
     answer.status = fix.status;
     answer.reason = fix.reason;
     answer.probability = fix.probability;
@@ -35,12 +44,14 @@ class RoadsMethod : public Method {
       answer.best = answer.mode->pose;
     }
     answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    if (query.truth) answer.rho_at_truth = match(map_, features, std::span(&*query.truth, 1)).front().rho;
+    if (query.truth) answer.rho_at_truth = match(map_, *features, std::span(&*query.truth, 1)).front().rho;
     return answer;
   }
 
   cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const override {
-    return agreement_picture(map_, imagery, query, together(parts_of(query)), answer);
+    const std::vector<PlacedFeatures> parts = parts_of(query);
+    const FeatureMap features = parts.size() == 1 ? parts.front().features : combined(parts, cli::kMaxCells);
+    return agreement_picture(map_, imagery, query, features, answer);
   }
 
  private:
@@ -55,8 +66,15 @@ class RoadsMethod : public Method {
     return parts;
   }
 
-  static FeatureMap together(const std::vector<PlacedFeatures>& parts) {
-    return parts.size() == 1 ? parts.front().features : combined(parts, cli::kMaxCells);
+  /// As `fix` takes several frames; nullopt where it refuses them since their camera had stopped.
+  static std::optional<FeatureMap> together(const std::vector<PlacedFeatures>& parts) {
+    if (parts.size() == 1) return parts.front().features;
+    try {
+      return laid_together(parts, cli::kMaxCells);
+    } catch (const InvalidInput& error) {
+      if (error.code() != kRepeated) throw;
+      return std::nullopt;
+    }
   }
 
   const MapView& map_;

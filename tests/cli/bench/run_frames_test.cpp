@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/detect/frame_camera.hpp"
+#include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
 #include "tests/cli/bench/bench_run.hpp"
 
@@ -18,13 +19,15 @@ using ::testing::ThrowsMessage;
 
 using BenchRunOfFrames = BenchRun;
 
-TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
+/// Three frames from above the town, whose picture begins at (400000, 4000000), each 70 m east of the one before; or
+/// the first of them at all three places, of a camera that has stopped.
+void take_flight(const std::filesystem::path& folder, bool camera_has_stopped = false) {
   const UtmZone zone = UtmZone::from_epsg(32634).value();
   const cv::Mat picture = cv::imread(folder / "town.png");
   std::ofstream csv(folder / "flight.csv");
   csv << std::setprecision(10) << "sequence,file,lat,lon,heading_deg,gsd_m\n";
   for (int i = 0; i < 3; ++i) {
-    cv::Mat frame = picture(cv::Rect(200 + 70 * i, 300, 110, 110)).clone();
+    cv::Mat frame = picture(cv::Rect(200 + (camera_has_stopped ? 0 : 70 * i), 300, 110, 110)).clone();
     if (i == 1) cv::rotate(frame, frame, cv::ROTATE_90_CLOCKWISE);  // its forward edge looks west
     const std::string name = "flight" + std::to_string(i) + ".png";
     cv::imwrite(folder / name, frame);
@@ -33,11 +36,23 @@ TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
     csv << "a," << name << ',' << at.lat_deg << ',' << at.lon_deg << ','
         << zone.true_from_grid(Angle::degrees(i == 1 ? -90.0 : 0.0), centre).degrees() << ",1\n";
   }
-  csv.close();
+}
+
+TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
+  take_flight(folder.path());
   const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
   EXPECT_EQ(results.at(0).query_set, "flight.csv 3 together");
-  EXPECT_LT(*results[0].outcomes.at(2).error_m, 3.0);
-  EXPECT_LT(*results[0].outcomes.at(2).heading_error_deg, 1.0);
+  const Outcome& outcome = results[0].outcomes.at(2);
+  EXPECT_LT(*outcome.error_m, 3.0);
+  EXPECT_LT(*outcome.heading_error_deg, 1.0);
+  EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 70.0 * kToldOffsetShare) << "of offsets that somebody told";
+}
+
+TEST_F(BenchRunOfFrames, GivesNoFixWhereTheCameraHasStopped) {
+  take_flight(folder.path(), true);
+  const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
+  EXPECT_EQ(results.at(0).outcomes.at(2).answer.reason, "frames-repeated");
+  EXPECT_EQ(results[0].outcomes[2].answer.status, FixStatus::kNoFix);
 }
 
 /// What a camera above a place of the plane takes of the town, whose picture begins at (400000, 4000000).

@@ -15,7 +15,6 @@ std::vector<std::string> road_files(const std::string& source);
 
 /// Roads that a camera sees (rules of tiles/sources) and that touch the picture or its surroundings. Throws NotFound or
 /// InvalidInput as tiles/sources does, and InvalidInput "world-without-roads" when none lies in the picture.
-/// `source` is for messages.
 std::vector<Street> read_streets(const std::string& source, const Placement& placement);
 
 }  // namespace roadfix::world

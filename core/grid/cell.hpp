@@ -17,6 +17,9 @@ inline constexpr Cell kUnobserved = 255;
 
 constexpr bool is_observed(Cell cell) { return cell != kUnobserved; }
 
+/// More likely road than not.
+constexpr bool is_road(Cell cell) { return is_observed(cell) && cell > kRoad / 2; }
+
 /// In [0, 1]. The cell must be observed.
 constexpr double probability(Cell cell) {
   assert(is_observed(cell));

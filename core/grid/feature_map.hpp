@@ -1,6 +1,8 @@
 // What a UAV sees: a metric grid of road probability in the body frame.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/grid/cell_array.hpp"
@@ -21,6 +23,11 @@ struct FeatureMap {
     const GridGeometry::CellPosition centre{cells.cols() / 2.0, cells.rows() / 2.0};
     return {std::move(cells), cell_m, centre, 0.0};
   }
+
+  /// The longer side.
+  double side_m() const { return cell_m * std::max(cells.cols(), cells.rows()); }
+  /// From the middle to the nadir, in cells.
+  double off_nadir_cells() const { return std::hypot(nadir.col - cells.cols() / 2.0, nadir.row - cells.rows() / 2.0); }
 
   friend bool operator==(const FeatureMap&, const FeatureMap&) = default;
 };

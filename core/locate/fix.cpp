@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/grid/cell_moments.hpp"
 #include "core/grid/resample.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
@@ -18,20 +19,6 @@
 
 namespace roadfix {
 namespace {
-
-/// Variance of the observed cells; 0 when none is.
-double variance_of(const CellArray& cells) {
-  double sum = 0.0;
-  double squares = 0.0;
-  double n = 0.0;
-  for (const Cell cell : cells.cells()) {
-    if (!is_observed(cell)) continue;
-    sum += probability(cell);
-    squares += probability(cell) * probability(cell);
-    n += 1.0;
-  }
-  return n > 0.0 ? squares / n - (sum / n) * (sum / n) : 0.0;
-}
 
 // On less, one place always fits far better than the others, and what tells chance from more than chance no longer
 // holds.
@@ -60,7 +47,7 @@ std::optional<Refusal> refusal_of(const FeatureMap& features) {
                     "check its scale (metres per pixel or cell), fly higher, or combine several frames",
                     ground_m2, kMinGroundM2)};
   }
-  if (variance_of(features.cells) < kMinVariance) {
+  if (moments_of(features.cells).variance() < kMinVariance) {
     return Refusal{"too-few-roads",
                    "the feature map shows hardly any road, or road everywhere: there is nothing to match"};
   }
@@ -69,8 +56,7 @@ std::optional<Refusal> refusal_of(const FeatureMap& features) {
 
 bool shows_less_than_a_road_across(const FeatureMap& features) {
   const double cell_m2 = features.cell_m * features.cell_m;
-  const auto roads = std::ranges::count_if(features.cells.cells(),
-                                           [](Cell cell) { return is_observed(cell) && probability(cell) > 0.5; });
+  const auto roads = std::ranges::count_if(features.cells.cells(), is_road);
   const double across_m = std::sqrt(cell_m2 * static_cast<double>(features.cells.observed_count()));
   return cell_m2 * static_cast<double>(roads) < kRoadWidthM * across_m;
 }

@@ -28,10 +28,7 @@ constexpr double kMinShareInCommon = 0.25;
 constexpr double kStillCorrelation = 0.75;
 constexpr double kStillMargin = 0.3;  // by which it correlates better so than as the odometry tells
 
-bool shows_road(const FeatureMap& features) {
-  return std::ranges::any_of(features.cells.cells(),
-                             [](Cell cell) { return is_observed(cell) && probability(cell) > 0.5; });
-}
+bool shows_road(const FeatureMap& features) { return std::ranges::any_of(features.cells.cells(), is_road); }
 
 std::uint64_t digest_of(const FeatureMap& features) {
   const auto cells = features.cells.cells();

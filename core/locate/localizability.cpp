@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grid/cell_moments.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -24,13 +25,6 @@ double cell_for(const MapView& map, double footprint_m) {
 /// Cells enough for the footprint at any error of scale and tilt.
 RoadGrid around(const MapView& map, GridPoint centre, double footprint_m) {
   return map.read(GridGeometry::covering(grown({centre, centre}, footprint_m), cell_for(map, footprint_m)));
-}
-
-double road_share(const CellArray& cells) {
-  double roads = 0.0;
-  for (const Cell cell : cells.cells()) roads += is_observed(cell) ? probability(cell) : 0.0;
-  const auto observed = static_cast<double>(cells.observed_count());
-  return observed > 0.0 ? roads / observed : 0.0;
 }
 
 /// Within two standard deviations, or four cells where those are more.
@@ -57,7 +51,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   prior.circle = GeoCircle{query.position, query.radius_m};
   const Fix fix = locate(map, seen, prior, query.fix);
   Localizability result;
-  result.road_share = road_share(as_mapped.cells);
+  result.road_share = moments_of(as_mapped.cells).mean();
   result.observed_share =
       static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());
   const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map.zone, cell_m);

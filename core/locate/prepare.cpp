@@ -27,36 +27,31 @@ void require_usable(const FeatureMap& features) {
                                    "metres above 0",
                                    features.cell_m));
   }
-  const double side_m = features.cell_m * std::max(features.cells.cols(), features.cells.rows());
-  if (side_m > kLargestSideM) {
+  if (features.side_m() > kLargestSideM) {
     throw InvalidInput("feature-map-too-large",
                        fmt::format("the feature map spans {:.6g} m, more than {:.0f} m: check its cell size ({} m), or "
                                    "of several frames how far apart they are",
-                                   side_m, kLargestSideM, features.cell_m));
+                                   features.side_m(), kLargestSideM, features.cell_m));
   }
 }
 
-double off_nadir(const FeatureMap& features) {
-  return std::hypot(features.nadir.col - features.cells.cols() / 2.0, features.nadir.row - features.cells.rows() / 2.0);
-}
-
 bool is_near_nadir(const FeatureMap& features) {
-  return off_nadir(features) <= kMaxSidesOff * std::max(features.cells.cols(), features.cells.rows());
+  return features.off_nadir_cells() <= kMaxSidesOff * std::max(features.cells.cols(), features.cells.rows());
 }
 
 [[noreturn]] void refuse_nadir(const FeatureMap& features) {
-  throw InvalidInput(
-      "nadir-out-of-range",
-      fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
-                  "{} cells: check nadir_col and nadir_row, at most {:.0f} times the longer side is "
-                  "allowed, and {} cells of the map to the farthest corner",
-                  off_nadir(features), features.cells.cols(), features.cells.rows(), kMaxSidesOff, kMaxCellsAcross));
+  throw InvalidInput("nadir-out-of-range",
+                     fmt::format("the point below the UAV lies {:.6g} cells from the middle of its feature map of {} x "
+                                 "{} cells: check nadir_col and nadir_row, at most {:.0f} times the longer side is "
+                                 "allowed, and {} cells of the map to the farthest corner",
+                                 features.off_nadir_cells(), features.cells.cols(), features.cells.rows(), kMaxSidesOff,
+                                 kMaxCellsAcross));
 }
 
 /// The map is read as far around a pose as the feature map lies from its nadir. Of a small one far off that would be
 /// gigabytes.
 void require_within_reach(const FeatureMap& features, double cell_m) {
-  const double reach = off_nadir(features) + 0.5 * std::hypot(features.cells.cols(), features.cells.rows());
+  const double reach = features.off_nadir_cells() + 0.5 * std::hypot(features.cells.cols(), features.cells.rows());
   if (reach > kMaxCellsAcross * cell_m / features.cell_m) refuse_nadir(features);
 }
 
@@ -99,7 +94,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& given) {
   const FeatureMap features = cropped_to_observed(given);
   double cell_m = map.cell_m;
   while (2.0 * cell_m <= 1.01 * features.cell_m) cell_m *= 2.0;
-  const double cells_across = features.cell_m * std::max(features.cells.cols(), features.cells.rows()) / cell_m;
+  const double cells_across = features.side_m() / cell_m;
   if (cells_across > kMaxCellsAcross) {
     throw InvalidInput("feature-map-too-large",
                        fmt::format("the feature map spans {:.0f} cells of the map, more than {}: give a smaller window",

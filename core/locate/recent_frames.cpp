@@ -1,7 +1,6 @@
 #include "core/locate/recent_frames.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -18,27 +17,19 @@ using Frame = RecentFrames::Frame;
 constexpr std::uint64_t kMagic = 0x3130'4646'4652ULL;  // "RFFF01"
 constexpr double kMaxCombinedCells = 16e6;             // more than frames make that may be kept
 
-std::array<double, 2> size_m(const FeatureMap& features) {
-  return {features.cell_m * features.cells.cols(), features.cell_m * features.cells.rows()};
-}
-
-double longer_side_m(const FeatureMap& features) { return std::ranges::max(size_m(features)); }
-double shorter_side_m(const FeatureMap& features) { return std::ranges::min(size_m(features)); }
-
 double slip_m(const Frame& frame) {
-  const double arm = 0.5 * longer_side_m(frame.placed.features);
+  const double arm = 0.5 * frame.placed.features.side_m();
   return std::sqrt(frame.position_m2 + arm * arm * frame.turn_rad2);
 }
 
 bool is_near_enough(const Frame& frame) {
   return slip_m(frame) <= RecentFrames::kMaxSlipM &&
-         distance_m(frame.placed.offset) <= RecentFrames::kMaxSides * longer_side_m(frame.placed.features);
+         distance_m(frame.placed.offset) <= RecentFrames::kMaxSides * frame.placed.features.side_m();
 }
 
 bool is_small_enough(const FeatureMap& features) {
-  const CellArray& cells = features.cells;
-  const double off = std::hypot(features.nadir.col - cells.cols() / 2.0, features.nadir.row - cells.rows() / 2.0);
-  return std::max(cells.cols(), cells.rows()) <= RecentFrames::kMaxAcross && off <= RecentFrames::kMaxAcross;
+  return std::max(features.cells.cols(), features.cells.rows()) <= RecentFrames::kMaxAcross &&
+         features.off_nadir_cells() <= RecentFrames::kMaxAcross;
 }
 
 /// The same place from where the vehicle is after `step`.
@@ -125,7 +116,7 @@ void RecentFrames::move(const Odometry& odometry, const OdometryCovariance& cova
 void RecentFrames::keep(const FeatureMap& features) {
   if (!is_small_enough(features)) return;
   if (!frames_.empty() && frames_.front().placed.features.cell_m != features.cell_m) frames_.clear();
-  const double apart_m = kApartShare * shorter_side_m(features);
+  const double apart_m = kApartShare * features.cell_m * std::min(features.cells.cols(), features.cells.rows());
   const auto shows_the_same = [&](const Frame& kept) { return distance_m(kept.placed.offset) < apart_m; };
   if (std::ranges::any_of(frames_, shows_the_same)) return;
   frames_.push_back({{features, {}}, 0.0, 0.0});

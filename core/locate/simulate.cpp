@@ -21,8 +21,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using CellPosition = GridGeometry::CellPosition;
 
-bool is_road(Cell cell) { return is_observed(cell) && cell > kRoad / 2; }
-
 std::ptrdiff_t road_cells(const CellArray& cells) { return std::ranges::count_if(cells.cells(), is_road); }
 
 /// Calls `visit(cell)` for each observed cell within `radius` cells of the segment a-b.

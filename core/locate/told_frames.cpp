@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/grid/cell_moments.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/units/error.hpp"
@@ -12,20 +13,9 @@
 namespace roadfix {
 namespace {
 
-/// Sum of squared deviations of what the search compares.
+/// How much of what the search compares can tell places apart.
 double evidence_of(const FeatureMap& features) {
-  const FeatureMap compared = compared_cells(features);
-  double n = 0.0;
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const Cell cell : compared.cells.cells()) {
-    if (!is_observed(cell)) continue;
-    const double value = probability(cell);
-    n += 1.0;
-    sum += value;
-    squares += value * value;
-  }
-  return n > 0.0 ? squares - sum * sum / n : 0.0;
+  return moments_of(compared_cells(features).cells).squared_deviations();
 }
 
 /// How far from the reference what tells its place was seen from, in the mean.

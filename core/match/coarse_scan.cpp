@@ -10,6 +10,7 @@
 #include <span>
 #include <tuple>
 
+#include "core/grid/cell_moments.hpp"
 #include "core/grid/feature_rotator.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/scan_planes.hpp"
@@ -34,7 +35,7 @@ class Scan {
         deadline_(deadline),
         map_(map),
         full_cells_(static_cast<double>(features.cells.observed_count())),
-        feature_mean_(mean_of(features.cells)),
+        feature_mean_(moments_of(features.cells).mean()),
         tile_scan_(map, request) {
     assert(footprint_reach(features) <= map.reach());
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/grid/cell_moments.hpp"
 #include "core/match/scan_planes.hpp"
 
 namespace roadfix {
@@ -14,7 +15,8 @@ constexpr int kNeighbours = 2;  // peaks are told by both sides of a position
 
 }  // namespace
 
-ScanMap::ScanMap(const RoadGrid& map, int reach, int block) : ScanMap(map, mean_of(map.cells), reach, block) {}
+ScanMap::ScanMap(const RoadGrid& map, int reach, int block)
+    : ScanMap(map, moments_of(map.cells).mean(), reach, block) {}
 
 ScanMap::ScanMap(const RoadGrid& map, double mean, int reach, int block)
     : ScanMap(map, values_of(map.cells, mean), block_sums(map.cells, mean, block, 0), reach, block) {}

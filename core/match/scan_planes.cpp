@@ -21,17 +21,6 @@ std::array<float, 256> value_table(double mean) {
 
 }  // namespace
 
-double mean_of(const CellArray& cells) {
-  double sum = 0.0;
-  std::int64_t count = 0;
-  for (const Cell cell : cells.cells()) {
-    if (!is_observed(cell)) continue;
-    sum += probability(cell);
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
 FloatPlane values_of(const CellArray& cells, double mean) {
   const std::array<float, 256> value = value_table(mean);
   FloatPlane plane(cells.cols(), cells.rows());

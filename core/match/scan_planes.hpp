@@ -9,9 +9,6 @@
 
 namespace roadfix {
 
-/// The mean of the observed cells; 0 where there is none.
-double mean_of(const CellArray& cells);
-
 /// What is observed as its value less a mean, 0 elsewhere.
 FloatPlane values_of(const CellArray& cells, double mean);
 

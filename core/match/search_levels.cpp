@@ -64,20 +64,16 @@ double side_seen_m(const FeatureMap& features) {
 
 /// From the nadir, about which headings turn the footprint, to what lies farthest along its longer side; for a nadir
 /// within the footprint that of one in its middle.
-double radius_of(const FeatureMap& features, double side_m) {
-  const double off_m = features.cell_m * std::hypot(features.nadir.col - features.cells.cols() / 2.0,
-                                                    features.nadir.row - features.cells.rows() / 2.0);
-  return std::max(0.5 * side_m, off_m);
+double radius_of(const FeatureMap& features) {
+  return std::max(0.5 * features.side_m(), features.cell_m * features.off_nadir_cells());
 }
 
 }  // namespace
 
 SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const FeatureMap& features,
                            const PoseRegion& region, const SearchOptions& options)
-    : region_(region),
-      side_m_(features.cell_m * std::max(features.cells.cols(), features.cells.rows())),
-      seen_m_(side_seen_m(features)) {
-  const double radius_m = radius_of(features, side_m_);
+    : region_(region), side_m_(features.side_m()), seen_m_(side_seen_m(features)) {
+  const double radius_m = radius_of(features);
   const int sizes = Scales::for_footprint(radius_m, kCoarsestCellM, options.scale_range).count();
   const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region.area_km2(), sizes);
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);

@@ -108,7 +108,6 @@ FeatureMap observed_at(const RoadGrid& map, const GridPose& pose, int cols, int 
                        const DetectorNoise& noise, std::mt19937_64& random) {
   FeatureMap features = cut_out(map, pose, cols, rows, cell_m);
   CellArray& cells = features.cells;
-  const auto is_road = [](Cell cell) { return is_observed(cell) && cell > 127; };
   const auto road_cells = static_cast<double>(std::ranges::count_if(cells.cells(), is_road));
   const double patch = 30.0 / cell_m;
   const double patches = noise.erase * cols * rows / (patch * patch);

@@ -12,6 +12,10 @@
 
 namespace roadfix {
 
+/// The region that a probability speaks of: the ellipse of so many standard deviations about the best mode. It holds
+/// 99.97 % of a normal distribution, so that confidences up to 0.999 can be asked for.
+inline constexpr double kRegionSigmas = 4.0;
+
 struct CountedFigure {
   std::string_view name;  ///< in calibration files
   double SearchFigures::*value;

@@ -18,6 +18,14 @@ PositionCovariance position_covariance(const MapView& map, GridPoint at, const P
   return {covariance[0][0] + registration2, covariance[0][1], covariance[1][1] + registration2};
 }
 
+double squared_mahalanobis(GridPoint mean, GridPoint point, const PositionCovariance& covariance) {
+  const auto [east2, east_north, north2] = covariance;
+  const double east = point.east_m - mean.east_m;
+  const double north = point.north_m - mean.north_m;
+  return (north2 * east * east - 2.0 * east_north * east * north + east2 * north * north) /
+         (east2 * north2 - east_north * east_north);
+}
+
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance) {
   const auto [east2, east_north, north2] = position_covariance(map, at, covariance);
   const double mean = 0.5 * (east2 + north2);

@@ -31,6 +31,9 @@ PositionCovariance position_covariance(const std::array<double, 2>& variances, A
 /// map's sources on both axes.
 PositionCovariance position_covariance(const MapView& map, GridPoint at, const PoseCovariance& covariance);
 
+/// Squared Mahalanobis distance of a point from a mean.
+double squared_mahalanobis(GridPoint mean, GridPoint point, const PositionCovariance& covariance);
+
 /// `at` is where the match placed the vehicle, `covariance` (m^2, rad^2) how uncertain the match alone leaves that. The
 /// registration error of the map's sources is added to both axes.
 Ellipse ellipse_of(const MapView& map, GridPoint at, const PoseCovariance& covariance);

@@ -6,60 +6,18 @@
 #include <cmath>
 #include <utility>
 
-#include "core/grid/cell_moments.hpp"
 #include "core/grid/resample.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/ellipse.hpp"
+#include "core/locate/footprint_refusal.hpp"
 #include "core/locate/match_poses.hpp"
+#include "core/locate/nearby_place.hpp"
 #include "core/locate/prepare.hpp"
-#include "core/locate/search_figures.hpp"
-#include "core/match/score.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
-
-// On less, one place always fits far better than the others, and what tells chance from more than chance no longer
-// holds.
-constexpr double kMinGroundM2 = 16.0 * kSampleM2;
-
-constexpr double kOnePlaceM = 25.0;  // places farther apart are two, however badly either is known
-
-struct Refusal {
-  const char* reason;
-  std::string explanation;
-};
-
-/// nullopt where there is something to search for, as far as the feature map alone tells.
-std::optional<Refusal> refusal_of(const FeatureMap& features) {
-  const double ground_m2 = features.cell_m * features.cell_m * static_cast<double>(features.cells.observed_count());
-  if (ground_m2 == 0.0) {
-    return Refusal{
-        "footprint-unobserved",
-        "no cell of the feature map was observed, or only a corner far from the UAV: the frame shows no ground to "
-        "match"};
-  }
-  if (ground_m2 < kMinGroundM2) {
-    return Refusal{
-        "footprint-too-small",
-        fmt::format("the frame shows {:.0f} m2 of ground, and at least {:.0f} m2 are needed to tell places apart: "
-                    "check its scale (metres per pixel or cell), fly higher, or combine several frames",
-                    ground_m2, kMinGroundM2)};
-  }
-  if (moments_of(features.cells).variance() < kMinVariance) {
-    return Refusal{"too-few-roads",
-                   "the feature map shows hardly any road, or road everywhere: there is nothing to match"};
-  }
-  return std::nullopt;
-}
-
-bool shows_less_than_a_road_across(const FeatureMap& features) {
-  const double cell_m2 = features.cell_m * features.cell_m;
-  const auto roads = std::ranges::count_if(features.cells.cells(), is_road);
-  const double across_m = std::sqrt(cell_m2 * static_cast<double>(features.cells.observed_count()));
-  return cell_m2 * static_cast<double>(roads) < kRoadWidthM * across_m;
-}
 
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
                       const Calibration& calibration) {
@@ -130,36 +88,38 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   return result;
 }
 
-/// Whether a position lies beyond the region of the mode that a probability speaks of.
-bool is_beyond(const MapView& map, const Calibration& calibration, double nadir_sigma_m, const SearchMode& mode,
-               GridPoint position) {
-  const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
-  const PositionCovariance told = position_covariance(map, mode.pose.position, mode.covariance);
-  const double nadir2 = nadir_sigma_m * nadir_sigma_m;
-  const double east2 = scale2 * told.east_east + nadir2;
-  const double north2 = scale2 * told.north_north + nadir2;
-  const double both = scale2 * told.east_north;
-  const double east = position.east_m - mode.pose.position.east_m;
-  const double north = position.north_m - mode.pose.position.north_m;
-  const double squared =
-      (north2 * east * east - 2.0 * both * east * north + east2 * north * north) / (east2 * north2 - both * both);
-  return squared > kRegionSigmas * kRegionSigmas;
+Fix refused(const MapView& map, FootprintRefusal refusal) {
+  Fix fix;
+  fix.map_name = map.name;
+  fix.map_version = map.version;
+  fix.reason = refusal.reason;
+  fix.explanation = std::move(refusal.explanation);
+  return fix;
 }
 
-/// Another peak that the region of the best mode leaves out is a place of its own, however near it is; so is one that
-/// no operator would take for the same, however wide the region.
-void count_nearby(const MapView& map, const Calibration& calibration, double nadir_sigma_m, SearchResult& found) {
-  if (!found.nearby) return;
-  const SearchMode& nearby = *found.nearby;
-  const SearchMode& best = found.modes.front();
-  if (distance_m(best.pose.position, nearby.pose.position) <= kOnePlaceM &&
-      !is_beyond(map, calibration, nadir_sigma_m, best, nearby.pose.position)) {
-    return;
-  }
-  const auto lower = [&](const SearchMode& mode) { return mode.score < nearby.score; };
-  found.modes.insert(std::find_if(found.modes.begin() + 1, found.modes.end(), lower), nearby);
-  std::vector<double>& rivals = found.background.rivals_within;
-  rivals.insert(std::ranges::upper_bound(rivals, nearby.score, std::ranges::greater{}), nearby.score);
+/// All but the modes, and what only the caller knows of the search.
+Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decision) {
+  Fix fix;
+  fix.status = decision.status;
+  fix.reason = decision.reason;
+  fix.explanation = decision.explanation;
+  fix.probability = decision.probability;
+  fix.figures = decision.figures;
+  fix.searched_share = found.scanned_share;
+  fix.complete = decision.reason != kTimeLimitReason;
+  fix.headings = found.headings;
+  fix.scales = found.scales;
+  fix.proof = found.proof;
+  fix.map_name = map.name;
+  fix.map_version = map.version;
+  return fix;
+}
+
+void name_too_few_roads(Fix& fix) {
+  fix.reason = "too-few-roads";
+  fix.explanation =
+      "the frame shows less road than a single one across the footprint: use a larger footprint, or fly on to where "
+      "roads are";
 }
 
 }  // namespace
@@ -169,48 +129,27 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const PoseRegion region = region_of(map, prior);
   require_valid(options, region.area_km2());
   const FeatureMap cells = in_cells_of(map, features);
-  Fix fix;
-  fix.map_name = map.name;
-  fix.map_version = map.version;
   const FeatureMap compared = compared_cells(cells);
   // As it was given, too: of one smaller than a cell of the map next to nothing is left.
   for (const FeatureMap* seen : {&features, &cells, &compared}) {
-    if (auto refusal = refusal_of(*seen)) {
-      fix.reason = refusal->reason;
-      fix.explanation = std::move(refusal->explanation);
-      return fix;
-    }
+    if (auto refusal = refusal_of(*seen)) return refused(map, *std::move(refusal));
   }
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
                               search_options_of(options, map, started));
-  count_nearby(map, calibration, cells.nadir_sigma_m, found);
-  Decision decision = decide(found, calibration, options.confidence);
-  fix.status = decision.status;
-  fix.reason = std::move(decision.reason);
-  fix.explanation = std::move(decision.explanation);
-  if (fix.reason == kNotAboveChanceReason && shows_less_than_a_road_across(cells)) {
-    fix.reason = "too-few-roads";
-    fix.explanation =
-        "the frame shows less road than a single one across the footprint: use a larger footprint, or fly on to where "
-        "roads are";
-  }
-  fix.probability = decision.probability;
+  count_nearby_place(map, calibration, cells.nadir_sigma_m, found);
+  const Decision decision = decide(found, calibration, options.confidence);
+  Fix fix = fix_of(map, found, decision);
   const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.max_modes)));
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
+  if (fix.reason == kNotAboveChanceReason && shows_less_than_a_road_across(cells)) name_too_few_roads(fix);
   if (claims_a_place(fix) && options.own_frame &&
       contradicts(map, *options.own_frame, found.modes.front(), fix.modes.front().rho)) {
     refuse_contradicting_frames(fix);
   }
-  fix.figures = decision.figures;
   fix.searched_km2 = region.area_km2();
-  fix.searched_share = found.scanned_share;
-  fix.complete = fix.reason != kTimeLimitReason;
-  fix.headings = found.headings;
-  fix.scales = found.scales;
-  fix.proof = found.proof;
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;
 }

@@ -43,10 +43,6 @@ struct FixOptions {
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };
 
-/// The region that a probability speaks of: the ellipse of so many standard deviations about the best mode. It holds
-/// 99.97 % of a normal distribution, so that confidences up to 0.999 can be asked for.
-inline constexpr double kRegionSigmas = 4.0;
-
 struct FixMode {
   GeoPose pose;
   double scale = 1.0;               ///< of the feature map's size

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kSmallestM = 20.0;
 constexpr double kLargestM = 5000.0;
-constexpr double kMaxCellsAcross = 4096.0;  // in finer cells large footprints would take gigabytes
+constexpr double kMaxFootprintCells = 4096.0;  // in finer cells large footprints would take gigabytes
 
 /// The cells of the map, or where a footprint has too many of them, those of an overview.
 double cell_for(const MapView& map, double footprint_m) {
   double cell_m = map.cell_m;
-  while (footprint_m > kMaxCellsAcross * cell_m) cell_m *= 2.0;
+  while (footprint_m > kMaxFootprintCells * cell_m) cell_m *= 2.0;
   return cell_m;
 }
 

@@ -41,6 +41,18 @@ TEST(Ellipse, PointsAlongTheUnsureDirectionFromTrueNorthWithinHalfATurn) {
   }
 }
 
+TEST(Ellipse, HasASquaredMahalanobisDistanceOfOneOnItsRim) {
+  const Angle axis = Angle::degrees(30.0);
+  const PositionCovariance covariance = position_covariance({9.0 * 9.0, 4.0 * 4.0}, axis);
+  const auto distance2 = [&](Angle direction, double metres) {
+    return squared_mahalanobis({100.0, 200.0}, {100.0 + metres * sin(direction), 200.0 + metres * cos(direction)},
+                               covariance);
+  };
+  EXPECT_NEAR(distance2(axis, 9.0), 1.0, 1e-9);
+  EXPECT_NEAR(distance2(axis + Angle::degrees(90.0), 4.0), 1.0, 1e-9);
+  EXPECT_NEAR(distance2(axis, 27.0), 9.0, 1e-9);
+}
+
 TEST(Ellipse, GrowsByTheErrorOfTheMapsRegistrationOnBothAxes) {
   const auto covariance = covariance_of(Angle::degrees(30.0), 8.0, 0.0);
   const Ellipse ellipse = ellipse_of(map_registered_to(6.0), kFarFromTheMeridian, covariance);

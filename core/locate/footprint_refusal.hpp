@@ -1,0 +1,22 @@
+// What a feature map alone says against a search for it: too little ground, or too little road on it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/grid/feature_map.hpp"
+
+namespace roadfix {
+
+struct FootprintRefusal {
+  const char* reason;       ///< of a Fix
+  std::string explanation;  ///< of a Fix
+};
+
+/// nullopt where there is something to search for, as far as the feature map alone tells.
+std::optional<FootprintRefusal> refusal_of(const FeatureMap& features);
+
+/// Less than a road of kRoadWidthM from one side of the observed ground to the other, if that were a square.
+bool shows_less_than_a_road_across(const FeatureMap& features);
+
+}  // namespace roadfix

@@ -1,4 +1,16 @@
 // From what is known of a block of poses to the best score that any of them can have.
+//
+// With n cells observed in both, sums S over them, and score.hpp's r sqrt(n / full_cells),
+//
+//     r = (S_ml - S_l S_m / n) / sqrt(V_m V_l),   V_m = S_mm - S_m^2 / n,   V_l = S_ll - S_l^2 / n.
+//
+// Above: sum over l > base of (l - base) m is C = BlockSums::cross_max at most, and S_l / n is no less than some mean,
+// so that S_ml - S_l S_m / n <= C - (mean - base) S_m. Below: V_l is at least the least S_ll less the most S_l^2 / n.
+// V_m has two bounds of the form a S_m + b - S_m^2 / n: a = 0 with b the least S_mm; and, which is more where cells are
+// nearly 0 or span, a = span with -b the most that sum m (span - m) = span S_m - S_mm can be.
+//
+// What is left unknown is S_m. A score s is possible only if C >= (mean - base) S_m + s sqrt(V_l V_m full_cells / n),
+// which is concave in S_m: least at an end of its interval.
 #pragma once
 
 namespace roadfix {
@@ -12,7 +24,7 @@ struct Interval {
 struct BlockSums {
   double cross_max = 0.0;  ///< of (l - base) m over the cells with l above the base
   Interval map;            ///< of m >= 0
-  Interval map_square;     ///< of m^2; max only matters together with map.max
+  Interval map_square;     ///< of m^2; span * map.max less its max is the most that sum m (span - m) can be
   Interval feature;        ///< of l
   double feature_square_min = 0.0;
   Interval cells;

@@ -22,6 +22,14 @@ GridGeometry window_around(const Level& level, const LatticePose& pose, int cell
   return padded({level.cell_m(), pose.cell, 1, 1}, reach);
 }
 
+std::vector<PlaneCell> places_around(PlaneCell place, int cells) {
+  std::vector<PlaneCell> places;
+  for (int row = -cells; row <= cells; ++row) {
+    for (int col = -cells; col <= cells; ++col) places.push_back({place.col + col, place.row + row});
+  }
+  return places;
+}
+
 GroundAround::GroundAround(const Level& level, int cells, const Deadline& deadline,
                            const std::vector<LatticePose>& poses) {
   std::vector<GridGeometry> windows;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/grid/geometry.hpp"
+#include "core/match/heading_bins.hpp"
 
 namespace roadfix {
 
@@ -12,5 +13,10 @@ struct LatticePose {
   double score = 0.0;
   int scale = 0;
 };
+
+/// The middle of its cell.
+inline GridPose grid_pose_of(const LatticePose& pose, double cell_m, const HeadingBins& bins) {
+  return {{(pose.cell.col + 0.5) * cell_m, -(pose.cell.row + 0.5) * cell_m}, bins.heading(bins.wrapped(pose.bin))};
+}
 
 }  // namespace roadfix

@@ -9,9 +9,7 @@
 
 namespace roadfix {
 
-GridPose Level::pose_of(const LatticePose& pose) const {
-  return {{(pose.cell.col + 0.5) * cell_m(), -(pose.cell.row + 0.5) * cell_m()}, bins.heading(bins.wrapped(pose.bin))};
-}
+GridPose Level::pose_of(const LatticePose& pose) const { return grid_pose_of(pose, cell_m(), bins); }
 
 LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
     : map(std::move(features)),

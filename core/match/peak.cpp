@@ -2,21 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/match/footprint.hpp"
+#include "core/match/ground_around.hpp"
+#include "core/match/kernel.hpp"
+#include "core/match/score.hpp"
 
 namespace roadfix {
 namespace {
-
-double at(const PeakScores& scores, int col, int row, int bin) {
-  const auto index = [](int i) { return static_cast<std::size_t>(i + kPeakRadius); };
-  return scores[index(bin)][index(row)][index(col)];
-}
 
 /// Calls visit(col, row, bin, score) for all poses around.
 template <typename Visit>
 void for_each_pose(const PeakScores& scores, Visit visit) {
   for (int bin = -kPeakRadius; bin <= kPeakRadius; ++bin) {
     for (int row = -kPeakRadius; row <= kPeakRadius; ++row) {
-      for (int col = -kPeakRadius; col <= kPeakRadius; ++col) visit(col, row, bin, at(scores, col, row, bin));
+      for (int col = -kPeakRadius; col <= kPeakRadius; ++col) visit(col, row, bin, scores.at(col, row, bin));
     }
   }
 }
@@ -29,9 +30,28 @@ double vertex(double before, double middle, double after) {
 
 }  // namespace
 
+Peak peak_around(const Level& level, const HeadingBins& bins, const LatticePose& pose) {
+  const LevelFeatures features = level.at_scale(pose.scale);
+  const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells);
+  const std::vector<PlaneCell> places = places_around({plane.cols() / 2, plane.rows() / 2}, kPeakRadius);
+  std::vector<MatchSums> sums(places.size());
+  Peak peak;
+  for (int bin = -kPeakRadius; bin <= kPeakRadius; ++bin) {
+    match_sums(plane, footprint_at(features.rotator, bins.heading(bins.wrapped(pose.bin + bin))), places, sums);
+    std::size_t place = 0;
+    for (int row = -kPeakRadius; row <= kPeakRadius; ++row) {
+      for (int col = -kPeakRadius; col <= kPeakRadius; ++col, ++place) {
+        peak.scores.at(col, row, bin) = score_of(sums[place], features.full_cells, features.min_cells);
+      }
+    }
+    if (bin == 0) peak.centre = sums[sums.size() / 2];
+  }
+  return peak;
+}
+
 std::array<int, 3> highest(const PeakScores& scores) {
   std::array<int, 3> best{};
-  double best_score = at(scores, 0, 0, 0);
+  double best_score = scores.at(0, 0, 0);
   for_each_pose(scores, [&](int col, int row, int bin, double score) {
     if (score <= best_score) return;
     best_score = score;
@@ -42,10 +62,10 @@ std::array<int, 3> highest(const PeakScores& scores) {
 
 PeakShape shape_of(const PeakScores& scores, const ScoreBackground& background) {
   PeakShape shape;
-  const double top = at(scores, 0, 0, 0);
-  shape.offset = {vertex(at(scores, -1, 0, 0), top, at(scores, 1, 0, 0)),
-                  vertex(at(scores, 0, -1, 0), top, at(scores, 0, 1, 0)),
-                  vertex(at(scores, 0, 0, -1), top, at(scores, 0, 0, 1))};
+  const double top = scores.at(0, 0, 0);
+  shape.offset = {vertex(scores.at(-1, 0, 0), top, scores.at(1, 0, 0)),
+                  vertex(scores.at(0, -1, 0), top, scores.at(0, 1, 0)),
+                  vertex(scores.at(0, 0, -1), top, scores.at(0, 0, 1))};
   const double top_likelihood = background.log_likelihood(top);
   double total = 0.0;
   for_each_pose(scores, [&](int col, int row, int bin, double score) {

@@ -1,11 +1,36 @@
-// The shape of a score peak: its top within the cell, and how sharp it is.
+// The scores around a pose: where in between their peak is, and how sharp.
 #pragma once
 
 #include <array>
+#include <cstddef>
 
-#include "core/match/refine.hpp"
+#include "core/match/correlation.hpp"
+#include "core/match/level.hpp"
 
 namespace roadfix {
+
+inline constexpr int kPeakRadius = 3;
+inline constexpr int kPeakSize = 2 * kPeakRadius + 1;
+
+/// Columns, rows and bins from the pose, each from -kPeakRadius to +kPeakRadius.
+class PeakScores {
+ public:
+  double& at(int col, int row, int bin) { return scores_[index(bin)][index(row)][index(col)]; }
+  double at(int col, int row, int bin) const { return scores_[index(bin)][index(row)][index(col)]; }
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i + kPeakRadius); }
+
+  std::array<std::array<std::array<double, kPeakSize>, kPeakSize>, kPeakSize> scores_{};
+};
+
+struct Peak {
+  PeakScores scores;
+  MatchSums centre;  ///< at the pose itself
+};
+
+/// At the scale of the pose, which counts its heading in `bins`.
+Peak peak_around(const Level& level, const HeadingBins& bins, const LatticePose& pose);
 
 struct PeakShape {
   /// Where the top is, from the middle of the scores: columns, rows, bins; each within +-0.5.

@@ -17,13 +17,6 @@
 namespace roadfix {
 namespace {
 
-/// The places up to `cells` around one, row by row.
-void add_places_around(PlaneCell place, int cells, std::vector<PlaneCell>& places) {
-  for (int row = -cells; row <= cells; ++row) {
-    for (int col = -cells; col <= cells; ++col) places.push_back({place.col + col, place.row + row});
-  }
-}
-
 /// Candidates that ask for the same scale and bin: turning the feature map is expensive, so they share it.
 struct RefineTask {
   int scale;
@@ -33,7 +26,7 @@ struct RefineTask {
   std::vector<LatticePose> best;  ///< of each candidate
 };
 
-/// The best of the poses around a candidate; `sums` are theirs, in the order of add_places_around().
+/// The best of the poses around a candidate; `sums` are theirs, in the order of places_around().
 LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, std::span<const MatchSums> sums) {
   LatticePose best{cell, task.bin, 0.0, task.scale};
   const int width = 2 * cells + 1;
@@ -77,7 +70,10 @@ void run(RefineTask& task, const Level& level, int cells, const GroundAround& gr
          const std::vector<LatticePose>& poses) {
   const PackedFootprint footprint = footprint_at(task.features->rotator, level.bins.heading(task.bin));
   std::vector<PlaneCell> places;
-  for (const std::size_t i : task.candidates) add_places_around(ground.place(i, poses[i].cell), cells, places);
+  for (const std::size_t i : task.candidates) {
+    const std::vector<PlaneCell> around = places_around(ground.place(i, poses[i].cell), cells);
+    places.insert(places.end(), around.begin(), around.end());
+  }
   std::vector<MatchSums> sums(places.size());
   ground.match(footprint, task.candidates, places, sums);
   const std::size_t each = places.size() / task.candidates.size();
@@ -111,29 +107,6 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
   if (!complete) return false;
   candidates = best_of(tasks, std::move(candidates));
   return true;
-}
-
-Peak peak_around(const Level& level, const LatticePose& pose) {
-  const LevelFeatures features = level.at_scale(pose.scale);
-  const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells);
-  std::vector<PlaneCell> places;
-  add_places_around({plane.cols() / 2, plane.rows() / 2}, kPeakRadius, places);
-  std::vector<MatchSums> sums(places.size());
-  Peak peak;
-  for (int d = 0; d < kPeakSize; ++d) {
-    const PackedFootprint footprint =
-        footprint_at(features.rotator, level.bins.heading(level.bins.wrapped(pose.bin + d - kPeakRadius)));
-    match_sums(plane, footprint, places, sums);
-    for (int row = 0; row < kPeakSize; ++row) {
-      for (int col = 0; col < kPeakSize; ++col) {
-        const auto at = static_cast<std::size_t>(row * kPeakSize + col);
-        peak.scores[static_cast<std::size_t>(d)][static_cast<std::size_t>(row)][static_cast<std::size_t>(col)] =
-            score_of(sums[at], features.full_cells, features.min_cells);
-        if (d == kPeakRadius && row == kPeakRadius && col == kPeakRadius) peak.centre = sums[at];
-      }
-    }
-  }
-  return peak;
 }
 
 }  // namespace roadfix

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/match/refine.hpp"
 #include "core/match/search_levels.hpp"
@@ -18,30 +19,51 @@ double ScoreBackground::log_likelihood(double score) const {
   return -kTemper * 0.5 * std::log1p(-shared * shared) / (sd * sd);
 }
 
+namespace {
+
+SearchResult result_of(const SearchLevels& levels, const Scanned& scanned) {
+  SearchResult result;
+  result.cell_m = levels.finest().cell_m();
+  result.coarse_cell_m = levels.coarse().cell_m();
+  result.headings = scanned.headings;
+  result.scales = levels.coarse().scales.count();
+  result.scanned_share = scanned.share;
+  result.background.sd = scanned.sd;
+  result.background.poses = scanned.poses;
+  return result;
+}
+
+}  // namespace
+
 SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
                     const SearchOptions& options) {
   const Deadline deadline(options.stop, options.deadline);
   const SearchLevels levels(read, finest_cell_m, features, region, options);
   const SearchScan scan(levels, options);
-  SearchResult result;
-  result.cell_m = levels.finest().cell_m();
-  result.coarse_cell_m = levels.coarse().cell_m();
-  const auto prove_at = [&](int level, std::vector<LatticePose>& candidates) {
+  const Scanned scanned = scan.run(deadline);
+  SearchResult result = result_of(levels, scanned);
+  std::vector<LatticePose> candidates = scanned.candidates;
+  const auto prove_at = [&](int level) {
     if (options.proof_time.count() > 0 && level == levels.proof_level()) {
       result.proof = prove(levels, options, candidates);
     }
   };
-  std::vector<LatticePose> candidates = scan.candidates(deadline, result);
   result.refined = refine(levels.coarse(), 1, 1, deadline, candidates);
-  prove_at(levels.coarsest(), candidates);
+  prove_at(levels.coarsest());
   for (int k = levels.coarsest() - 1; k >= 0; --k) {
     candidates = levels.distinct(candidates, levels.at(k + 1), 2.5 * result.coarse_cell_m, 2, levels.followed(k + 1));
     descend(candidates);
     result.refined = refine(levels.at(k), 2, 2, deadline, candidates) && result.refined;
-    prove_at(k, candidates);
+    prove_at(k);
   }
   candidates = levels.distinct(candidates, levels.finest(), scan.separation_m(), kDistinctBins, kSurvivors);
-  rank(levels, scan, options, deadline, candidates, result);
+  const RankedPoses poses(levels, candidates);
+  set_rivals(levels, scan, options, poses, result.background);
+  FoundModes found = find_modes(levels, scan, options, deadline, poses, result.background);
+  result.modes = std::move(found.modes);
+  result.nearby = found.nearby;
+  result.outside = found.outside;
+  result.refined = result.refined && found.complete;
   return result;
 }
 

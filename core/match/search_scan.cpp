@@ -87,49 +87,55 @@ std::optional<double> SearchScan::finer_spread(const Deadline& deadline) const {
   return score_spread(levels_.at(levels_.spread_level()), scanned_, deadline);
 }
 
-std::vector<LatticePose> SearchScan::candidates(const Deadline& deadline, SearchResult& result) const {
+SearchScan::Maxima SearchScan::maxima(const Deadline& deadline) const {
   const Level& coarse = levels_.coarse();
-  ScanRequest asked = request();
   const int largest = coarse.scales.reach();
+  ScanRequest asked = request();
   const LatticeIndex origin = asked.positions.origin;
   const std::shared_ptr<const ScanMap> map = map_below(asked.positions);
   const Deadline end = deadline.after(kScanTimeShare);
-  std::vector<LatticePose> inside;
-  std::vector<LatticePose> outside;
-  double squares = 0.0;
-  double shares = 0.0;
-  result.scales = coarse.scales.count();
-  const auto headings = static_cast<std::int64_t>(asked.headings.size());
-  std::int64_t before = 0;
+  Maxima all;
+  all.headings = asked.headings.size();
+  std::size_t before = 0;
   if (options_.progress) {
     asked.scanned = [&](std::size_t here) {
-      options_.progress(before + static_cast<std::int64_t>(here), headings * result.scales);
+      options_.progress(static_cast<std::int64_t>(before + here),
+                        static_cast<std::int64_t>(all.headings) * coarse.scales.count());
     };
   }
-  for (int scale = -largest; scale <= largest; ++scale, before += headings) {
+  for (int scale = -largest; scale <= largest; ++scale, before += all.headings) {
     const ScanResult found = coarse_scan(*map, coarse.at_scale(scale).map, asked, end);
-    shares += found.share;
-    result.background.poses += found.poses;
-    squares += found.score_square_sum;
+    all.share += found.share;
+    all.poses += found.poses;
+    all.score_square_sum += found.score_square_sum;
     for (const ScanPose& pose : found.maxima) {
       const LatticePose lattice{
           {origin.col + pose.col, origin.row + pose.row}, pose.bin, static_cast<double>(pose.score), scale};
-      (levels_.within_region(coarse, lattice) ? inside : outside).push_back(lattice);
+      (levels_.within_region(coarse, lattice) ? all.inside : all.outside).push_back(lattice);
     }
   }
-  result.scanned_share = shares / result.scales;
-  result.headings = static_cast<int>(headings);
-  if (result.background.poses > 0) {
-    const double scanned = std::sqrt(squares / static_cast<double>(result.background.poses));
-    result.background.sd = finer_spread(deadline).value_or(scanned);
+  all.share /= coarse.scales.count();
+  return all;
+}
+
+Scanned SearchScan::run(const Deadline& deadline) const {
+  const Level& coarse = levels_.coarse();
+  const Maxima found = maxima(deadline);
+  Scanned scanned;
+  scanned.poses = found.poses;
+  scanned.share = found.share;
+  scanned.headings = static_cast<int>(found.headings);
+  if (found.poses > 0) {
+    const double sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
+    scanned.sd = finer_spread(deadline).value_or(sd);
   }
   const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
     return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);
   };
-  std::vector<LatticePose> candidates = apart(inside, levels_.followed(levels_.coarsest()));
-  const std::vector<LatticePose> others = apart(outside, kCandidatesAround);
-  candidates.insert(candidates.end(), others.begin(), others.end());
-  return candidates;
+  scanned.candidates = apart(found.inside, levels_.followed(levels_.coarsest()));
+  const std::vector<LatticePose> others = apart(found.outside, kCandidatesAround);
+  scanned.candidates.insert(scanned.candidates.end(), others.begin(), others.end());
+  return scanned;
 }
 
 }  // namespace roadfix

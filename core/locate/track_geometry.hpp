@@ -6,7 +6,8 @@
 
 #include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/locate/fix.hpp"
+#include "core/locate/track_estimate.hpp"
 
 namespace roadfix {
 

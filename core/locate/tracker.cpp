@@ -18,41 +18,6 @@ AcceptanceRegion region_of_flight(const MapView& map, const TrackSettings& setti
 
 }  // namespace
 
-const char* to_string(Measurement measurement) {
-  switch (measurement) {
-    case Measurement::kNone:
-      return "none";
-    case Measurement::kSkipped:
-      return "skipped";
-    case Measurement::kSearched:
-      return "searched";
-    case Measurement::kAccepted:
-      return "accepted";
-    case Measurement::kRejected:
-      return "rejected";
-    case Measurement::kUseless:
-      return "useless";
-    case Measurement::kRepeated:
-      break;
-  }
-  return "repeated";
-}
-
-Wind Wind::of(std::optional<double> sigma_m_s, std::optional<double> walk) {
-  constexpr double kRootSeconds = 50.0;
-  return {sigma_m_s.value_or(kRootSeconds * walk.value_or(0.0)), walk.value_or(sigma_m_s.value_or(0.0) / kRootSeconds)};
-}
-
-TrackSettings TrackSettings::paper(int particles) {
-  TrackSettings settings;
-  settings.start = TrackStart::kUniform;
-  settings.recovers = false;
-  settings.beyond_map_m = 0.0;
-  settings.filter = FilterOptions::paper(particles);
-  settings.measurement_model.kind = LikelihoodKind::kEquation7;
-  return settings;
-}
-
 Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
       settings_(std::move(settings)),

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/locate/fix.hpp"
 #include "core/locate/particle_matches.hpp"
 #include "core/locate/tracker.hpp"
 
@@ -24,24 +25,28 @@ class Tracker::Step {
   void require_in_order() const;
   double seconds() const;
   std::optional<double> since_accepted_s() const;
-  double speed_m_s() const;
-
-  void move();
-  bool predict_motion();
-  bool coasts() const;
-  bool coast(bool begins);
-  Wind wind() const;
-  void doubt_odometry();
-  AcceptanceRegion region() const;
-  template <MotionModel Motion>
-  bool predict(const Motion& motion);
-  void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
-  void forget_support();
-
   void see();
   void measure();
   void weigh(const ParticleMatches& matches, std::int64_t frame_cells);
   bool is_unseen_by_map(std::span<const MatchSums> sums, std::int64_t frame_cells) const;
+  void forget_support();
+  void fill_estimate();
+  bool has_converged(const Cluster& best) const;
+  bool is_borne_out() const;
+
+  // tracker_motion.cpp
+  void move();
+  bool predict_motion();
+  bool follow_odometry(bool coasted);
+  bool coast(bool begins);
+  template <MotionModel Motion>
+  bool predict(const Motion& motion);
+  bool coasts() const;
+  void carry_frames_on(const Odometry& odometry, const OdometryCovariance& covariance);
+  void doubt_odometry();
+  Wind wind() const;
+  double speed_m_s() const;
+  AcceptanceRegion region() const;
 
   // tracker_search.cpp; `seen` is the last feature map, with the frames before it laid around
   bool may_search() const;
@@ -60,10 +65,6 @@ class Tracker::Step {
   double flown_since_look_m() const;
   void look_around();
   void move_beside(const Fix& fix, const FeatureMap& seen, double log_scale);
-
-  void fill_estimate();
-  bool has_converged(const Cluster& best) const;
-  bool is_borne_out() const;
 
   const Tracker& tracker_;
   const TrackSettings& settings_;

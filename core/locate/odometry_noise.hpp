@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/filter/motion.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/locate/track_settings.hpp"
 
 namespace roadfix {
 

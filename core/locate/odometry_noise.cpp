@@ -1,4 +1,4 @@
-#include "core/locate/track_motion.hpp"
+#include "core/locate/odometry_noise.hpp"
 
 #include <cmath>
 

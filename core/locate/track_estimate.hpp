@@ -1,0 +1,48 @@
+// Where a track takes the vehicle to be after a step, and what became of what the step showed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geodesy/geo_pose.hpp"
+
+namespace roadfix {
+
+struct TrackCluster {
+  GeoPose pose;
+  double weight = 0.0;              ///< share of all particles' weight, 0 to 1
+  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
+  Angle ellipse_heading;            ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
+  Angle heading_sigma;              ///< 1 sigma
+  double radius95_m = 0.0;          ///< holds the vehicle with 95 %, if it is in the cluster at all
+  double scale = 1.0;        ///< how many times larger the ground is than the feature maps say, within the scale range
+  double scale_sigma = 0.0;  ///< 1 sigma
+};
+
+/// What became of a step's feature map; kRepeated = nothing, since the camera or its link has stopped (LastView).
+enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless, kRepeated };
+/// "none", "skipped" ...: the word for it in answers and files.
+const char* to_string(Measurement measurement);
+
+struct TrackEstimate {
+  std::int64_t sequence = 0;
+  std::int64_t time_us = 0;
+  bool converged = false;              ///< only then the first cluster is a position to fly on
+  std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMaxClusters of them
+  std::size_t cluster_count = 0;       ///< of all, also those that are not among `clusters`
+  std::size_t particles = 0;           ///< number of them
+  std::uint64_t resets = 0;            ///< times that the belief was thrown away
+  Measurement measurement = Measurement::kNone;
+  /// How many times likelier the measurement was under the belief before it than by chance, on average.
+  double mean_likelihood = 0.0;
+  double doubt = 0.0;                      ///< how much worse late measurements fit than earlier ones, 0 to 1
+  std::optional<double> since_accepted_s;  ///< nullopt = no measurement was accepted yet
+  bool drifts = false;                     ///< the odometry was found wrong, and a drift of it is learned
+  std::int64_t missed_steps = 0;           ///< sequence numbers left out before this step
+  static constexpr std::size_t kMaxClusters = 8;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,80 @@
+// What a track is told before its first step: where to begin, what the vehicle is like, how sure to be.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/filter/clusters.hpp"
+#include "core/filter/filter.hpp"
+#include "core/locate/calibration.hpp"
+#include "core/locate/measurement_model.hpp"
+#include "core/locate/prior.hpp"
+
+namespace roadfix {
+
+/// The motion of the air over the ground, where odometry or the planar speed is relative to the air.
+struct Wind {
+  double sigma_m_s = 0.0;  ///< 1 sigma of the first wind, per axis
+  double walk = 0.0;       ///< growth of that sigma, m/s per square root of a second
+
+  /// One that is not given follows from the other: a wind changes by its own size in 40 minutes. A filter that takes it
+  /// for constant, or for nothing at first, comes to be sure of a wrong one.
+  static Wind of(std::optional<double> sigma_m_s, std::optional<double> walk);
+  bool is_none() const { return sigma_m_s == 0.0 && walk == 0.0; }
+};
+
+/// Takes the place of what a step does not tell.
+struct VehicleNoise {
+  /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was, and may
+  /// change by half of itself within a second.
+  struct Planar {
+    Gaussian speed_m_s;
+    Gaussian turn_rate_rad_s;
+  };
+  std::optional<Planar> planar;
+  // Odometry without covariance: 1 sigma is the share of the distance or turn, and at least ...
+  double odometry_share = 0.05;
+  double odometry_m = 0.3;  ///< ... so much per axis
+  Angle odometry_turn = Angle::degrees(0.5);
+  Wind wind;
+  /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
+  /// that stays much the same from step to step; in [0, kMaxScaleRange].
+  double scale_range = 0.0;
+  /// Of all feature maps, in place of what they say (FeatureMap::nadir_sigma_m). Part of the standard deviations of the
+  /// position, since a camera that is mounted askew errs alike in all frames.
+  std::optional<double> nadir_sigma_m;
+};
+
+enum class TrackStart { kSearch, kUniform };
+
+struct TrackSettings {
+  Prior prior;  ///< where the vehicle may be at the first step
+  TrackStart start = TrackStart::kSearch;
+  /// Spreads and searches anew when the measurements speak against the belief, and searches before the first claim
+  /// where no search has told it from other places (see TrackClaim). Without it a track converges by its particles
+  /// alone.
+  bool recovers = true;
+  FilterOptions filter;
+  MeasurementModel measurement_model;
+  VehicleNoise vehicle;
+  ClusterOptions clusters;
+  std::uint64_t seed = 1;
+  int measure_every = 1;  ///< weight by every k-th feature map only
+  double converged_weight = 0.9;
+  double converged_sigma_m = 25.0;
+  /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
+  /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
+  double beyond_map_m = 1000.0;
+  /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
+  /// place.
+  std::optional<double> max_search_km2 = 2000.0;
+  std::chrono::seconds longest_gap{600};           ///< after it the belief is thrown away
+  std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
+
+  /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.
+  static TrackSettings paper(int particles);
+};
+
+}  // namespace roadfix

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/grid/feature_rotator.hpp"
-#include "core/match/bound_terms.hpp"
 #include "core/match/branch_and_bound.hpp"
 #include "core/match/score_bound.hpp"
+#include "core/match/turned_features.hpp"
 
 namespace roadfix {
 

@@ -1,5 +1,5 @@
 // Short straight lines of cells in every direction: the pieces that roads are made of, shared by the map's and the
-// feature map's side of the bound (bound_map.hpp, bound_terms.hpp).
+// feature map's side of the bound (bound_map.hpp, turned_features.hpp).
 #pragma once
 
 #include <array>

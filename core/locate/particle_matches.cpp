@@ -28,11 +28,10 @@ ParticleMatches match_particles(const MapView& map, const FeatureMap& features, 
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.weight[i] <= 0.0) continue;
     const LatticeIndex cell = lattice_index({p.east_m[i], p.north_m[i]}, cell_m);
-    const double turned = p.heading_rad[i] / bins.step().radians();
     const int scale = scales.nearest(p.log_scale[i]);
     matches.scales[i] = scales.factor(scale);
     of_scale[static_cast<std::size_t>(scale + scales.reach())].push_back(
-        {cell, bins.wrapped(static_cast<int>(std::lround(turned))), i});
+        {cell, bins.nearest(Angle::radians(p.heading_rad[i])), i});
   }
   for (std::size_t k = 0; k < of_scale.size(); ++k) {
     if (of_scale[k].empty()) continue;

@@ -10,6 +10,10 @@ HeadingBins HeadingBins::for_footprint(double radius_m, double cell_m) {
   return HeadingBins(2 * static_cast<int>(std::ceil(half_turn)));
 }
 
+int HeadingBins::nearest(Angle heading) const {
+  return wrapped(static_cast<int>(std::lround(heading.radians() / step().radians())));
+}
+
 int HeadingBins::distance(int a, int b) const {
   const int apart = wrapped(a - b);
   return std::min(apart, count_ - apart);

@@ -15,6 +15,8 @@ class HeadingBins {
   int count() const { return count_; }
   Angle step() const { return Angle::radians(2.0 * std::numbers::pi / count_); }
   Angle heading(int bin) const { return Angle::radians(2.0 * std::numbers::pi * bin / count_); }
+  /// The bin whose heading is nearest.
+  int nearest(Angle heading) const;
   int wrapped(int bin) const { return ((bin % count_) + count_) % count_; }
   /// Bins between two, the shorter way round.
   int distance(int a, int b) const;

@@ -35,8 +35,7 @@ std::vector<LatticePose> places_within(const Level& level, const PoseRegion& reg
     const GridPoint place{std::lerp(low.east_m, high.east_m, spread_evenly(i, kPlasticEast)),
                           std::lerp(low.north_m, high.north_m, spread_evenly(i, kPlasticNorth))};
     if (!region.contains(place)) continue;
-    places.push_back({{static_cast<int>(std::floor(place.east_m / level.cell_m())),
-                       static_cast<int>(std::floor(-place.north_m / level.cell_m()))}});
+    places.push_back({lattice_index(place, level.cell_m())});
   }
   return places;
 }

@@ -22,8 +22,7 @@ const double kHeadingIsWrong = std::log(10.0);
 
 /// Of the finest level, whose bins are twice as wide as those of modes.
 LatticePose lattice_pose_of(const Level& finest, const SearchMode& mode) {
-  const int bin = static_cast<int>(std::lround(mode.pose.heading.radians() / finest.bins.step().radians()));
-  return {lattice_index(mode.pose.position, finest.cell_m()), finest.bins.wrapped(bin), mode.score,
+  return {lattice_index(mode.pose.position, finest.cell_m()), finest.bins.nearest(mode.pose.heading), mode.score,
           finest.scales.nearest(std::log(mode.scale))};
 }
 

@@ -96,7 +96,7 @@ void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<R
       row.needed[i] = std::numeric_limits<double>::infinity();
       if (!row.eligible[i]) continue;
       const BlockSums sums = HeadingSectors::covered(sector, row.run, i).sums;
-      row.needed[i] = cross_needed(sums, problem_.full_cells, problem_.search.min_cells, goal);
+      row.needed[i] = cross_needed(sums, problem_.search.cells, goal);
       const double reachable = (kRoad - problem_.base) * sums.map.max;
       if (row.needed[i] <= reachable) row.excluded = false;
     }

@@ -72,11 +72,10 @@ std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFo
   }
   std::vector<MatchSums> sums(places.size());
   match_sums(problem_.map.exact(), footprint, places, sums);
-  const auto full_cells = static_cast<std::int64_t>(problem_.full_cells);
   const LatticeIndex origin = problem_.map.geometry().origin;
   std::map<std::size_t, LatticePose> best;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double score = score_of(sums[i], full_cells, problem_.search.min_cells);
+    const double score = score_of(sums[i], problem_.search.cells);
     if (score <= 0.0) continue;
     LatticePose& pose = best[owners[i]];
     if (score <= pose.score) continue;

@@ -14,7 +14,6 @@ struct BoundProblem {
   FeatureRotator rotator;
   int shift_col;  ///< of the positions within the map, cells
   int shift_row;
-  double full_cells;
   int base;  ///< base_of() the feature map
 
   explicit BoundProblem(const BoundedSearch& asked)
@@ -23,10 +22,9 @@ struct BoundProblem {
         rotator(*asked.features),
         shift_col(asked.positions.origin.col - map.geometry().origin.col),
         shift_row(asked.positions.origin.row - map.geometry().origin.row),
-        full_cells(static_cast<double>(asked.features->cells.observed_count())),
         base(base_of(*asked.features)) {}
 
-  double bound_of(const BlockSums& sums) const { return score_bound(sums, full_cells, search.min_cells); }
+  double bound_of(const BlockSums& sums) const { return score_bound(sums, search.cells); }
   /// The heading with this index among those searched.
   Angle heading(std::size_t index) const { return search.bins.heading(search.headings[index]); }
   /// Whether this cell of the map is one of the positions searched,

@@ -11,6 +11,7 @@
 #include "core/match/deadline.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
+#include "core/match/score.hpp"
 
 namespace roadfix {
 
@@ -22,7 +23,7 @@ struct BoundedSearch {
   std::vector<int> headings;                       ///< bins to search, ascending
   GridGeometry positions;                          ///< cells of which the centres are searched
   std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all; from several threads
-  double min_cells = 1.0;                          ///< observed in both, below which a pose has no score
+  FootprintCells cells;                            ///< of `features`
   double known = 0.0;                              ///< score of the best pose known so far
   int threads = 1;
 };

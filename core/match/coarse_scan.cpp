@@ -15,6 +15,7 @@
 #include "core/match/footprint.hpp"
 #include "core/match/scan_planes.hpp"
 #include "core/match/scan_tile.hpp"
+#include "core/match/score.hpp"
 #include "core/units/parallel_for.hpp"
 
 namespace roadfix {
@@ -34,7 +35,7 @@ class Scan {
         request_(request),
         deadline_(deadline),
         map_(map),
-        full_cells_(static_cast<double>(features.cells.observed_count())),
+        cells_(footprint_cells(features, request.min_observed_share)),
         feature_mean_(moments_of(features.cells).mean()),
         tile_scan_(map, request) {
     assert(footprint_reach(features) <= map.reach());
@@ -89,8 +90,7 @@ class Scan {
     const std::vector<ScanDirection> directions = directions_of(bases);
     ScanFindings found;
     for (const ScanDirection& direction : directions) {
-      means.at(direction.half_turn, full_cells_, std::max(1.0, request_.min_observed_share * full_cells_),
-               buffers->means[direction.half_turn ? 1 : 0]);
+      means.at(direction.half_turn, cells_, buffers->means[direction.half_turn ? 1 : 0]);
       found.headings += direction.count();
     }
     map_.values().spectrum_of(values_of(first, feature_mean_),
@@ -145,7 +145,7 @@ class Scan {
   const ScanRequest& request_;
   const Deadline& deadline_;
   const ScanMap& map_;
-  double full_cells_;
+  FootprintCells cells_;
   double feature_mean_;
   TileScan tile_scan_;
   std::mutex mutex_;

@@ -1,6 +1,5 @@
 #include "core/match/level.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,10 +11,7 @@ namespace roadfix {
 GridPose Level::pose_of(const LatticePose& pose) const { return grid_pose_of(pose, cell_m(), bins); }
 
 LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
-    : map(std::move(features)),
-      rotator(map),
-      full_cells(static_cast<std::int64_t>(map.cells.observed_count())),
-      min_cells(std::max(1.0, min_share * static_cast<double>(full_cells))) {}
+    : map(std::move(features)), rotator(map), cells(footprint_cells(map, min_share)) {}
 
 LevelFeatures Level::at_scale(int index) const {
   if (index == 0) return features;

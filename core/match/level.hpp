@@ -1,12 +1,11 @@
 // One level of the pyramid that a search goes down: the feature map, positions, headings and scales at one cell size.
 #pragma once
 
-#include <cstdint>
-
 #include "core/grid/feature_rotator.hpp"
 #include "core/match/heading_bins.hpp"
 #include "core/match/lattice_pose.hpp"
 #include "core/match/scales.hpp"
+#include "core/match/score.hpp"
 #include "core/match/search.hpp"
 
 namespace roadfix {
@@ -15,8 +14,7 @@ namespace roadfix {
 struct LevelFeatures {
   FeatureMap map;
   FeatureRotator rotator;
-  std::int64_t full_cells = 0;  ///< observed
-  double min_cells = 1.0;       ///< observed in both, below which a pose has no score
+  FootprintCells cells;
 
   LevelFeatures(FeatureMap features, double min_share);
 };

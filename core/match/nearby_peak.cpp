@@ -29,7 +29,7 @@ class ScoresAround {
     std::vector<MatchSums> sums(places.size());
     match_sums(plane, footprint_at(features.rotator, level.bins.heading(place.bin)), places, sums);
     for (const MatchSums& of_place : sums) {
-      scores_.push_back(score_of(of_place, features.full_cells, features.min_cells));
+      scores_.push_back(score_of(of_place, features.cells));
     }
   }
 

@@ -41,7 +41,7 @@ Peak peak_around(const Level& level, const HeadingBins& bins, const LatticePose&
     std::size_t place = 0;
     for (int row = -kPeakRadius; row <= kPeakRadius; ++row) {
       for (int col = -kPeakRadius; col <= kPeakRadius; ++col, ++place) {
-        peak.scores.at(col, row, bin) = score_of(sums[place], features.full_cells, features.min_cells);
+        peak.scores.at(col, row, bin) = score_of(sums[place], features.cells);
       }
     }
     if (bin == 0) peak.centre = sums[sums.size() / 2];

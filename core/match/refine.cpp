@@ -31,7 +31,7 @@ LatticePose best_around(LatticeIndex cell, int cells, const RefineTask& task, st
   LatticePose best{cell, task.bin, 0.0, task.scale};
   const int width = 2 * cells + 1;
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    const double score = score_of(sums[k], task.features->full_cells, task.features->min_cells);
+    const double score = score_of(sums[k], task.features->cells);
     if (score <= best.score) continue;
     const int index = static_cast<int>(k);
     best.cell = {cell.col + index % width - cells, cell.row + index / width - cells};

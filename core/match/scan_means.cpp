@@ -1,7 +1,6 @@
 #include "core/match/scan_means.hpp"
 
 #include "core/match/scan_kernel.hpp"
-#include "core/match/score.hpp"
 
 namespace roadfix {
 
@@ -36,7 +35,7 @@ ScanMeansPatch::ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks,
   map.block_values().spectrum_of(blocks.observed, {}, workspace.values, workspace.observed_of_patch);
 }
 
-void ScanMeansPatch::at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const {
+void ScanMeansPatch::at(bool half_turn, const FootprintCells& cells, ScanMeans& means) const {
   map_.block_observed().correlate(workspace_.observed_and_value, half_turn, workspace_.observed,
                                   workspace_.counts_and_values);
   map_.block_observed().correlate(workspace_.square, half_turn, workspace_.observed, workspace_.squares);
@@ -47,7 +46,7 @@ void ScanMeansPatch::at(bool half_turn, double full_cells, double min_cells, Sca
   const BlockRow sums{n.values.data(), workspace_.counts_and_values.second.values.data(),
                       workspace_.squares.first.values.data(), workspace_.of_map.first.values.data(),
                       workspace_.of_map.second.values.data()};
-  const MeansLimits limits{static_cast<float>(full_cells), static_cast<float>(min_cells),
+  const MeansLimits limits{static_cast<float>(cells.full), static_cast<float>(cells.min),
                            static_cast<float>(kMinVariance)};
   means_of_blocks(sums, limits, static_cast<int>(n.values.size()), means.correction.values.data(),
                   means.gain.values.data());

@@ -6,6 +6,7 @@
 
 #include "core/match/scan_map.hpp"
 #include "core/match/scan_planes.hpp"
+#include "core/match/score.hpp"
 
 namespace roadfix {
 
@@ -60,8 +61,8 @@ class ScanMeansPatch {
  public:
   /// `blocks`: ScanMeansGrid::block_means(). All outlive this.
   ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansWorkspace& workspace);
-  /// No score where less than `min_cells` of `full_cells` are observed in both, or too little road.
-  void at(bool half_turn, double full_cells, double min_cells, ScanMeans& means) const;
+  /// No score where score_of() gives none for these cells.
+  void at(bool half_turn, const FootprintCells& cells, ScanMeans& means) const;
 
  private:
   const ScanMap& map_;

@@ -1,15 +1,21 @@
 #include "core/match/score.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadfix {
 
-double score_of(const MatchSums& s, std::int64_t full_cells, double min_cells) {
+FootprintCells footprint_cells(const FeatureMap& features, double min_share) {
+  const auto full = static_cast<std::int64_t>(features.cells.observed_count());
+  return {full, std::max(1.0, min_share * static_cast<double>(full))};
+}
+
+double score_of(const MatchSums& s, const FootprintCells& cells) {
   const auto n = static_cast<double>(s.n);
-  if (s.n == 0 || n < min_cells) return 0.0;
+  if (s.n == 0 || n < cells.min) return 0.0;
   const double min_squares = kMinVariance * n;
   if (s.mm - s.m * s.m / n < min_squares || s.ll - s.l * s.l / n < min_squares) return 0.0;
-  return pearson(s).value_or(0.0) * std::sqrt(n / static_cast<double>(full_cells));
+  return pearson(s).value_or(0.0) * std::sqrt(n / static_cast<double>(cells.full));
 }
 
 }  // namespace roadfix

@@ -1,6 +1,9 @@
 // The score that the search ranks poses by: see search.hpp for its meaning.
 #pragma once
 
+#include <cstdint>
+
+#include "core/grid/feature_map.hpp"
 #include "core/match/correlation.hpp"
 
 namespace roadfix {
@@ -9,8 +12,16 @@ namespace roadfix {
 /// cell of certain road in ten thousand, or probabilities that differ by 1 %.
 inline constexpr double kMinVariance = 1e-4;
 
-/// r * sqrt(n / full_cells); 0 where less than `min_cells` were observed in both or one of them holds too little
-/// road.
-double score_of(const MatchSums& sums, std::int64_t full_cells, double min_cells);
+/// What the cells observed in both, at a pose, are measured by.
+struct FootprintCells {
+  std::int64_t full = 0;  ///< observed in the feature map
+  double min = 1.0;       ///< observed in both, below which a pose has no score
+};
+
+/// At least one cell and this share of those observed have to be observed in both.
+FootprintCells footprint_cells(const FeatureMap& features, double min_share);
+
+/// r * sqrt(n / cells.full); 0 where less than cells.min were observed in both or one of them holds too little road.
+double score_of(const MatchSums& sums, const FootprintCells& cells);
 
 }  // namespace roadfix

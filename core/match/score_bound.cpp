@@ -14,7 +14,7 @@ constexpr double kRounding = 1e-6;  // sums are exact but for their last digits
 /// that end.
 struct Ends {
   std::array<double, 2> slope_map{};  ///< (mean - base) S_m
-  std::array<double, 2> root{};       ///< sqrt(V_l V_m full_cells / n); 0 where nothing is known
+  std::array<double, 2> root{};       ///< sqrt(V_l V_m full / n); 0 where nothing is known
 };
 
 struct Bounds {
@@ -23,11 +23,11 @@ struct Bounds {
   std::array<Ends, 2> map_variance{};
 };
 
-Bounds bounds_of(const BlockSums& s, double full_cells, double min_cells) {
+Bounds bounds_of(const BlockSums& s, const FootprintCells& footprint) {
   Bounds bounds;
-  if (s.cells.max <= 0.0 || s.cells.max < min_cells || s.map.max <= 0.0) return bounds;
+  if (s.cells.max <= 0.0 || s.cells.max < footprint.min || s.map.max <= 0.0) return bounds;
   bounds.possible = true;
-  bounds.cap = std::sqrt(s.cells.max / full_cells);
+  bounds.cap = std::sqrt(s.cells.max / static_cast<double>(footprint.full));
   const double n_min = std::max(1.0, s.cells.min);
   const double slope = s.feature.min / s.cells.max - s.base;
   const double feature_variance = s.feature_square_min - s.feature.max * s.feature.max / n_min;
@@ -50,8 +50,8 @@ Bounds bounds_of(const BlockSums& s, double full_cells, double min_cells) {
 
 }  // namespace
 
-double score_bound(const BlockSums& sums, double full_cells, double min_cells) {
-  const Bounds bounds = bounds_of(sums, full_cells, min_cells);
+double score_bound(const BlockSums& sums, const FootprintCells& footprint) {
+  const Bounds bounds = bounds_of(sums, footprint);
   if (!bounds.possible) return 0.0;
   double bound = bounds.cap;
   for (const Ends& ends : bounds.map_variance) {
@@ -65,8 +65,8 @@ double score_bound(const BlockSums& sums, double full_cells, double min_cells) {
   return bound * (1.0 + kRounding);
 }
 
-double cross_needed(const BlockSums& sums, double full_cells, double min_cells, double score) {
-  const Bounds bounds = bounds_of(sums, full_cells, min_cells);
+double cross_needed(const BlockSums& sums, const FootprintCells& footprint, double score) {
+  const Bounds bounds = bounds_of(sums, footprint);
   if (!bounds.possible || bounds.cap * (1.0 + kRounding) < score) return std::numeric_limits<double>::infinity();
   double needed = 0.0;
   for (const Ends& ends : bounds.map_variance) {

@@ -1,6 +1,6 @@
 // From what is known of a block of poses to the best score that any of them can have.
 //
-// With n cells observed in both, sums S over them, and score.hpp's r sqrt(n / full_cells),
+// With n cells observed in both, sums S over them, and score.hpp's r sqrt(n / full),
 //
 //     r = (S_ml - S_l S_m / n) / sqrt(V_m V_l),   V_m = S_mm - S_m^2 / n,   V_l = S_ll - S_l^2 / n.
 //
@@ -9,9 +9,11 @@
 // V_m has two bounds of the form a S_m + b - S_m^2 / n: a = 0 with b the least S_mm; and, which is more where cells are
 // nearly 0 or span, a = span with -b the most that sum m (span - m) = span S_m - S_mm can be.
 //
-// What is left unknown is S_m. A score s is possible only if C >= (mean - base) S_m + s sqrt(V_l V_m full_cells / n),
+// What is left unknown is S_m. A score s is possible only if C >= (mean - base) S_m + s sqrt(V_l V_m full / n),
 // which is concave in S_m: least at an end of its interval.
 #pragma once
+
+#include "core/match/score.hpp"
 
 namespace roadfix {
 
@@ -33,9 +35,9 @@ struct BlockSums {
 };
 
 /// At least the score (score.hpp) of any pose with such sums, in [0, about 1].
-double score_bound(const BlockSums& sums, double full_cells, double min_cells);
+double score_bound(const BlockSums& sums, const FootprintCells& footprint);
 
 /// The value of cross_max below which score_bound() is less than `score`; may be infinite.
-double cross_needed(const BlockSums& sums, double full_cells, double min_cells, double score);
+double cross_needed(const BlockSums& sums, const FootprintCells& footprint, double score);
 
 }  // namespace roadfix

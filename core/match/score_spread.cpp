@@ -55,7 +55,7 @@ Squares squares_at(const Level& level, int bin, const GroundAround& ground, cons
   ground.match(footprint, poses, cells, sums);
   Squares squares;
   for (const MatchSums& each : sums) {
-    const double score = score_of(each, level.features.full_cells, level.features.min_cells);
+    const double score = score_of(each, level.features.cells);
     if (score == 0.0) continue;
     squares.sum += score * score;
     ++squares.count;

@@ -49,7 +49,7 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   for (int scale = -largest; scale <= largest; ++scale) {
     const LevelFeatures features = level.at_scale(scale);
     bounded.features = &features.map;
-    bounded.min_cells = features.min_cells;
+    bounded.cells = features.cells;
     BoundedResult found = search_with_bound(bounded, deadline);
     for (LatticePose& pose : found.poses) {
       pose.scale = scale;

@@ -238,7 +238,7 @@ void one_heading_by_brute_force(benchmark::State& state) {
   double best = 0.0;
   for (auto _ : state) {
     match_sums(plane, footprint, places, sums);
-    for (const MatchSums& s : sums) best = std::max(best, score_of(s, footprint.observed_cells(), 1.0));
+    for (const MatchSums& s : sums) best = std::max(best, score_of(s, {footprint.observed_cells(), 1.0}));
   }
   benchmark::DoNotOptimize(best);
   state.counters["poses"] =

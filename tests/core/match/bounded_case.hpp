@@ -47,13 +47,12 @@ class BoundedCase {
     search.positions = positions_;
     const bool part = seed % 5 == 0;
     search.eligible = [part](int col, int row) { return !part || (col + 2 * row) % 7 < 4; };
-    search.min_cells = std::max(1.0, 0.5 * static_cast<double>(features_.cells.observed_count()));
+    search.cells = footprint_cells(features_, 0.5);
   }
   BoundedCase(const BoundedCase&) = delete;
   BoundedCase& operator=(const BoundedCase&) = delete;
 
   double brute_force() const {
-    const auto full = static_cast<std::int64_t>(features_.cells.observed_count());
     const int margin = 2 * footprint_reach(features_);
     const MapPlane plane(padded(map_.cells, margin));
     std::vector<PlaneCell> places;
@@ -67,7 +66,7 @@ class BoundedCase {
     for (const int bin : search.headings) {
       const PackedFootprint footprint = footprint_at(features_, search.bins.heading(bin));
       match_sums(plane, footprint, places, sums);
-      for (const MatchSums& s : sums) best = std::max(best, score_of(s, full, search.min_cells));
+      for (const MatchSums& s : sums) best = std::max(best, score_of(s, search.cells));
     }
     return best;
   }

@@ -22,7 +22,6 @@ using testing::reader_of;
 
 /// Best score over every cell and heading bin of the map.
 double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double min_share) {
-  const auto full = static_cast<std::int64_t>(features.cells.observed_count());
   double best = 0.0;
   const int margin = 2 * footprint_reach(features);
   const MapPlane plane(padded(map.cells, margin));
@@ -35,7 +34,7 @@ double brute_force(const RoadGrid& map, const FeatureMap& features, const Headin
     const PackedFootprint footprint = footprint_at(features, bins.heading(bin));
     match_sums(plane, footprint, places, sums);
     for (const MatchSums& s : sums) {
-      best = std::max(best, score_of(s, full, min_share * static_cast<double>(full)));
+      best = std::max(best, score_of(s, footprint_cells(features, min_share)));
     }
   }
   return best;

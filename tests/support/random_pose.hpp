@@ -1,12 +1,20 @@
-// Poses of tests, drawn at random.
+// Poses of tests: regions of them, and some drawn at random.
 #pragma once
 
 #include <random>
 
 #include "core/units/draws.hpp"
 #include "core/units/planar.hpp"
+#include "core/units/pose_region.hpp"
 
 namespace roadfix::testing {
+
+/// At every heading.
+inline PoseRegion all_poses_in(const GridBox& box) {
+  PoseRegion region;
+  region.box = box;
+  return region;
+}
 
 /// Uniform over the box, less a margin on every side, and over all headings.
 inline GridPose pose_within(const GridBox& box, double margin_m, std::mt19937_64& random) {

@@ -16,6 +16,7 @@ namespace {
 
 using testing::kSquare;
 using testing::seen_at;
+using testing::start_at;
 
 struct Moments {
   GridPoint mean;
@@ -39,8 +40,7 @@ TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
   options.injected_share = 0.0;
   options.roughening_m = 0.0;
   Filter filter(options, {kSquare}, 11);
-  const Proposal start{{{300.0, 400.0}, Angle()}, {{{100.0, 0, 0}, {0, 100.0, 0}, {0, 0, 0}}}, 1.0};
-  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  start_at(filter, {{{300.0, 400.0}, Angle()}, {{{100.0, 0, 0}, {0, 100.0, 0}, {0, 0, 0}}}, 1.0});
   double mean = 300.0;
   double variance = 100.0;
   for (int step = 0; step < 10; ++step) {
@@ -61,8 +61,7 @@ TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
 
 TEST(Filter, ThePapersDrawsFifteenPercentUniformlyInEveryStepAndKeepsItsNumber) {
   Filter filter(FilterOptions::paper(2000), {kSquare}, 3);
-  const Proposal far{{{10.0, 10.0}, Angle()}, {}, 1.0};
-  filter.start_from(std::span(&far, 1), 0.0, kSquare);
+  start_at(filter, {{{10.0, 10.0}, Angle()}, {}, 1.0});
   filter.predict(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 1.0});
   const auto moved_away = [&] {
     const Particles& p = filter.particles();
@@ -127,8 +126,7 @@ TEST(Filter, KeepsParticlesBeyondTheRegionAsFarAsItSaysAndDrawsNoneThere) {
 
 TEST(Filter, TakesParticlesThatLeaveTheRegionOutOfTheBelief) {
   Filter filter({}, {kSquare}, 1);
-  const Proposal at_edge{{{990.0, 500.0}, Angle::degrees(90.0)}, {{{100.0, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, 1.0};
-  filter.start_from(std::span(&at_edge, 1), 0.0, kSquare);
+  start_at(filter, {{{990.0, 500.0}, Angle::degrees(90.0)}, {{{100.0, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, 1.0});
   EXPECT_TRUE(filter.predict(OdometryMotion({5.0, 0.0, Angle()}, {})));
   double within = 0.0;
   const Particles& p = filter.particles();
@@ -150,8 +148,7 @@ TEST(Filter, KeepsItsBeliefWhereNothingCouldExplainTheMeasurement) {
 
 TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
   Filter filter({}, {kSquare}, 1);
-  const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
-  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  start_at(filter, {{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0});
   const auto feed = [&](double log_ratio, int steps) {
     for (int i = 0; i < steps; ++i) {
       filter.predict(PlanarMotion{{0.0, 0.1}, {0.0, 0.01}, 1.0});
@@ -168,8 +165,7 @@ TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
 
 TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
   Filter filter({}, {kSquare}, 1);
-  const Proposal start{{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0};
-  filter.start_from(std::span(&start, 1), 0.0, kSquare);
+  start_at(filter, {{{300.0, 300.0}, Angle()}, {{{25.0, 0, 0}, {0, 25.0, 0}, {0, 0, 0.01}}}, 1.0});
   for (int i = 0; i < 100; ++i) {
     filter.predict(PlanarMotion{{0.0, 0.1}, {0.0, 0.01}, 1.0});
     filter.correct(std::vector<double>(filter.particles().size(), i % 2 == 0 ? 1.0 : -0.5));
@@ -180,8 +176,7 @@ TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
 
 TEST(Filter, InjectsProposalsOfASearch) {
   Filter filter({}, {kSquare}, 1);
-  const Proposal here{{{300.0, 300.0}, Angle()}, {}, 1.0};
-  filter.start_from(std::span(&here, 1), 0.0, kSquare);
+  start_at(filter, {{{300.0, 300.0}, Angle()}, {}, 1.0});
   const Proposal there{{{800.0, 700.0}, Angle::degrees(45.0)}, {{{4.0, 0, 0}, {0, 4.0, 0}, {0, 0, 1e-4}}}, 1.0};
   filter.inject(std::span(&there, 1), 0.25);
   const auto clusters = clusters_of(filter.particles(), {});
@@ -206,8 +201,7 @@ TEST(Filter, DrawsScaleAndDriftOfNewParticlesAndKeepsTheScaleWithinItsRange) {
   filter.start_uniformly(kSquare);
   EXPECT_NEAR(sigma_of(p.log_scale), 0.1 / std::sqrt(3.0), 0.002);
   EXPECT_NEAR(sigma_of(p.drift_north_m_s), 4.0, 0.14);
-  const Proposal near_the_end{{{300.0, 300.0}, Angle()}, {}, 1.0, 0.09, 0.02};
-  filter.start_from(std::span(&near_the_end, 1), 0.0, kSquare);
+  start_at(filter, {{{300.0, 300.0}, Angle()}, {}, 1.0, 0.09, 0.02});
   EXPECT_NEAR(sigma_of(p.drift_east_m_s), 4.0, 0.14);
   for (int step = 0; step < 5; ++step) {
     EXPECT_NEAR(*std::ranges::max_element(p.log_scale), 0.1, 1e-12);

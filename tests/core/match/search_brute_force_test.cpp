@@ -15,6 +15,7 @@
 namespace roadfix {
 namespace {
 
+using testing::all_poses_in;
 using testing::observed_at;
 using testing::padded;
 using testing::pose_within;
@@ -52,8 +53,7 @@ TEST(Search, FindsTheBestPoseOfBruteForceOnSmallMaps) {
     for (int hole = below(4); hole > 0; --hole) {
       paste(CellArray(8, 8), map.cells, below(map.geometry.cols), below(map.geometry.rows));
     }
-    PoseRegion region;
-    region.box = map.geometry.box();
+    const PoseRegion region = all_poses_in(map.geometry.box());
     const bool unrelated = round % 3 == 0;
     const auto seen = [&] {
       const int rows = 12 + below(10);

@@ -10,6 +10,7 @@
 namespace roadfix {
 namespace {
 
+using testing::all_poses_in;
 using testing::observed_at;
 using testing::pose_within;
 using testing::reader_of;
@@ -18,8 +19,7 @@ using testing::street_map;
 TEST(SearchProof, IsGivenWhereItIsAskedFor) {
   const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 500, 450});
   std::mt19937_64 random(15);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const GridPose truth = pose_within(region.box, 200.0, random);
   const FeatureMap seen = observed_at(map, truth, 150, 150, 2.0, {0.2, 0.2}, random);
   SearchOptions options;
@@ -38,8 +38,7 @@ TEST(SearchProof, IsGivenWhereItIsAskedFor) {
 TEST(SearchProof, IsOverAllScalesToo) {
   const RoadGrid map = street_map(18, {2.0, {150'000, -2'000'000}, 350, 300});
   std::mt19937_64 random(19);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  PoseRegion region = all_poses_in(map.geometry.box());
   const GridPose truth = pose_within(region.box, 180.0, random);
   FeatureMap window = cut_out(map, truth, 130, 130, 2.1);
   window.cell_m = 2.0;
@@ -62,8 +61,7 @@ TEST(SearchProof, IsByMeansOfItsOwnFinestCellsWhateverWasKept) {
   const GridPose pose{map.geometry.box().centre(), Angle::degrees(31.0)};
   const FeatureMap window = cut_out(map, pose, 270, 270, 2.0);
   paste(CellArray(map.geometry.cols, 60, kNoRoad), map.cells, 0, map.geometry.rows / 2);
-  PoseRegion region;
-  region.box = grown({pose.position, pose.position}, 10.0);
+  PoseRegion region = all_poses_in(grown({pose.position, pose.position}, 10.0));
   region.heading = pose.heading;
   region.heading_half_width = Angle::degrees(20.0);
   SearchOptions options;

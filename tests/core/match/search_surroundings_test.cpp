@@ -18,8 +18,7 @@ class SearchSurroundings : public ::testing::Test {
   /// A circle of 100 m, `east_m` beside the true place.
   PoseRegion beside(double east_m) const {
     const GridPoint centre{truth_.position.east_m + east_m, truth_.position.north_m};
-    PoseRegion region;
-    region.box = grown({centre, centre}, 100.0);
+    PoseRegion region = testing::all_poses_in(grown({centre, centre}, 100.0));
     region.circle = GridCircle{centre, 100.0};
     return region;
   }

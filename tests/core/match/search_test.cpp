@@ -13,6 +13,7 @@
 namespace roadfix {
 namespace {
 
+using testing::all_poses_in;
 using testing::observed_at;
 using testing::pose_within;
 using testing::reader_of;
@@ -26,8 +27,7 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
   const RoadGrid map = street_map(1, town(2000, 1600));
   std::mt19937_64 random(2);
   const GridReader read = reader_of(map);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   for (int round = 0; round < 2; ++round) {
     const GridPose truth = pose_within(region.box, 250.0, random);
     const FeatureMap window = cut_out(map, truth, 150, 150, 2.0);
@@ -42,8 +42,7 @@ TEST(Search, FindsAWindowOfTheMapWithinHalfACellAndOneDegree) {
 TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
   const RoadGrid map = street_map(12, {4.0, {75'000, -1'000'000}, 1500, 1400});
   std::mt19937_64 random(13);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   ASSERT_GT(region.area_km2(), 30.0);
   const GridPose truth = pose_within(region.box, 400.0, random);
   const FeatureMap seen = observed_at(map, truth, 110, 110, 4.0, {0.2, 0.2}, random);
@@ -56,8 +55,7 @@ TEST(Search, FindsAWindowOfALargeMapThatIsScannedInCoarserCells) {
 TEST(Search, FindsAWindowOfKilometresInCoarserCells) {
   const RoadGrid map = street_map(12, {4.0, {75'000, -1'000'000}, 1500, 1400});
   std::mt19937_64 random(17);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const GridPose truth = pose_within(region.box, 1500.0, random);
   const FeatureMap seen = observed_at(map, truth, 520, 520, 4.0, {0.3, 0.3}, random);
   const SearchResult found = search(reader_of(map), 4.0, seen, region, {});
@@ -71,8 +69,7 @@ TEST(Search, FindsAWindowOfKilometresInCoarserCells) {
 TEST(Search, GivesEachPeakOneMode) {
   const RoadGrid map = street_map(9, town(900, 900));
   std::mt19937_64 random(10);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   int pairs = 0;
   for (int round = 0; round < 6; ++round) {
     const GridPose truth = pose_within(map.geometry.box(), 150.0, random);
@@ -97,8 +94,7 @@ TEST(Search, TellsOfAPeakThatIsNoDistinctPlace) {
       twice.cells.at(col, row) = std::max(map.cells.at(col, row), map.cells.at(col - 14, row));
     }
   }
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const GridPose truth{region.box.centre(), Angle::degrees(30.0)};
   const FeatureMap seen = cut_out(map, truth, 160, 160, 2.0);
   const SearchResult found = search(reader_of(twice), 2.0, seen, region, {});
@@ -112,8 +108,7 @@ TEST(Search, TellsOfAPeakThatIsNoDistinctPlace) {
 TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
   const RoadGrid map = street_map(3, town(2000, 1600));
   std::mt19937_64 random(4);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   // A third of the footprint lies west of the map.
   const GridPose truth{{region.box.min.east_m + 60.0, region.box.min.north_m + 800.0}, Angle::degrees(211.0)};
   const FeatureMap seen = observed_at(street_map(3, town(2000, 1600)), truth, 160, 160, 2.0, {0.15, 0.15}, random);
@@ -130,8 +125,7 @@ TEST(Search, FindsWhatADetectorWithErrorsSeesPartlyOffTheMap) {
 TEST(Search, FindsAWindowWhoseSizeIsKnownRoughly) {
   const RoadGrid map = street_map(16, town(1600, 1400));
   std::mt19937_64 random(17);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  PoseRegion region = all_poses_in(map.geometry.box());
   for (const double scale : {0.88, 1.12}) {
     const GridPose truth = pose_within(region.box, 350.0, random);
     // Cells of other than 2 m, said to be of 2 m.
@@ -183,8 +177,7 @@ TEST(Search, StaysWithinItsRegionAndHeadingRange) {
 TEST(Search, ManyThreadsGiveToTheLastBitWhatOneGives) {
   const RoadGrid map = street_map(7, {4.0, {75'000, -1'000'000}, 1500, 1400});
   std::mt19937_64 random(8);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const FeatureMap seen = observed_at(map, pose_within(region.box, 400.0, random), 110, 110, 4.0, {0.4, 0.4}, random);
   SearchOptions options;
   const SearchResult one = search(reader_of(map), 4.0, seen, region, options);
@@ -204,8 +197,7 @@ TEST(Search, ManyThreadsGiveToTheLastBitWhatOneGives) {
 
 TEST(Search, TellsHowFarItIsOverHeadingsAndSizes) {
   const RoadGrid map = street_map(7, town(400, 400));
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const GridPose pose{region.box.centre(), {}};
   std::vector<std::int64_t> told;
   SearchOptions options;
@@ -228,8 +220,7 @@ TEST(Search, TellsHowFarItIsOverHeadingsAndSizes) {
 TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
   const RoadGrid map = street_map(20, town(900, 800));
   std::mt19937_64 random(21);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 130, 130, 2.0);
   SearchOptions options;
   options.proof_time = std::chrono::minutes(5);
@@ -249,8 +240,7 @@ TEST(Search, AgainWithWhatWasKeptGivesTheSame) {
 TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const RoadGrid map = street_map(7, town(800, 800));
   std::mt19937_64 random(9);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 128, 128, 2.0);
   SearchOptions options;
   options.deadline = std::chrono::steady_clock::now();
@@ -268,8 +258,7 @@ TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
 TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {
   const RoadGrid map = RoadGrid::unobserved(town(800, 800));
   std::mt19937_64 random(9);
-  PoseRegion region;
-  region.box = map.geometry.box();
+  const PoseRegion region = all_poses_in(map.geometry.box());
   const FeatureMap features = FeatureMap::centred(testing::smooth_cells(random, 64, 64), 2.0);
   EXPECT_TRUE(search(reader_of(map), 2.0, features, region, {}).modes.empty());
 }

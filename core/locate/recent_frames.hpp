@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/filter/motion.hpp"
@@ -35,9 +36,10 @@ class RecentFrames {
   };
 
   RecentFrames() = default;
-  /// Throws CorruptData "track-frames-corrupt" for what to_bytes() never writes.
-  static RecentFrames of_bytes(std::span<const std::byte> bytes);
-  std::vector<std::byte> to_bytes() const;
+  /// As frames() gave them.
+  explicit RecentFrames(std::vector<Frame> frames) : frames_(std::move(frames)) {}
+  /// Whether it is small enough to be kept, and not too far off by now.
+  static bool may_keep(const Frame& frame);
 
   /// The vehicle has moved on; lets go of the frames that are then too far off. `odometry` and `covariance` as
   /// OdometryMotion takes them.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/locate/recent_frames_bytes.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/fix_json.hpp"
@@ -41,7 +42,7 @@ std::optional<BodyVelocity> velocity_of(const json& velocity) {
 }
 
 json json_of(const LastView& view) {
-  const std::vector<std::byte> earlier = view.earlier.to_bytes();
+  const std::vector<std::byte> earlier = to_bytes(view.earlier);
   return {{"digest", view.digest},
           {"moved_m", view.moved_m},
           {"turned_rad", view.turned_rad},
@@ -55,7 +56,7 @@ RecentFrames frames_of(const std::string& base64) {
     throw CorruptData("track-frames-corrupt",
                       "the stored frames of a track are no base64: delete the track and begin a new one");
   }
-  return RecentFrames::of_bytes(std::as_bytes(std::span(decoded.bytes)));
+  return recent_frames_of(std::as_bytes(std::span(decoded.bytes)));
 }
 
 LastView view_of(const json& view) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/filter/particle_bytes.hpp"
+#include "core/locate/recent_frames_bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fields.hpp"
@@ -181,12 +182,12 @@ TrackerState TrackRegistry::stored_state(const std::string& id) const {
   const StoredState stored = store().state(id);
   if (stored.counters.empty()) return {};
   TrackerState state = api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
-  state.recent = RecentFrames::of_bytes(stored.frames);
+  state.recent = recent_frames_of(stored.frames);
   return state;
 }
 
 void TrackRegistry::store_step(const std::string& id, const StoredStep& step, const TrackerState& state) {
-  const StoredState stored{json_text(api::counters_json(state)), to_bytes(state.filter), state.recent.to_bytes()};
+  const StoredState stored{json_text(api::counters_json(state)), to_bytes(state.filter), to_bytes(state.recent)};
   if (!store().add_step(id, now_us(), stored, step)) throw track_ended(id, TrackEnd::kFinished);
 }
 

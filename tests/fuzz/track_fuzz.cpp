@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/filter/particle_bytes.hpp"
-#include "core/locate/recent_frames.hpp"
+#include "core/locate/recent_frames_bytes.hpp"
 #include "core/units/error.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/position_answer.hpp"
@@ -43,7 +43,7 @@ void read(char kind, const std::string& body) {
   }
   if (kind == 'f') {
     const auto bytes = std::as_bytes(std::span(body));
-    if (!std::ranges::equal(roadfix::RecentFrames::of_bytes(bytes).to_bytes(), bytes)) std::abort();
+    if (!std::ranges::equal(roadfix::to_bytes(roadfix::recent_frames_of(bytes)), bytes)) std::abort();
   }
 }
 

@@ -10,14 +10,11 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
 #include "core/units/error.hpp"
-#include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
 namespace {
-
-using testing::code_of;
 
 constexpr OdometryCovariance kExact{};
 constexpr OdometryCovariance kUsual{{{1.0, 0, 0}, {0, 1.0, 0}, {0, 0, 1e-4}}};
@@ -108,30 +105,6 @@ TEST(RecentFrames, AreOfOneCellSize) {
   recent.keep(blank(100, 4.0));
   ASSERT_EQ(recent.frames().size(), 1U);
   EXPECT_EQ(recent.frames().front().placed.features.cell_m, 4.0);
-}
-
-TEST(RecentFrames, ComeBackFromTheirBytesAndRefuseDamagedOnes) {
-  EXPECT_TRUE(RecentFrames().to_bytes().empty());
-  EXPECT_TRUE(RecentFrames::of_bytes({}) == RecentFrames());
-  RecentFrames recent;
-  for (int i = 0; i < 3; ++i) {
-    recent.keep(blank(20 + i));
-    recent.move({15.0, 1.0, Angle::degrees(4.0)}, kUsual);
-  }
-  const std::vector<std::byte> whole = recent.to_bytes();
-  EXPECT_TRUE(RecentFrames::of_bytes(whole) == recent);
-  const auto refusal = [](std::span<const std::byte> bytes) { return code_of([&] { RecentFrames::of_bytes(bytes); }); };
-  for (std::size_t size = 1; size < whole.size(); size += 7) {
-    EXPECT_EQ(refusal(std::span(whole).first(size)), "track-frames-corrupt") << size;
-  }
-  std::vector<std::byte> longer = whole;
-  longer.push_back(std::byte{0});
-  EXPECT_EQ(refusal(longer), "track-frames-corrupt");
-  for (std::size_t word = 0; word < 12; ++word) {
-    std::vector<std::byte> damaged = whole;
-    std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(8 * word), 8, std::byte{0xff});
-    EXPECT_EQ(refusal(damaged), "track-frames-corrupt") << word;
-  }
 }
 
 /// Patches of 300 m in three rows, each pair of neighbours twice, and a-b-c in the northernmost row alone.

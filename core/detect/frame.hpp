@@ -1,27 +1,16 @@
-// From a camera frame to the ground it shows: a metric picture in the body frame.
+// From a frame, with or without a camera, to the ground it shows and the roads on it.
 #pragma once
 
-#include <opencv2/core.hpp>
+#include <cstdint>
 #include <optional>
+#include <stop_token>
 
 #include "core/detect/frame_camera.hpp"
+#include "core/detect/rectify.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
 
 namespace roadfix {
-
-struct GroundView {
-  GroundImage image;
-  cv::Point2d nadir_px;  ///< the point below the UAV in continuous pixels ((0, 0) = outer corner), may lie outside
-  double nadir_sigma_m = 0.0;  ///< see FeatureMap
-};
-
-/// The part of the ground the frame shows, at most `max_range_m` from the nadir point (beyond it a tilted view is all
-/// blur); pixels outside the frame are unobserved. A frame of finer pixels is averaged. `max_pixels` bounds the result:
-/// LimitExceeded ("ground-too-large"). `frame_observed` (CV_8UC1, may be empty = all) marks the frame's own observed
-/// pixels. Throws what validate(), require_looking_down() and lens_of() do.
-GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const FrameCamera& camera, double gsd_m,
-                   double max_range_m, double max_pixels);
 
 /// Pixels wider than most roads do not show them, and a picture of such pixels is mostly a mistaken number.
 inline constexpr double kCoarsestGsdM = 5.0;
@@ -34,8 +23,8 @@ void require_roads_visible(double gsd_m);
 /// What the frame shows of the ground. Without a camera it was seen straight from above, in pixels of frame.gsd_m. With
 /// one, which says what gsd_m does not: rectify() up to five times its height from the nadir point, and 3 km, farther
 /// than which ground is seen too flat to tell a road, in pixels that the detector makes use of. A painted border
-/// (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws
-/// "frame-too-coarse" and "frame-too-fine" too.
+/// (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws what rectify() and
+/// require_roads_visible() do.
 GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
                        double max_pixels);
 

@@ -17,7 +17,7 @@ void include(Interval& range, std::uint64_t sum) {
 }  // namespace
 
 GroundSums::GroundSums(const BoundMap& map, int col, int row, int cols, int rows)
-    : col_(col), row_(row), stride_(cols + 1) {
+    : col_(col), row_(row), stride_(cols + 1), span_(map.span()) {
   const MapPlane& cells = map.exact();
   before_.reserve(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows));
   for (int r = row; r < row + rows; ++r) {
@@ -34,7 +34,7 @@ GroundSums::GroundSums(const BoundMap& map, int col, int row, int cols, int rows
 
 GroundRange GroundSums::below(std::span<const RowRun> footprint, int block_col, int block_row) const {
   constexpr double kMax = std::numeric_limits<double>::max();
-  GroundRange range{{kMax, 0.0}, {kMax, 0.0}, {kMax, 0.0}};
+  GroundRange range{{kMax, 0.0}, {kMax, 0.0}, kMax, 0.0};
   for (int i = 0; i < kBlockCells; ++i) {
     const std::ptrdiff_t col = kBlockCells * block_col - col_;
     const std::ptrdiff_t row = kBlockCells * block_row + i - row_;
@@ -43,7 +43,11 @@ GroundRange GroundSums::below(std::span<const RowRun> footprint, int block_col, 
     for (const CellSums& sums : positions) {
       include(range.cells, sums.cells_and_values & std::numeric_limits<std::uint32_t>::max());
       include(range.value, sums.cells_and_values >> kValueBits);
-      include(range.square, sums.squares);
+      const auto square = static_cast<double>(sums.squares);
+      range.square_min = std::min(range.square_min, square);
+      // Of each position by itself: the one with the most roads need not be the one with the most certain ones.
+      const double mixed = span_ * static_cast<double>(sums.cells_and_values >> kValueBits) - square;
+      range.mixed_max = std::max(range.mixed_max, mixed);
     }
   }
   return range;

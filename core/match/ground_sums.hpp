@@ -14,9 +14,10 @@ namespace roadfix {
 
 /// The least and the most of sums under a footprint over the positions of a block.
 struct GroundRange {
-  Interval cells;   ///< that the map has observed
-  Interval value;   ///< above the map's base
-  Interval square;  ///< of those
+  Interval cells;           ///< that the map has observed
+  Interval value;           ///< above the map's base
+  double square_min = 0.0;  ///< of those
+  double mixed_max = 0.0;   ///< of value (map span - value)
 };
 
 /// Part of a map as sums along its rows, so that a run of cells is a difference of two. Thread-safe once built.
@@ -33,6 +34,7 @@ class GroundSums {
   int col_;
   int row_;
   std::ptrdiff_t stride_;
+  double span_;
   std::vector<CellSums> before_;  ///< each cell, and the end of its row
 };
 

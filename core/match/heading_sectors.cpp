@@ -24,7 +24,8 @@ void narrow(BlockSums& sums, const TurnedFeatures& turned, const GroundRange& gr
   if (ground.cells.min == turned.cells) narrow(sums, turned);
   sums.cells = ground.cells;
   sums.map = ground.value;
-  sums.map_square = ground.square;
+  sums.map_square_min = ground.square_min;
+  sums.map_mixed_max = ground.mixed_max;
 }
 
 bool HeadingSectors::turn(const Deadline& deadline) {
@@ -81,7 +82,9 @@ HeadingSectors::Covered HeadingSectors::covered(const Sector& sector, const Sect
   Covered result{sector.features, false};
   BlockSums& sums = result.sums;
   sums.map = {static_cast<double>(run.inner.value[block]), static_cast<double>(run.outer.value[block])};
-  sums.map_square = {static_cast<double>(run.inner.square[block]), static_cast<double>(run.outer.square[block])};
+  sums.map_square_min = static_cast<double>(run.inner.square[block]);
+  // No term of the sum is negative: over a footprint it is no more than over all that the sector covers.
+  sums.map_mixed_max = sums.span * sums.map.max - static_cast<double>(run.outer.square[block]);
   result.map_observed = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
   if (!result.map_observed) {
     sums.cells = {static_cast<double>(run.inner.cells[block]),

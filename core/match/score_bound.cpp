@@ -31,9 +31,8 @@ Bounds bounds_of(const BlockSums& s, const FootprintCells& footprint) {
   const double n_min = std::max(1.0, s.cells.min);
   const double slope = s.feature.min / s.cells.max - s.base;
   const double feature_variance = s.feature_square_min - s.feature.max * s.feature.max / n_min;
-  const double mixed_max = s.span * s.map.max - s.map_square.max;  // sum of m (span - m)
   const std::array<double, 2> a{0.0, s.span};
-  const std::array<double, 2> b{s.map_square.min, -mixed_max};
+  const std::array<double, 2> b{s.map_square_min, -s.map_mixed_max};
   const std::array<double, 2> map{s.map.min, s.map.max};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto variance_at = [&](double map_sum) { return a[i] * map_sum + b[i] - map_sum * map_sum / n_min; };

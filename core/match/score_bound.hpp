@@ -24,10 +24,11 @@ struct Interval {
 
 /// Sums over the cells observed in both, of which only bounds are known; l and m in the same unit as `span`.
 struct BlockSums {
-  double cross_max = 0.0;  ///< of (l - base) m over the cells with l above the base
-  Interval map;            ///< of m >= 0
-  Interval map_square;     ///< of m^2; span * map.max less its max is the most that sum m (span - m) can be
-  Interval feature;        ///< of l
+  double cross_max = 0.0;       ///< of (l - base) m over the cells with l above the base
+  Interval map;                 ///< of m >= 0
+  double map_square_min = 0.0;  ///< of m^2
+  double map_mixed_max = 0.0;   ///< of m (span - m), of any one pose
+  Interval feature;             ///< of l
   double feature_square_min = 0.0;
   Interval cells;
   double base = 0.0;

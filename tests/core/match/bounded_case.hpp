@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 
 #include "core/grid/resample.hpp"
@@ -17,8 +18,9 @@
 
 namespace roadfix::testing {
 
-/// By seed: streets at odd angles, a regular grid of streets, or smooth noise; with or without unobserved ground; a
-/// feature map that is a noisy window of the map, of its own kind, with unobserved cells, or turned off its nadir.
+/// By seed: streets at odd angles, a regular grid of streets, smooth noise, or patches of few kinds; with or without
+/// unobserved ground; a feature map that is a noisy window of the map, of its own kind, with unobserved cells, or
+/// turned off its nadir.
 class BoundedCase {
  public:
   explicit BoundedCase(std::uint64_t seed) : random_(seed) {
@@ -28,8 +30,10 @@ class BoundedCase {
       map_ = street_map(seed, geometry);
     } else if (kind == 1) {
       map_ = grid_city(geometry, uniform(random_, 40.0, 120.0));
-    } else {
+    } else if (kind == 2) {
       map_ = {geometry, smooth_cells(random_, geometry.cols, geometry.rows)};
+    } else {
+      map_ = {geometry, patches(geometry.cols, geometry.rows)};
     }
     for (int hole = seed % 3 == 0 ? below(5) : 0; hole > 0; --hole) {
       paste(CellArray(4 + below(16), 4 + below(16)), map_.cells, below(geometry.cols), below(geometry.rows));
@@ -76,15 +80,28 @@ class BoundedCase {
  private:
   int below(int n) { return static_cast<int>(random_() % static_cast<std::uint64_t>(n)); }
 
+  /// Of doubtful, likely and certain road: neighbouring places with as much of it differ in how sure it is.
+  CellArray patches(int cols, int rows) {
+    CellArray cells(cols, rows, kNoRoad);
+    for (int left = 2 + below(60); left > 0; --left) {
+      const std::array<int, 3> kinds{20 + below(60), 100 + below(60), kRoad};
+      const auto kind = static_cast<Cell>(kinds.at(static_cast<std::size_t>(below(3))));
+      paste(CellArray(1 + below(6), 1 + below(6), kind), cells, below(cols), below(rows));
+    }
+    return cells;
+  }
+
   void make_features(std::uint64_t seed) {
-    const int cols = 8 + below(12);
-    const int rows = 8 + below(12);
+    const int least = seed % 4 == 3 ? 4 : 8;
+    const int cols = least + below(12);
+    const int rows = least + below(12);
     if (seed % 6 == 5) {
       features_ = FeatureMap::centred(smooth_cells(random_, cols, rows), 4.0);
     } else {
       const GridPose pose{map_.geometry.cell_center(below(map_.geometry.cols), below(map_.geometry.rows)),
                           Angle::degrees(uniform(random_, 0, 360))};
-      features_ = observed_at(map_, pose, cols, rows, 4.0, {0.2, 0.2}, random_);
+      const double errors = seed % 4 == 3 ? 0.0 : 0.2;  // what fits all but perfectly leaves bounds the least room
+      features_ = observed_at(map_, pose, cols, rows, 4.0, {errors, errors}, random_);
     }
     if (seed % 7 == 1) paste(CellArray(5, 4), features_.cells, below(cols), below(rows));
     if (seed % 8 == 2) features_.nadir.row += 4.0;

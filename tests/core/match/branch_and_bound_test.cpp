@@ -16,6 +16,15 @@ TEST(BranchAndBound, FindsTheBestScoreOfBruteForceOnRandomSmallMaps) {
   }
 }
 
+// Cases of which a bound from the most roads at one position and the most certain ones at another excluded the best
+// pose.
+TEST(BranchAndBound, HoldsWherePositionsOfABlockDifferInHowSureTheirRoadsAre) {
+  for (const std::uint64_t seed : {571U, 579U, 639U, 1851U}) {
+    SCOPED_TRACE(seed);
+    testing::expect_brute_force_agrees(BoundedCase(seed));
+  }
+}
+
 TEST(BranchAndBound, NeedsNoPoseToBeginWith) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const BoundedCase given(seed);

@@ -2,19 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/detect/level_camera.hpp"
 #include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
 
-const cv::Size kFrame(640, 480);
-
-FrameCamera level() {
-  FrameCamera camera;
-  camera.horizontal_fov = Angle::degrees(90);
-  camera.agl_m = 100;
-  return camera;
-}
+using testing::kFrame;
+using testing::level_camera;
 
 TEST(Frame, WithPixelsWiderThanRoadsOrFinerThanAnyIsRefused) {
   const auto code = [](double gsd_m) { return testing::code_of([&] { require_roads_visible(gsd_m); }); };
@@ -36,7 +31,7 @@ class HalfMetreDetector : public RoadDetector {
 TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
   const HalfMetreDetector detector;
   const GroundImage frame{cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))};
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   const auto gsd_at = [&](double agl_m) {
     camera.agl_m = agl_m;
     return ground_seen(frame, camera, detector, 1e7).image.gsd_m;
@@ -50,7 +45,7 @@ TEST(GroundSeen, ReachesFiveHeightsFarWhereTheHorizonIsInTheFrame) {
   const HalfMetreDetector detector;
   cv::Mat pixels(kFrame, CV_8UC1);
   cv::randu(pixels, 0, 255);
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(60);
   for (const double agl_m : {60.0, 120.0, 300.0}) {
     camera.agl_m = agl_m;

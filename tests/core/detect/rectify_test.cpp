@@ -10,19 +10,14 @@
 #include <vector>
 
 #include "core/units/error.hpp"
+#include "tests/core/detect/level_camera.hpp"
 #include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
 
-const cv::Size kFrame(640, 480);
-
-FrameCamera level() {
-  FrameCamera camera;
-  camera.horizontal_fov = Angle::degrees(90);
-  camera.agl_m = 100;
-  return camera;
-}
+using testing::kFrame;
+using testing::level_camera;
 
 /// A frame whose pixels say which ground they see, painted through the independent ground_of.
 cv::Mat checkered(const FrameCamera& camera, double side_m) {
@@ -41,7 +36,7 @@ cv::Mat checkered(const FrameCamera& camera, double side_m) {
 }
 
 TEST(Rectify, PutsTheGroundBackInPlace) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(12);
   camera.roll = Angle::degrees(-7);
   constexpr double kSide = 20.0;
@@ -64,7 +59,7 @@ TEST(Rectify, PutsTheGroundBackInPlace) {
 }
 
 TEST(Rectify, LeavesCornersOutsideTheFrameUnobserved) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(30);
   const GroundView view = rectify(cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), {}, camera, {1.0, 1000, 1e7});
   EXPECT_EQ(view.image.observed.at<uchar>(view.image.observed.rows - 1, 0),
@@ -73,7 +68,7 @@ TEST(Rectify, LeavesCornersOutsideTheFrameUnobserved) {
 }
 
 TEST(Rectify, WithTheHorizonInViewOnlyTheRangeIsObserved) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(75);
   const GroundView view = rectify(cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), {}, camera, {1.0, 500, 1e7});
   for (int y = 0; y < view.image.observed.rows; ++y) {
@@ -87,7 +82,7 @@ TEST(Rectify, WithTheHorizonInViewOnlyTheRangeIsObserved) {
 TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
   const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
   for (const double pitch : {-90.0, -85.0, 90.0}) {
-    FrameCamera camera = level();
+    FrameCamera camera = level_camera();
     camera.pitch = Angle::degrees(pitch);
     EXPECT_THAT(testing::message_of([&] {
                   rectify(frame, {}, camera, {0.5, 500, 1e7});
@@ -101,7 +96,7 @@ TEST(Rectify, TellsThatPitchCountsFromStraightDown) {
 TEST(Rectify, AveragesPixelsFinerThanTheGround) {
   cv::Mat stripes(kFrame, CV_8UC1);
   for (int x = 0; x < stripes.cols; ++x) stripes.col(x).setTo(x % 2 == 0 ? 0 : 255);
-  const GroundView view = rectify(stripes, {}, level(), {5.1 * 200.0 / 640, 400, 1e7});
+  const GroundView view = rectify(stripes, {}, level_camera(), {5.1 * 200.0 / 640, 400, 1e7});
   const cv::Mat inner = view.image.pixels(cv::Rect(2, 2, view.image.pixels.cols - 4, view.image.pixels.rows - 4));
   double low = 0.0;
   double high = 0.0;
@@ -162,7 +157,7 @@ double miss_m(const GroundView& view, cv::Point2d place) {
 }
 
 TEST(Rectify, TakesTheDistortionOfTheLensOut) {
-  FrameCamera wide = level();
+  FrameCamera wide = level_camera();
   wide.horizontal_fov.reset();
   wide.focal_px = 300.0;
   wide.principal_px = {331.0, 228.0};
@@ -187,7 +182,7 @@ TEST(Rectify, TakesTheDistortionOfTheLensOut) {
 }
 
 TEST(Rectify, DoesNotObserveWhereALensHasFoldedBack) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.horizontal_fov.reset();
   camera.focal_px = 320.0;
   camera.distortion = {-0.5, 0, 0, 0};  // r - r^3 / 2 grows up to r = 0.816
@@ -206,7 +201,7 @@ TEST(Rectify, DoesNotObserveWhereALensHasFoldedBack) {
 TEST(Rectify, RefusesWhatCannotBe) {
   const cv::Mat frame(kFrame, CV_8UC3, cv::Scalar::all(90));
   const auto with = [&](auto change) {
-    FrameCamera camera = level();
+    FrameCamera camera = level_camera();
     change(camera);
     return [=] { rectify(frame, {}, camera, {0.5, 500, 1e7}); };
   };
@@ -216,7 +211,7 @@ TEST(Rectify, RefusesWhatCannotBe) {
   EXPECT_THROW(with([](auto& c) { c.horizontal_fov.reset(); })(), InvalidInput);
   EXPECT_THROW(with([](auto& c) { c.pitch = Angle::degrees(170); })(), InvalidInput);   // looks at the sky
   EXPECT_THROW(with([](auto& c) { c.distortion = {-0.1, 0, 0, 0}; })(), InvalidInput);  // no focal length
-  EXPECT_THROW(rectify(frame, {}, level(), {0.001, 500, 1e7}), LimitExceeded);
+  EXPECT_THROW(rectify(frame, {}, level_camera(), {0.001, 500, 1e7}), LimitExceeded);
 }
 
 }  // namespace

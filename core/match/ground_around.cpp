@@ -22,10 +22,10 @@ GridGeometry window_around(const Level& level, const LatticePose& pose, int cell
   return padded({level.cell_m(), pose.cell, 1, 1}, reach);
 }
 
-std::vector<PlaneCell> places_around(PlaneCell place, int cells) {
+std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step) {
   std::vector<PlaneCell> places;
-  for (int row = -cells; row <= cells; ++row) {
-    for (int col = -cells; col <= cells; ++col) places.push_back({place.col + col, place.row + row});
+  for (int row = -reach; row <= reach; ++row) {
+    for (int col = -reach; col <= reach; ++col) places.push_back({place.col + col * step, place.row + row * step});
   }
   return places;
 }

@@ -16,8 +16,8 @@ namespace roadfix {
 /// Wide enough for the footprint at a pose, at the next larger scale too, and at those up to `cells` away.
 GridGeometry window_around(const Level& level, const LatticePose& pose, int cells);
 
-/// The places up to `cells` away along either axis, row by row.
-std::vector<PlaneCell> places_around(PlaneCell place, int cells);
+/// The places up to `reach` steps of so many cells away along either axis, row by row.
+std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
 class GroundAround {
  public:

@@ -42,11 +42,12 @@ GroundRange GroundSums::below(std::span<const RowRun> footprint, int block_col, 
     cell_sums(footprint, before_.data() + row * stride_ + col, stride_, positions);
     for (const CellSums& sums : positions) {
       include(range.cells, sums.cells_and_values & std::numeric_limits<std::uint32_t>::max());
-      include(range.value, sums.cells_and_values >> kValueBits);
+      const std::uint64_t value = sums.cells_and_values >> kValueBits;
+      include(range.value, value);
       const auto square = static_cast<double>(sums.squares);
       range.square_min = std::min(range.square_min, square);
       // Of each position by itself: the one with the most roads need not be the one with the most certain ones.
-      const double mixed = span_ * static_cast<double>(sums.cells_and_values >> kValueBits) - square;
+      const double mixed = span_ * static_cast<double>(value) - square;
       range.mixed_max = std::max(range.mixed_max, mixed);
     }
   }

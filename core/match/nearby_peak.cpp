@@ -19,12 +19,7 @@ class ScoresAround {
  public:
   ScoresAround(const Level& level, const LatticePose& place, int step, int reach) : reach_(reach) {
     const MapPlane plane(level.read(window_around(level, place, reach * step)).cells);
-    std::vector<PlaneCell> places;
-    for (int row = -reach; row <= reach; ++row) {
-      for (int col = -reach; col <= reach; ++col) {
-        places.push_back({plane.cols() / 2 + col * step, plane.rows() / 2 + row * step});
-      }
-    }
+    const std::vector<PlaneCell> places = places_around({plane.cols() / 2, plane.rows() / 2}, reach, step);
     const LevelFeatures features = level.at_scale(place.scale);
     std::vector<MatchSums> sums(places.size());
     match_sums(plane, footprint_at(features.rotator, level.bins.heading(place.bin)), places, sums);

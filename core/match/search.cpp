@@ -40,9 +40,9 @@ SearchResult search(const GridReader& read, double finest_cell_m, const FeatureM
   const Deadline deadline(options.stop, options.deadline);
   const SearchLevels levels(read, finest_cell_m, features, region, options);
   const SearchScan scan(levels, options);
-  const Scanned scanned = scan.run(deadline);
+  Scanned scanned = scan.run(deadline);
   SearchResult result = result_of(levels, scanned);
-  std::vector<LatticePose> candidates = scanned.candidates;
+  std::vector<LatticePose> candidates = std::move(scanned.candidates);
   const auto prove_at = [&](int level) {
     if (options.proof_time.count() > 0 && level == levels.proof_level()) {
       result.proof = prove(levels, options, candidates);

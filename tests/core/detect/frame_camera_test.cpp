@@ -6,19 +6,14 @@
 #include <limits>
 
 #include "core/units/error.hpp"
+#include "tests/core/detect/level_camera.hpp"
 #include "tests/support/code_of.hpp"
 
 namespace roadfix {
 namespace {
 
-const cv::Size kFrame(640, 480);
-
-FrameCamera level() {
-  FrameCamera camera;
-  camera.horizontal_fov = Angle::degrees(90);
-  camera.agl_m = 100;
-  return camera;
-}
+using testing::kFrame;
+using testing::level_camera;
 
 std::optional<cv::Point2d> ground_at(const FrameCamera& camera, cv::Point2d pixel) {
   return ground_of(camera, *lens_of(camera, kFrame).ray_of(pixel));
@@ -26,19 +21,19 @@ std::optional<cv::Point2d> ground_at(const FrameCamera& camera, cv::Point2d pixe
 
 TEST(GroundOf, LevelCameraLooksStraightDown) {
   // 90 degrees across: half the columns see 100 m at 100 m altitude.
-  const auto corner = ground_at(level(), {640, 0});
+  const auto corner = ground_at(level_camera(), {640, 0});
   EXPECT_NEAR(corner->x, 100, 1e-9);
   EXPECT_NEAR(corner->y, -75, 1e-9);
-  EXPECT_NEAR(nominal_gsd_m(level(), kFrame), 200.0 / 640, 1e-12);
+  EXPECT_NEAR(nominal_gsd_m(level_camera(), kFrame), 200.0 / 640, 1e-12);
 }
 
 // Oracle: angles of the ray in the plane of the tilt.
 TEST(GroundOf, PitchLooksForwardAndRollLooksLeft) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(20);
   EXPECT_NEAR(ground_at(camera, {320, 240})->y, -100 * std::tan(20 * M_PI / 180), 1e-9);
   EXPECT_NEAR(ground_at(camera, {320, 0})->y, -100 * std::tan(20 * M_PI / 180 + std::atan(0.75)), 1e-9);
-  camera = level();
+  camera = level_camera();
   camera.roll = Angle::degrees(10);
   EXPECT_NEAR(ground_at(camera, {320, 240})->x, -100 * std::tan(10 * M_PI / 180), 1e-9);
   EXPECT_NEAR(ground_at(camera, {640, 240})->x, 100 * std::tan((45 - 10) * M_PI / 180), 1e-9);
@@ -49,7 +44,7 @@ TEST(GroundOf, PitchLooksForwardAndRollLooksLeft) {
 TEST(NadirSigma, IsWhatSmallErrorsOfAttitudeAndHeightMoveTheGroundInViewBy) {
   const cv::Point2d middle(320, 240);
   for (const double pitch_deg : {0.0, 30.0, -45.0}) {
-    FrameCamera camera = level();
+    FrameCamera camera = level_camera();
     camera.pitch = Angle::degrees(pitch_deg);
     const auto moved_m = [&](const FrameCamera& other) {
       return 100.0 * std::abs(ground_at(other, middle)->y - ground_at(camera, middle)->y);
@@ -68,8 +63,8 @@ TEST(NadirSigma, IsWhatSmallErrorsOfAttitudeAndHeightMoveTheGroundInViewBy) {
 }
 
 TEST(NadirSigma, IsThatOfARollAsOfAPitchAndFiniteAtTheHorizon) {
-  FrameCamera rolled = level();
-  FrameCamera pitched = level();
+  FrameCamera rolled = level_camera();
+  FrameCamera pitched = level_camera();
   rolled.roll = pitched.pitch = Angle::degrees(60.0);
   EXPECT_NEAR(nadir_sigma_m(rolled), nadir_sigma_m(pitched), 1e-9);
   rolled.roll = Angle::degrees(90.0);
@@ -77,7 +72,7 @@ TEST(NadirSigma, IsThatOfARollAsOfAPitchAndFiniteAtTheHorizon) {
 }
 
 TEST(GroundOf, NothingLiesAboveTheHorizon) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(80);
   EXPECT_FALSE(ground_at(camera, {320, 0}));
   EXPECT_TRUE(ground_at(camera, {320, 479}));
@@ -110,11 +105,11 @@ TEST(FrameCamera, IsRefusedWithACalibrationOfFramesOfAnotherSize) {
 }
 
 TEST(FrameCamera, NeedsTheFocalLengthOfACalibration) {
-  FrameCamera camera = level();
+  FrameCamera camera = level_camera();
   EXPECT_NO_THROW(validate(camera, kFrame));
   camera.principal_px = {320.0, 240.0};
   EXPECT_THAT(testing::message_of([&] { validate(camera, kFrame); }), ::testing::HasSubstr("not the field of view"));
-  camera = level();
+  camera = level_camera();
   camera.lens = LensModel::kFisheye;
   EXPECT_EQ(testing::code_of([&] { validate(camera, kFrame); }), "frame-camera");
 }

@@ -122,7 +122,7 @@ void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
   const Calibration& in_force =
       arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
   const bench::CalibrationReport report = bench::learn_calibration(bench::road_outcomes(results), in_force);
-  write_json(bench::to_json(report, origin_of(arguments, manifest)), arguments.calibrate_file);
+  write_json(bench::calibration_json(report, origin_of(arguments, manifest)), arguments.calibrate_file);
   fmt::print(out, "learned from {} answers, {} of them right: {}\n", report.examples, report.right,
              arguments.calibrate_file);
 }

@@ -19,7 +19,7 @@ CLI::Option* add_angle(CLI::App& command, const char* name, Angle& angle, const 
 
 void add_basics(CLI::App& command, FlyOptions& o) {
   fly::FilterPlan& filter = o.service.filter;
-  command.add_option("map", o.map, "Map file (GeoPackage) to localize on")->required();
+  command.add_option("map_file", o.map, "Map file (GeoPackage) to localize on")->required();
   command.add_option(
       "--over", o.over,
       "What lies below: georeferenced imagery; another map; or FRAMES.csv, a recorded flight with its "

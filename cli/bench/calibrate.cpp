@@ -165,7 +165,7 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   return report;
 }
 
-json to_json(const CalibrationReport& report, const json& origin) {
+json calibration_json(const CalibrationReport& report, const json& origin) {
   const Calibration& c = report.calibration;
   json document{{"format", kCalibrationFormat},
                 {"bias", c.bias},

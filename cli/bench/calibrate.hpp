@@ -23,6 +23,6 @@ struct CalibrationReport {
 CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Calibration& in_force);
 
 /// The file's content; `origin` says where it was learned.
-nlohmann::json to_json(const CalibrationReport& report, const nlohmann::json& origin);
+nlohmann::json calibration_json(const CalibrationReport& report, const nlohmann::json& origin);
 
 }  // namespace roadfix::bench

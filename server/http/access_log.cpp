@@ -12,7 +12,7 @@ namespace roadfix::http {
 namespace {
 
 /// Bytes that are not printable ASCII are written as \u00XX: a log line is always valid JSON and never two lines.
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -55,8 +55,9 @@ std::string json_line(const AccessRecord& r) {
   return fmt::format(
       R"({{"time":"{:%Y-%m-%dT%H:%M:%S}.{:03}Z","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}}})",
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::time_point(whole))),
-      (since_epoch - whole).count(), quoted(r.id), quoted(r.client), quoted(r.method), quoted(r.target),
-      quoted(r.route), r.status, r.bytes, r.ms, r.problem.empty() ? "" : ",\"problem\":" + quoted(r.problem));
+      (since_epoch - whole).count(), json_string(r.id), json_string(r.client), json_string(r.method),
+      json_string(r.target), json_string(r.route), r.status, r.bytes, r.ms,
+      r.problem.empty() ? "" : ",\"problem\":" + json_string(r.problem));
 }
 
 AccessLog::AccessLog(const std::string& target) : logger_(open(target)) {}

@@ -42,6 +42,7 @@ class Server::Impl : public httplib::Server {
 
   // server_request.cpp
   void set_callbacks();
+  bool read_and_answer(auto& connection, bool last, bool& closed_by_client, const auto& take_head);
   bool serve_request(Connection& connection, bool last);
   void end_request(Exchange& exchange, std::exception_ptr thrown);
   void identify(Exchange& exchange) const;

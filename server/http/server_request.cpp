@@ -48,6 +48,21 @@ void Server::Impl::set_callbacks() {
   set_logger([this](const auto& head, const auto& out) { finished(head, out); });
 }
 
+/// Later versions of the library do not ask the connection for the addresses of its ends.
+bool Server::Impl::read_and_answer(auto& connection, bool last, bool& closed_by_client, const auto& take_head) {
+  if constexpr (requires { process_request(connection, last, closed_by_client, take_head); }) {
+    return process_request(connection, last, closed_by_client, take_head);
+  } else {
+    std::string remote;
+    std::string local;
+    int remote_port = 0;
+    int local_port = 0;
+    connection.get_remote_ip_and_port(remote, remote_port);
+    connection.get_local_ip_and_port(local, local_port);
+    return process_request(connection, remote, remote_port, local, local_port, last, closed_by_client, take_head);
+  }
+}
+
 /// Returns whether the connection may serve another one.
 bool Server::Impl::serve_request(Connection& connection, bool last) {
   connection.begin_head();
@@ -57,7 +72,7 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
   bool written = false;
   try {
     written =
-        process_request(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
+        read_and_answer(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
   } catch (...) {
     end_request(exchange, std::current_exception());
   }

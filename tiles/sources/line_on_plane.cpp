@@ -20,7 +20,8 @@ struct Points {
   /// Whether all of them have a place there.
   bool transform(OGRCoordinateTransformation& to_plane) {
     std::vector<int> good(x.size(), FALSE);
-    to_plane.Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, good.data());
+    OCTTransformEx(OGRCoordinateTransformation::ToHandle(&to_plane), static_cast<int>(x.size()), x.data(), y.data(),
+                   nullptr, good.data());
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (good[i] == FALSE || !std::isfinite(x[i]) || !std::isfinite(y[i])) return false;
     }

@@ -33,7 +33,7 @@ DatasetPtr open_in_known_crs(const std::string& path, const std::optional<Vector
   const GdalMessages messages;
   DatasetPtr dataset = open_vector(path, tile);
   const std::string said = messages.text();
-  if (options.crs.empty() && said.starts_with("PROJ: ") && said.ends_with("crs not found")) {
+  if (options.crs.empty() && said.starts_with("PROJ: ") && said.find("crs not found") != std::string::npos) {
     throw InvalidInput(
         "crs-unknown",
         fmt::format("{}: it names a reference system that is not known ({}): give its own with --crs, for "

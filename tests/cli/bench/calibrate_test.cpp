@@ -64,7 +64,7 @@ TEST(LearnCalibration, RefusesTooFewExamples) {
 
 TEST(LearnCalibration, WritesWhatTheServiceReads) {
   const CalibrationReport report = learn_calibration(drawn(1000, 5), default_calibration());
-  const Calibration read = parse_calibration(to_json(report, {{"seed", 5}}).dump());
+  const Calibration read = parse_calibration(calibration_json(report, {{"seed", 5}}).dump());
   for (const double surprise : {-3.0, 0.0, 4.0}) {
     const SearchFigures figures{.surprise = surprise, .lead = 1.0, .gap = 1.0, .roads_across = 2.0};
     EXPECT_EQ(read.probability(figures), report.calibration.probability(figures));
@@ -72,7 +72,7 @@ TEST(LearnCalibration, WritesWhatTheServiceReads) {
   EXPECT_EQ(read.highest, report.calibration.highest);
   EXPECT_EQ(read.position_sigma_scale, report.calibration.position_sigma_scale);
   EXPECT_EQ(read.heading_sigma_scale, report.calibration.heading_sigma_scale);
-  EXPECT_EQ(to_json(report, {{"seed", 5}})["origin"]["examples"], 1000);
+  EXPECT_EQ(calibration_json(report, {{"seed", 5}})["origin"]["examples"], 1000);
 }
 
 TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
@@ -82,7 +82,7 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
     outcome.heading_error_deg = 1e-3;
   }
   const CalibrationReport report = learn_calibration(exact, default_calibration());
-  EXPECT_EQ(parse_calibration(to_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
+  EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
 }
 
 }  // namespace

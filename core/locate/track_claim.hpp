@@ -7,6 +7,12 @@
 
 namespace roadfix {
 
+/// So long a place is claimed without an accepted measurement; then it is searched for.
+inline constexpr double kStaleAfterS = 60.0;
+
+/// Of the filter (Filter::doubt()): beyond it a place is not claimed, and is searched for.
+inline constexpr double kMaxDoubt = 0.4;
+
 /// What measurements and searches have said of a belief since it began.
 struct TrackClaim {
   /// Balance of the last measurements: up by one when accepted, down when rejected. Three rejections in a row take a

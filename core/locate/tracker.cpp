@@ -1,5 +1,7 @@
 #include "core/locate/tracker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -7,6 +9,7 @@
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/tracker_step.hpp"
 #include "core/match/scales.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -16,7 +19,27 @@ AcceptanceRegion region_of_flight(const MapView& map, const TrackSettings& setti
   return {region_of(map, {}), settings.beyond_map_m, max_log_scale(settings.vehicle.scale_range)};
 }
 
+void require_in_order(const TrackerState& before, const StepInput& step) {
+  if (!before.started) return;
+  if (step.sequence <= before.sequence) {
+    throw InvalidInput("step-late", fmt::format("step {} arrived after step {}: numbers must increase; drop late steps",
+                                                step.sequence, before.sequence));
+  }
+  if (step.time_us <= before.time_us) {
+    throw InvalidInput(
+        "time-backwards",
+        fmt::format(
+            "the capture time {} us is not after that of the last step, {} us: set the clock, or begin a new track",
+            step.time_us, before.time_us));
+  }
+}
+
 }  // namespace
+
+std::optional<double> TrackerState::since_accepted_s(std::int64_t now_us) const {
+  if (!accepted_time_us) return std::nullopt;
+  return 1e-6 * static_cast<double>(now_us - *accepted_time_us);
+}
 
 Tracker::Tracker(MapView map, TrackSettings settings)
     : map_(std::move(map)),
@@ -28,6 +51,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
 }
 
 StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
+  require_in_order(before, step);
   return Step(*this, before, step, limits).run();
 }
 

@@ -4,24 +4,21 @@
 // fails leaves the track as it was.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
 #include "core/filter/filter.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/recent_frames.hpp"
+#include "core/locate/step_limits.hpp"
 #include "core/locate/track_claim.hpp"
 #include "core/locate/track_estimate.hpp"
+#include "core/locate/track_motion.hpp"
 #include "core/locate/track_settings.hpp"
 
 namespace roadfix {
-
-/// So long a place is claimed without an accepted measurement; then it is searched for.
-inline constexpr double kStaleAfterS = 60.0;
 
 struct StepInput {
   std::int64_t sequence = 0;                     ///< counts up by 1; numbers left out count as lost steps
@@ -48,22 +45,17 @@ struct TrackerState {
   /// Time of the last search around the place that bore it out; nullopt = none since a search found the place, a
   /// measurement spoke against it or such a search did not bear it out, and nothing is claimed then.
   std::optional<std::int64_t> looked_time_us;
-  bool drifts = false;  ///< such a search found the vehicle beside it: a wind is learned though none was told
   LastView last_view;
-  std::optional<BodyVelocity> velocity;  ///< that the last odometry told
-  bool coasts = false;  ///< the last step told no motion: the drift of the particles is all of their velocity
+  LearnedMotion motion;
+
+  /// nullopt = no measurement was accepted yet.
+  std::optional<double> since_accepted_s(std::int64_t now_us) const;
   friend bool operator==(const TrackerState&, const TrackerState&) = default;
 };
 
 struct StepResult {
   TrackerState state;
   TrackEstimate estimate;
-};
-
-struct StepLimits {
-  int threads = 1;
-  std::optional<std::chrono::steady_clock::time_point> searches_end{};  ///< at it a search ends as it is
-  std::stop_token stop;
 };
 
 class Tracker {

@@ -146,10 +146,10 @@ json counters_json(const TrackerState& state) {
           {"evidence", state.claim.log_odds},
           {"accepted_time_us", json_of(state.accepted_time_us)},
           {"looked_time_us", json_of(state.looked_time_us)},
-          {"drifts", state.drifts},
-          {"velocity", json_of(state.velocity)},
+          {"drifts", state.motion.drifts},
+          {"velocity", json_of(state.motion.velocity)},
           {"last_view", json_of(state.last_view)},
-          {"coasts", state.coasts},
+          {"coasts", state.motion.coasts},
           {"nadir_sigma_m", state.nadir_sigma_m}};
 }
 
@@ -169,11 +169,11 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
     // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity and no view.
     state.looked_time_us = time_of(counters.value("looked_time_us", json()));
-    state.drifts = counters.value("drifts", false);
+    state.motion.drifts = counters.value("drifts", false);
     state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
-    state.velocity = velocity_of(counters.value("velocity", json()));
+    state.motion.velocity = velocity_of(counters.value("velocity", json()));
     state.last_view = view_of(counters.value("last_view", json()));
-    state.coasts = counters.value("coasts", false);
+    state.motion.coasts = counters.value("coasts", false);
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
                                                  error.what() + "): delete the track and begin a new one");

@@ -24,10 +24,10 @@ TrackerState flown() {
   state.claim = {4, 7.5, true};
   state.accepted_time_us = 42'000'000;
   state.looked_time_us = 40'000'000;
-  state.drifts = true;
+  state.motion.drifts = true;
   state.nadir_sigma_m = 5.25;
-  state.velocity = BodyVelocity{14.5, -0.25};
-  state.coasts = true;
+  state.motion.velocity = BodyVelocity{14.5, -0.25};
+  state.motion.coasts = true;
   state.last_view = {0xfedcba9876543210U, 12.5, 0.25, true, {}};
   state.last_view.earlier.keep(FeatureMap::centred(CellArray(3, 2, kRoad), 4.0));
   return state;
@@ -38,7 +38,7 @@ TEST(TrackCounters, ComeBackAsTheyWere) {
   TrackerState blind = flown();
   blind.accepted_time_us.reset();
   blind.looked_time_us.reset();
-  blind.velocity.reset();
+  blind.motion.velocity.reset();
   EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
 }
 
@@ -49,10 +49,10 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   for (const char* name : {"nadir_sigma_m", "velocity", "coasts", "last_view"}) before.erase(name);
   const TrackerState state = state_of(before, {});
   EXPECT_FALSE(state.looked_time_us);
-  EXPECT_FALSE(state.drifts);
+  EXPECT_FALSE(state.motion.drifts);
   EXPECT_EQ(state.nadir_sigma_m, 0.0);
-  EXPECT_FALSE(state.velocity);
-  EXPECT_FALSE(state.coasts);
+  EXPECT_FALSE(state.motion.velocity);
+  EXPECT_FALSE(state.motion.coasts);
   EXPECT_TRUE(state.last_view == LastView());
   EXPECT_EQ(state.sequence, 41);
 }

@@ -1,0 +1,36 @@
+#include "core/locate/particle_likelihoods.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace roadfix {
+namespace {
+
+/// Cells of the frame that the map observes, mean over the belief.
+double mean_cells_on_map(const Particles& p, const ParticleMatches& matches) {
+  double cells = 0.0;
+  for (std::size_t i = 0; i < matches.sums.size(); ++i) cells += p.weight[i] * static_cast<double>(matches.sums[i].n);
+  return cells;
+}
+
+}  // namespace
+
+std::optional<std::vector<double>> log_likelihoods_of(const Particles& particles, const ParticleMatches& matches,
+                                                      const FeatureMap& features, const MeasurementModel& model) {
+  constexpr double kMinShareOnMap = 0.25;
+  const auto frame_cells = static_cast<double>(features.cells.observed_count());
+  if (frame_cells == 0.0) return std::nullopt;
+  const bool needs_map = model.kind != LikelihoodKind::kEquation7;
+  if (needs_map && mean_cells_on_map(particles, matches) < kMinShareOnMap * frame_cells) return std::nullopt;
+  std::vector<double> log_likelihoods(matches.sums.size());
+  for (std::size_t i = 0; i < log_likelihoods.size(); ++i) {
+    // A frame says as much of larger ground as of smaller: its cells are larger then, and not more.
+    const double scale = matches.scales[i];
+    const std::int64_t cells = std::llround(scale * scale * frame_cells);
+    log_likelihoods[i] = model.log_likelihood(matches.sums[i], cells, features.cell_m / scale);
+  }
+  return log_likelihoods;
+}
+
+}  // namespace roadfix

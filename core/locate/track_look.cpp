@@ -1,0 +1,66 @@
+#include "core/locate/track_look.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/grid/resample.hpp"
+#include "core/locate/track_geometry.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr LookAge kLookEvery{3'000'000, 45.0};
+constexpr int kOpenLooks = 2;              // times as old a look that bore the place out may be
+constexpr double kLookRadiusM = 60.0;      // less than a block, from which on streets repeat
+constexpr double kMaxLookRadiusM = 150.0;  // where as much was flown since the last look: odometry may be all wrong
+const Angle kLookHeading = Angle::degrees(15.0);
+
+/// Probability of the places within this distance of a belief.
+double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zone, double radius_m) {
+  double near = 0.0;
+  for (const FixMode& mode : fix.modes) {
+    if (distance_m(on_grid(mode.pose, zone).position, belief.mean.position) <= radius_m) near += mode.weight;
+  }
+  return near;
+}
+
+Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
+  constexpr double kMinProbability = 0.5;
+  constexpr double kMaxShareBeside = 0.2;  // of the best place's probability
+  constexpr double kNearM = 15.0;
+  constexpr double kMaxNearM = 30.0;  // however wide the belief: all that was searched lies near it then
+  constexpr double kSigmas = 2.0;
+  using Outcome = Look::Outcome;
+  if (!fix.complete) return Outcome::kOpen;
+  const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
+  if (probability_near(fix, belief, zone, std::min(near_m, kMaxNearM)) >= kMinProbability) return Outcome::kBorneOut;
+  const bool found = fix.status != FixStatus::kNoFix && fix.probability >= kMinProbability;
+  const bool beside = found && probability_near(fix, belief, zone, near_m) < kMaxShareBeside * fix.probability;
+  return beside ? Outcome::kBeside : Outcome::kOpen;
+}
+
+}  // namespace
+
+bool LookAge::is_due() const { return us >= kLookEvery.us || flown_m >= kLookEvery.flown_m; }
+
+bool LookAge::is_outdated() const {
+  return us >= kOpenLooks * kLookEvery.us || flown_m >= kOpenLooks * kLookEvery.flown_m;
+}
+
+std::optional<Look> look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame,
+                                const Cluster& belief, double flown_m) {
+  const double radius_m = std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM);
+  const auto around = prior_near(map, belief.mean, radius_m, kLookHeading);
+  if (!around) return std::nullopt;
+  const FeatureMap seen = resampled(frame, frame.cell_m, std::exp(belief.log_scale));
+  const std::optional<Fix> fix = search.find(seen, *around, {.looks_beyond_prior = false});
+  if (!fix) return std::nullopt;
+  Look look{outcome_of(*fix, belief, map.zone), {}};
+  if (look.outcome == Look::Outcome::kBeside) {
+    look.places = proposals_of(map, *fix, seen);
+    for (Proposal& place : look.places) place.log_scale += belief.log_scale;
+  }
+  return look;
+}
+
+}  // namespace roadfix

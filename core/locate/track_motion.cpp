@@ -1,0 +1,109 @@
+#include "core/locate/track_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/locate/odometry_noise.hpp"
+
+namespace roadfix {
+namespace {
+
+// The altitude's error wanders by this share of its range per square root of a second, with the relief below and the
+// air pressure.
+constexpr double kScaleWalkShare = 0.03;
+
+// Of a vehicle that no odometry tells of: so much of its speed, and at least so many m/s, its velocity changes by
+// within a second (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
+constexpr double kManoeuvreShare = 0.5;
+constexpr double kLeastManoeuvreMS = 1.0;
+
+// 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told: so much
+// of the speed, and at least so many m/s.
+constexpr double kFoundWindShare = 0.3;
+constexpr double kLeastFoundWindMS = 5.0;
+constexpr double kTriedShare = 0.1;  // of the particles, before it is found wrong
+
+}  // namespace
+
+OdometryCovariance StepMotion::odometry_covariance() const {
+  return told_.covariance ? *told_.covariance : covariance_of(*told_.odometry, vehicle_);
+}
+
+bool StepMotion::covers_ground() const { return wind().is_none() && told_.lost_steps == 0; }
+
+double StepMotion::speed_m_s() const {
+  if (learned_.velocity) return std::hypot(learned_.velocity->forward_m_s, learned_.velocity->right_m_s);
+  return vehicle_.planar ? std::abs(vehicle_.planar->speed_m_s.mean) : 0.0;
+}
+
+Wind StepMotion::wind() const {
+  const Wind& told = vehicle_.wind;
+  if (!learned_.drifts) return told;
+  const Wind found = Wind::of(std::max(kLeastFoundWindMS, kFoundWindShare * speed_m_s()), std::nullopt);
+  return {std::max(told.sigma_m_s, found.sigma_m_s), std::max(told.walk, found.walk)};
+}
+
+AcceptanceRegion StepMotion::region() const {
+  AcceptanceRegion region = flight_;
+  region.drift_sigma_m_s = wind().sigma_m_s;
+  if (coasts()) region.drift_sigma_m_s = std::max(region.drift_sigma_m_s, speed_m_s());
+  return region;
+}
+
+bool StepMotion::move(Filter& filter) {
+  const bool coasted = std::exchange(learned_.coasts, coasts());
+  if (told_.odometry) return follow_odometry(filter, coasted);
+  const auto& planar = vehicle_.planar;
+  if (!planar) return coast(filter, !coasted);
+  return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk});
+}
+
+void StepMotion::begin_anew() {
+  learned_.velocity.reset();
+  learned_.coasts = coasts();
+}
+
+/// Where the step before told no motion, the drift of the particles was all of their velocity: they draw a new one.
+bool StepMotion::follow_odometry(Filter& filter, bool coasted) {
+  const auto [odometry, covariance] =
+      with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
+  const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk);
+  learned_.velocity = {odometry.forward_m / told_.seconds, odometry.right_m / told_.seconds};
+  if (!coasted) return predict(filter, motion);
+  return predict(filter, [&motion, region = region()](ParticleState& state, RandomStream& random) {
+    draw_drift(region, state, random);
+    motion(state, random);
+  });
+}
+
+/// On with the velocity that odometry told, if any did.
+bool StepMotion::coast(Filter& filter, bool begins) const {
+  ConstantVelocityMotion motion{told_.seconds};
+  motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_m_s());
+  if (begins) motion.joins = learned_.velocity.value_or(BodyVelocity{});
+  return predict(filter, motion);
+}
+
+template <MotionModel Motion>
+bool StepMotion::predict(Filter& filter, const Motion& motion) const {
+  const double range = vehicle_.scale_range;
+  if (range == 0.0) return filter.predict(motion);
+  const ScaleWalk scale_walk{told_.seconds, kScaleWalkShare * range, flight_.max_log_scale};
+  return filter.predict([&](ParticleState& state, RandomStream& random) {
+    motion(state, random);
+    scale_walk(state, random);
+  });
+}
+
+void StepMotion::try_drifts(Filter& filter) const {
+  if (!coasts() && wind().is_none()) filter.try_drifts(kTriedShare, kFoundWindShare * speed_m_s());
+}
+
+void StepMotion::learn_drift(Filter& filter) {
+  if (learned_.drifts || coasts()) return;
+  learned_.drifts = true;
+  filter.widen_drift(wind().sigma_m_s);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,72 @@
+// How the vehicle of a track moves in a step: by odometry, by equation (4), or as it flew before. Knows neither the map
+// nor what frames show.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/filter/filter.hpp"
+#include "core/locate/track_settings.hpp"
+
+namespace roadfix {
+
+/// What a step tells of the motion since the one before.
+struct ToldMotion {
+  std::optional<Odometry> odometry;
+  std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
+  double seconds = 0.0;
+  std::int64_t lost_steps = 0;  ///< between the two, of whose motion nothing is known
+};
+
+/// What a track keeps of the motion from step to step.
+struct LearnedMotion {
+  std::optional<BodyVelocity> velocity;  ///< that the last odometry told
+  bool drifts = false;                   ///< the odometry was found wrong: a wind is learned though none was told
+  bool coasts = false;  ///< the last step told no motion: the drift of the particles is all of their velocity
+  friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;
+};
+
+class StepMotion {
+ public:
+  /// `flight`: where particles live, but for their drift. `vehicle` and `flight` outlive this.
+  StepMotion(const VehicleNoise& vehicle, const AcceptanceRegion& flight, const ToldMotion& told,
+             const LearnedMotion& before)
+      : vehicle_(vehicle), flight_(flight), told_(told), learned_(before) {}
+
+  const ToldMotion& told() const { return told_; }
+  const LearnedMotion& learned() const { return learned_; }
+  /// Of the odometry, which was told, and without that of lost steps.
+  OdometryCovariance odometry_covariance() const;
+  /// Whether odometry, if any is told, is the whole motion over the ground: no wind, no lost steps.
+  bool covers_ground() const;
+  /// That the last odometry told; where none is to be expected, that of the vehicle.
+  double speed_m_s() const;
+  /// Where particles live, with the drift of new ones.
+  AcceptanceRegion region() const;
+
+  /// Moves the particles. False where the belief left the region and began anew. Throws as OdometryMotion does.
+  bool move(Filter& filter);
+  /// The belief is thrown away, and what was learned with it; a drift that was found stays.
+  void begin_anew();
+
+  /// Some particles try other velocities, unless the drift is open anyway (wind, no odometry). Should the odometry be
+  /// worse than it says, frames tell them from the others before the belief is left behind.
+  void try_drifts(Filter& filter) const;
+  /// The odometry was found wrong, where there is one: from now on its drift is learned.
+  void learn_drift(Filter& filter);
+
+ private:
+  bool coasts() const { return !told_.odometry && !vehicle_.planar; }
+  Wind wind() const;
+  bool follow_odometry(Filter& filter, bool coasted);
+  bool coast(Filter& filter, bool begins) const;
+  template <MotionModel Motion>
+  bool predict(Filter& filter, const Motion& motion) const;
+
+  const VehicleNoise& vehicle_;
+  const AcceptanceRegion& flight_;
+  ToldMotion told_;
+  LearnedMotion learned_;
+};
+
+}  // namespace roadfix

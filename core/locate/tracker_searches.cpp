@@ -1,0 +1,130 @@
+// What a step makes of searches: where the track begins, and where its belief is told from other places or found again.
+#include <algorithm>
+#include <cstdint>
+
+#include "core/locate/track_geometry.hpp"
+#include "core/locate/tracker_step.hpp"
+#include "core/units/error.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::int64_t kMeasurementsBetweenSearches = 10;
+constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, where a claim waits for a search
+constexpr double kProbabilityForClaim = 0.95;         // of a search at the place that the measurements bear out
+constexpr double kInjectedShare = 0.3;
+constexpr double kMovedShare = 0.8;   // of the particles, to where a look found the vehicle
+constexpr double kMaxFixShare = 0.9;  // of the particles; the others begin anew
+constexpr double kRecoveryRadiusM = 3000.0;
+
+double probability_of_all(const Fix& fix) {
+  double known = 0.0;
+  for (const FixMode& mode : fix.modes) known += mode.weight;
+  return known;
+}
+
+}  // namespace
+
+bool Tracker::Step::may_search() const { return settings_.recovers || settings_.start == TrackStart::kSearch; }
+
+/// The prior as it was given holds for the first step only. False where the particles stay as they are.
+bool Tracker::Step::start_by_search() {
+  const bool first = state_.sequence < 0;
+  const std::optional<Prior> prior = first ? settings_.prior : prior_around(map_, filter_.particles());
+  if (!prior) return false;
+  state_.searched = true;
+  const FeatureMap seen = state_.recent.laid_around(*features_);
+  const std::optional<Fix> fix = search_within(*prior, seen);
+  if (!fix || fix->modes.empty()) return false;
+  const double uniform_share = std::clamp(1.0 - probability_of_all(*fix), 1.0 - kMaxFixShare, 0.9);
+  filter_.restart_from(proposals_of(map_, *fix, *features_), uniform_share,
+                       first ? tracker_.start_ : tracker_.region_.poses);
+  outcome_.measurement = Measurement::kSearched;
+  if (fix->status == FixStatus::kFix && search_.holds_at_other_scales(*fix, seen, *prior)) confirm(*fix);
+  return true;
+}
+
+void Tracker::Step::look_around_if_due() {
+  const bool sure = state_.claim.outweighs_chance() && state_.claim.confirmed;
+  if (!settings_.recovers || !sure || outcome_.measurement == Measurement::kUseless) return;
+  const std::int64_t since_us = input_.time_us - state_.looked_time_us.value_or(state_.time_us);
+  const LookAge last{since_us, 1e-6 * static_cast<double>(since_us) * motion_.speed_m_s()};
+  if (state_.looked_time_us && !last.is_due()) return;
+  const Cluster belief = clusters_of(filter_.particles(), settings_.clusters).front();
+  if (const auto look = look_around(search_, map_, *features_, belief, last.flown_m)) take(*look, last);
+}
+
+void Tracker::Step::take(const Look& look, LookAge last) {
+  switch (look.outcome) {
+    case Look::Outcome::kBorneOut:
+      state_.looked_time_us = input_.time_us;
+      motion_.try_drifts(filter_);
+      break;
+    case Look::Outcome::kOpen:
+      if (last.is_outdated()) state_.looked_time_us.reset();
+      break;
+    case Look::Outcome::kBeside:
+      doubt_place();
+      motion_.learn_drift(filter_);
+      filter_.inject(look.places, kMovedShare);
+  }
+}
+
+void Tracker::Step::search_if_due() {
+  const bool claim_waits = state_.claim.outweighs_chance() && !state_.claim.confirmed;
+  const std::int64_t wait = claim_waits ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
+  if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= wait) recover();
+}
+
+bool Tracker::Step::wants_search() const {
+  // Nothing has spoken for the belief for long, be it that nothing could.
+  const bool stale = state_.since_accepted_s(input_.time_us).value_or(0.0) >= kStaleAfterS;
+  if (filter_.doubt() > kMaxDoubt || stale) return true;
+  if (state_.claim.outweighs_chance()) return !state_.claim.confirmed;
+  return state_.claim.log_odds == 0.0 && outcome_.measurement != Measurement::kUseless;
+}
+
+void Tracker::Step::recover() {
+  const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
+  const FeatureMap seen = state_.recent.laid_around(*features_);
+  Prior prior;
+  std::optional<Fix> fix = search_within(prior, seen);
+  if (!fix) {
+    prior.circle = GeoCircle{map_.zone.unproject(believed.position), kRecoveryRadiusM};
+    fix = search_within(prior, seen);
+  }
+  if (!fix || fix->modes.empty()) return;
+  const bool agrees = is_same_place(on_grid(fix->modes.front().pose, map_.zone), believed);
+  if (agrees && fix->probability >= kProbabilityForClaim) {
+    state_.claim.confirmed = search_.holds_at_other_scales(*fix, seen, prior);
+  } else if (fix->status != FixStatus::kFix || !search_.holds_at_other_scales(*fix, seen, prior)) {
+    filter_.inject(proposals_of(map_, *fix, *features_), kInjectedShare);
+  } else {
+    filter_.start_from(proposals_of(map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
+    outcome_.measurement = Measurement::kSearched;
+    forget_support();
+    state_.searched = true;
+    confirm(*fix);
+  }
+}
+
+void Tracker::Step::confirm(const Fix& fix) {
+  state_.claim.confirm(fix.probability);
+  state_.accepted_time_us = input_.time_us;
+  state_.looked_time_us.reset();  // the next frame tells whether the odometry carries the place on rightly
+  if (settings_.recovers) motion_.try_drifts(filter_);
+}
+
+/// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
+/// takes longer. At its beginning that is an error, as a smaller prior helps.
+std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen) {
+  state_.last_search = state_.measured;
+  std::optional<Fix> fix =
+      search_.find(seen, prior, {.scale_range = settings_.vehicle.scale_range, .own_frame = features_});
+  if (!fix || fix->complete) return fix;
+  // What it has depends on the machine, and a track must come out the same.
+  if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);
+  return std::nullopt;
+}
+
+}  // namespace roadfix

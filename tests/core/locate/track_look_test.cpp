@@ -1,0 +1,68 @@
+#include "core/locate/track_look.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/flight.hpp"
+#include "tests/support/map_view.hpp"
+
+namespace roadfix {
+namespace {
+
+/// A frame over the town, and a belief somewhere.
+class TrackLook : public ::testing::Test {
+ protected:
+  std::optional<Look> look_from(GridPose believed, double flown_m = 0.0) const {
+    Cluster belief;
+    belief.mean = believed;
+    return look_around(search_, view_, frame_, belief, flown_m);
+  }
+  GridPose beside(double east_m) const {
+    return {{truth_.position.east_m + east_m, truth_.position.north_m}, truth_.heading};
+  }
+
+  const RoadGrid map_ = testing::street_map(51, {2.0, {300'000, -3'200'000}, 800, 700});
+  const MapView view_ = testing::view_of(map_);
+  const GridPose truth_{{600'700.0, 6'399'400.0}, Angle::degrees(60.0)};
+  TrackSettings settings_;
+  StepLimits limits_;
+  const TrackSearch search_{view_, settings_, limits_};
+  std::mt19937_64 random_{3};
+  const FeatureMap frame_ = testing::observed_at(map_, truth_, 128, 128, 2.0, {0.15, 0.15}, random_);
+};
+
+TEST_F(TrackLook, BearsOutAPlaceThatIsRight) {
+  const auto look = look_from(beside(3.0));
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->outcome, Look::Outcome::kBorneOut);
+  EXPECT_TRUE(look->places.empty());
+}
+
+TEST_F(TrackLook, FindsTheVehicleBesideAndFartherAwayTheFartherItFlew) {
+  const auto near = look_from(beside(45.0));
+  ASSERT_TRUE(near);
+  ASSERT_EQ(near->outcome, Look::Outcome::kBeside);
+  EXPECT_LT(distance_m(near->places.at(0).mean.position, truth_.position), 5.0);
+
+  const auto flown_little = look_from(beside(110.0));
+  ASSERT_TRUE(flown_little);
+  EXPECT_NE(flown_little->outcome, Look::Outcome::kBorneOut);
+  const auto flown_far = look_from(beside(110.0), 140.0);
+  ASSERT_TRUE(flown_far);
+  ASSERT_EQ(flown_far->outcome, Look::Outcome::kBeside);
+  EXPECT_LT(distance_m(flown_far->places.at(0).mean.position, truth_.position), 5.0);
+}
+
+TEST_F(TrackLook, IsNoneBeyondTheMap) { EXPECT_FALSE(look_from(beside(5000.0))); }
+
+TEST(LookAge, CountsTimeAndWay) {
+  EXPECT_FALSE((LookAge{2'900'000, 44.0}).is_due());
+  EXPECT_TRUE((LookAge{3'000'000, 0.0}).is_due());
+  EXPECT_TRUE((LookAge{0, 45.0}).is_due());
+  EXPECT_FALSE((LookAge{5'900'000, 89.0}).is_outdated());
+  EXPECT_TRUE((LookAge{0, 90.0}).is_outdated());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -33,6 +33,11 @@ GridPoint GridGeometry::point_at(CellPosition position) const {
   return {(origin.col + position.col) * cell_m, -(origin.row + position.row) * cell_m};
 }
 
+GridGeometry GridGeometry::padded(int margin_cells) const {
+  return {
+      cell_m, {origin.col - margin_cells, origin.row - margin_cells}, cols + 2 * margin_cells, rows + 2 * margin_cells};
+}
+
 std::optional<GridGeometry> GridGeometry::intersection(const GridGeometry& other) const {
   assert(cell_m == other.cell_m);
   const int west = std::max(origin.col, other.origin.col);

@@ -51,6 +51,8 @@ struct GridGeometry {
   CellPosition position_of(GridPoint point) const;
   GridPoint point_at(CellPosition position) const;
 
+  /// So many cells more on every side.
+  GridGeometry padded(int margin_cells) const;
   /// The part of both that overlaps; nullopt when none does. Cell sizes must be equal.
   std::optional<GridGeometry> intersection(const GridGeometry& other) const;
 

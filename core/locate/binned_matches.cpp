@@ -87,17 +87,14 @@ std::vector<Poses> runs(Poses poses, Same same) {
   return result;
 }
 
-GridGeometry around(Poses poses, double cell_m, int reach) {
+GridGeometry window_of(Poses poses, double cell_m, int reach) {
   LatticeIndex low = poses.front().cell;
   LatticeIndex high = low;
   for (const BinnedPose& pose : poses) {
     low = {std::min(low.col, pose.cell.col), std::min(low.row, pose.cell.row)};
     high = {std::max(high.col, pose.cell.col), std::max(high.row, pose.cell.row)};
   }
-  return {cell_m,
-          {low.col - reach, low.row - reach},
-          high.col - low.col + 1 + 2 * reach,
-          high.row - low.row + 1 + 2 * reach};
+  return GridGeometry{cell_m, low, high.col - low.col + 1, high.row - low.row + 1}.padded(reach);
 }
 
 /// A window of the map; where enough poses share it, also rotated by one, two and three quarter turns to the left.
@@ -168,7 +165,7 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
   put_in_order(poses, bins);
   for (const Poses block : runs(poses, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
     const auto families = runs(block, [&](const auto& a, const auto& b) { return a.bin % quarter == b.bin % quarter; });
-    const GridGeometry geometry = around(block, features.cell_m, reach);
+    const GridGeometry geometry = window_of(block, features.cell_m, reach);
     const std::size_t spared = runs(block, same_heading).size() - families.size();
     const Window window(map.read(geometry), worth_turning(geometry, reach, spared));
     parallel_for(static_cast<int>(families.size()), threads, [&](int task) {

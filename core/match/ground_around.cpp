@@ -19,7 +19,7 @@ GridGeometry joined(const GridGeometry& a, const GridGeometry& b) {
 
 GridGeometry window_around(const Level& level, const LatticePose& pose, int cells) {
   const int reach = level.reach(std::min(pose.scale + 1, level.scales.reach())) + cells;
-  return padded({level.cell_m(), pose.cell, 1, 1}, reach);
+  return GridGeometry{level.cell_m(), pose.cell, 1, 1}.padded(reach);
 }
 
 std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step) {

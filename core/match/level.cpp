@@ -23,11 +23,4 @@ int Level::reach(int scale) const {
   return scale == 0 ? reach : static_cast<int>(std::ceil(scales.factor(scale) * reach)) + 1;
 }
 
-GridGeometry padded(const GridGeometry& geometry, int cells) {
-  return {geometry.cell_m,
-          {geometry.origin.col - cells, geometry.origin.row - cells},
-          geometry.cols + 2 * cells,
-          geometry.rows + 2 * cells};
-}
-
 }  // namespace roadfix

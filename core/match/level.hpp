@@ -35,7 +35,4 @@ struct Level {
   GridPose pose_of(const LatticePose& pose) const;
 };
 
-/// So many cells more on every side.
-GridGeometry padded(const GridGeometry& geometry, int cells);
-
 }  // namespace roadfix

@@ -38,7 +38,7 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const Level& level = levels.at(levels.proof_level());
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
   const int largest = level.scales.reach();
-  const GridGeometry window = padded(bounded.positions, level.reach(largest) + BoundMap::kBorder);
+  const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);
   // Its cells are means of the finest ones, which are not as fine in every search.
   const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
                                           [&] { return BoundMap(level.read(window)); });

@@ -73,7 +73,7 @@ ScanRequest SearchScan::request() const {
 std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positions) const {
   const Level& coarse = levels_.coarse();
   const int reach = coarse.reach(coarse.scales.reach());
-  const GridGeometry window = padded(positions, reach);
+  const GridGeometry window = positions.padded(reach);
   const int block = scan_block(coarse.features.map);
   // Its cells are means of the finest ones, which are not as fine in every search.
   return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings(levels_.coarsest())},

@@ -122,9 +122,7 @@ class Imagery final : public CellSource {
 
   void detect(const GridGeometry& part, int pixels, std::uint64_t seed, CellArray& result, cv::Point at) const {
     const auto halo = static_cast<int>(std::ceil(detector_.halo_m() / cell_m_));
-    const GridGeometry wide{
-        cell_m_, {part.origin.col - halo, part.origin.row - halo}, part.cols + 2 * halo, part.rows + 2 * halo};
-    const GroundImage image = mosaic_.view(wide.box(), gsd_m_);
+    const GroundImage image = mosaic_.view(part.padded(halo).box(), gsd_m_);
     const cv::Rect inner(halo * pixels, halo * pixels, part.cols * pixels, part.rows * pixels);
     if (cv::countNonZero(image.observed(inner)) == 0) return;
     const CellArray seen = detector_.detect(image, cell_m_, seed);

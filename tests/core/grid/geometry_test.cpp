@@ -29,6 +29,11 @@ TEST(GridGeometry, IntersectsWithANeighbour) {
   EXPECT_FALSE(a.intersection(GridGeometry::covering({{8, 0}, {9, 9}}, 1.0)));
 }
 
+TEST(GridGeometry, IsPaddedOnEverySide) {
+  const GridGeometry padded = GridGeometry{2.0, {5, -7}, 3, 4}.padded(2);
+  EXPECT_EQ(padded, (GridGeometry{2.0, {3, -9}, 7, 8}));
+}
+
 TEST(GridGeometry, KnowsTheCellSizesOfMaps) {
   for (const double good : {0.25, 0.5, 1.0, 2.0, 16.0}) EXPECT_TRUE(is_map_cell_size(good));
   for (const double bad : {0.125, 3.0, 32.0, 0.0, -2.0}) EXPECT_FALSE(is_map_cell_size(bad));

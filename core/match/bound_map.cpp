@@ -48,6 +48,30 @@ int max_observed(const CellArray& cells) {
   return max;
 }
 
+/// What the map offers to a piece at every cell of a row; beyond the map, nothing.
+void sum_along_row(const CellArray& above, int row, const std::vector<CellOffset>& piece,
+                   std::vector<std::uint16_t>& sums) {
+  std::ranges::fill(sums, std::uint16_t{0});
+  for (const CellOffset cell : piece) {
+    const int from = row + cell.row;
+    if (from < 0 || from >= above.rows()) continue;
+    const int first = std::max(0, -cell.col);
+    const int last = std::min(above.cols(), above.cols() - cell.col);
+    const Cell* in = above.row(from).data() + cell.col;
+    for (int col = first; col < last; ++col) sums[static_cast<std::size_t>(col)] += in[col];
+  }
+}
+
+/// The maximum over the window of every block of a row.
+void max_of_windows(const std::vector<std::uint16_t>& cells, std::vector<std::uint16_t>& blocks) {
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    const std::uint16_t* first = cells.data() + block * kBlockCells;
+    std::uint16_t max = 0;
+    for (int i = 0; i < kBlockWindow; ++i) max = std::max(max, first[i]);
+    blocks[block] = max;
+  }
+}
+
 }  // namespace
 
 BoundMap::BoundMap(const RoadGrid& grid)
@@ -68,8 +92,8 @@ BoundMap::BoundMap(const RoadGrid& grid)
   const CellArray two = pooled_once(above, 1);
   pooled2_ = MapPlane(two);
   pooled4_ = MapPlane(pooled_once(two, 2));
-  for (int i = 0; i < kLineDirections; ++i) fill_pieces(above, i, line_stencil(i));
-  fill_pieces(above, kCellPlane, {{0, 0}});
+  for (int i = 0; i < kLineDirections; ++i) fill_piece_plane(i, line_stencil(i), above);
+  fill_piece_plane(kCellPlane, {{0, 0}}, above);
   fill_observed(grid.cells);
   fill_sums(grid.cells);
 }
@@ -80,42 +104,27 @@ std::size_t BoundMap::bytes() const {
   return bytes + (cells_.size() + value_.size() + square_.size()) * sizeof(std::uint32_t);
 }
 
-void BoundMap::fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece) {
-  const int cols = above.cols();
-  const int rows = above.rows();
+void BoundMap::fill_piece_plane(int index, const std::vector<CellOffset>& piece, const CellArray& above) {
   std::vector<std::uint16_t> sums(static_cast<std::size_t>(block_cols_ * kBlockCells + kBlockWindow));
-  std::vector<std::uint16_t> best(static_cast<std::size_t>(block_cols_) * static_cast<std::size_t>(block_rows_), 0);
-  std::vector<std::uint16_t> widest(static_cast<std::size_t>(block_cols_));
-  for (int row = 0; row < rows; ++row) {
-    std::ranges::fill(sums, std::uint16_t{0});
-    for (const CellOffset cell : piece) {
-      const int from = row + cell.row;
-      if (from < 0 || from >= rows) continue;
-      const int first = std::max(0, -cell.col);
-      const int last = std::min(cols, cols - cell.col);
-      const Cell* in = above.row(from).data() + cell.col;
-      for (int col = first; col < last; ++col) sums[static_cast<std::size_t>(col)] += in[col];
-    }
-    for (int block = 0; block < block_cols_; ++block) {
-      const auto* first = sums.data() + std::ptrdiff_t{block} * kBlockCells;
-      std::uint16_t max = 0;
-      for (int i = 0; i < kBlockWindow; ++i) max = std::max(max, first[i]);
-      widest[static_cast<std::size_t>(block)] = max;
-    }
+  std::vector<std::uint16_t> best_of_row(static_cast<std::size_t>(block_cols_));
+  std::vector<std::uint16_t> best(best_of_row.size() * static_cast<std::size_t>(block_rows_), 0);
+  for (int row = 0; row < above.rows(); ++row) {
+    sum_along_row(above, row, piece, sums);
+    max_of_windows(sums, best_of_row);
     // Windows overlap: a row counts for its own block row and, but for the last one, for the block row above.
     for (int block_row = std::max(0, (row - kBlockWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;
          ++block_row) {
       auto* out = best.data() + static_cast<std::ptrdiff_t>(block_row) * block_cols_;
-      for (int block = 0; block < block_cols_; ++block)
-        out[block] = std::max(out[block], widest[static_cast<std::size_t>(block)]);
+      for (std::size_t i = 0; i < best_of_row.size(); ++i) out[i] = std::max(out[i], best_of_row[i]);
     }
   }
   const int whole = static_cast<int>(piece.size()) * span_;
   for (int row = 0; row < block_rows_; ++row) {
-    std::uint8_t* out = plane(index, 0, row);
     const auto* in = best.data() + static_cast<std::ptrdiff_t>(row) * block_cols_;
-    for (int col = 0; col < block_cols_; ++col)
-      out[col] = static_cast<std::uint8_t>((in[col] * kFull + whole - 1) / whole);
+    std::uint8_t* out = plane(index, 0, row);
+    for (int col = 0; col < block_cols_; ++col) {
+      out[col] = static_cast<std::uint8_t>((in[col] * kFull + whole - 1) / whole);  // a bound: rounded up
+    }
   }
 }
 

@@ -65,7 +65,8 @@ class BoundMap {
   std::size_t bytes() const;
 
  private:
-  void fill_pieces(const CellArray& above, int index, const std::vector<CellOffset>& piece);
+  /// The most that the map (its cells `above` base) offers to the piece anywhere in each block, of kFull.
+  void fill_piece_plane(int index, const std::vector<CellOffset>& piece, const CellArray& above);
   void fill_observed(const CellArray& cells);
   void fill_sums(const CellArray& cells);
   std::uint8_t* plane(int index, int col, int row) {

@@ -85,7 +85,7 @@ class Scan {
     if (deadline_.over()) return;
     std::unique_ptr<ScanBuffers> buffers = taken_buffers();
     const CellArray first = patch_at(bases.front());
-    const ScanMeansPatch means(map_, tile_scan_.means_grid().block_means(first, feature_mean_),
+    const ScanMeansPatch means(map_, tile_scan_.alignment().block_means(first, feature_mean_),
                                buffers->means_workspace);
     const std::vector<ScanDirection> directions = directions_of(bases);
     ScanFindings found;

@@ -94,8 +94,8 @@ void block_means(const BlockRow& sums, const MeansLimits& limits, int count, flo
   }
 }
 
-void mix(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share, int count,
-         float* out) {
+void interpolate(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
+                 int count, float* out) {
   constexpr hn::RebindToSigned<decltype(kFloats)> kInts;
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(kFloats))) {
     const Floats a = hn::GatherIndex(kFloats, blocks, hn::LoadU(kInts, first + i));
@@ -115,7 +115,7 @@ namespace roadfix {
 HWY_EXPORT(score);
 HWY_EXPORT(summarize);
 HWY_EXPORT(block_means);
-HWY_EXPORT(mix);
+HWY_EXPORT(interpolate);
 
 void score_row(const ScoreRow& row, int cols, float* out) { HWY_DYNAMIC_DISPATCH(score)(row, cols, out); }
 
@@ -128,9 +128,9 @@ void means_of_blocks(const BlockRow& sums, const MeansLimits& limits, int count,
   HWY_DYNAMIC_DISPATCH(block_means)(sums, limits, count, correction, gain);
 }
 
-void mix_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
-                int count, float* out) {
-  HWY_DYNAMIC_DISPATCH(mix)(blocks, first, second, share, count, out);
+void interpolate_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
+                        int count, float* out) {
+  HWY_DYNAMIC_DISPATCH(interpolate)(blocks, first, second, share, count, out);
 }
 
 }  // namespace roadfix

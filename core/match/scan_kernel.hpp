@@ -48,8 +48,8 @@ struct MeansLimits {
 /// Nothing is read or written beyond `count`.
 void means_of_blocks(const BlockRow& sums, const MeansLimits& limits, int count, float* correction, float* gain);
 
-/// out[i] = blocks[first[i]] + share[i] (blocks[second[i]] - blocks[first[i]]).
-void mix_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
-                int count, float* out);
+/// Linear interpolation: out[i] = blocks[first[i]] + share[i] (blocks[second[i]] - blocks[first[i]]).
+void interpolate_blocks(const float* blocks, const std::int32_t* first, const std::int32_t* second, const float* share,
+                        int count, float* out);
 
 }  // namespace roadfix

@@ -19,7 +19,7 @@ ScanMap::ScanMap(const RoadGrid& map, int reach, int block)
     : ScanMap(map, moments_of(map.cells).mean(), reach, block) {}
 
 ScanMap::ScanMap(const RoadGrid& map, double mean, int reach, int block)
-    : ScanMap(map, values_of(map.cells, mean), block_sums(map.cells, mean, block, 0), reach, block) {}
+    : ScanMap(map, values_of(map.cells, mean), block_sums(map.cells, mean, {block, 0}), reach, block) {}
 
 ScanMap::ScanMap(const RoadGrid& map, const FloatPlane& values, const BlockSumPlanes& blocks, int reach, int block)
     : geometry_(map.geometry),

@@ -1,29 +1,36 @@
 #include "core/match/scan_means.hpp"
 
 #include "core/match/scan_kernel.hpp"
+#include "core/units/floor_div.hpp"
 
 namespace roadfix {
 
-ScanMeansGrid::ScanMeansGrid(const ScanMap& map, const Positions& positions) : reach_(map.reach()), q_(map.block()) {
+BlockAlignment::BlockAlignment(const ScanMap& map, const Positions& positions)
+    : reach_(map.reach()), block_cells_(map.block()) {
   for (const bool half_turn : {false, true}) {
-    // A block result with its nadir block at B stands for the nadir at B * q + half_block, turned around at
-    // B * q + q - 1 - half_block.
-    const int centre = half_turn ? q_ - 1 - half_block() : half_block();
+    // A block result with its nadir block at B stands for the nadir at B * block_cells + half_block, turned around at
+    // B * block_cells + block_cells - 1 - half_block.
+    const int centre = half_turn ? block_cells_ - 1 - half_block() : half_block();
     // The block whose result lies in the first row and column.
     const int first = half_turn ? -nadir_block() : nadir_block();
-    const int offset = Correlator::kLead - first;
-    const auto along = [&](int count, int lead, int blocks) {
-      return mixes(count + 2, lead - 1 - centre, q_, offset, blocks);
+    const auto taps = [&](int count, int lead, int blocks) {
+      return interpolation_taps({block_cells_, Correlator::kLead - first, blocks}, lead - 1 - centre, count + 2);
     };
-    cols_[half_turn ? 1 : 0] = along(positions.cols, positions.lead_col, map.block_values().sum_cols());
-    rows_[half_turn ? 1 : 0] = along(positions.rows, positions.lead_row, map.block_values().sum_rows());
+    const std::size_t turn = half_turn ? 1 : 0;
+    col_taps_[turn] = taps(positions.cols, positions.lead_col, map.block_values().sum_cols());
+    row_taps_[turn] = taps(positions.rows, positions.lead_row, map.block_values().sum_rows());
   }
 }
 
-BlockSumPlanes ScanMeansGrid::block_means(const CellArray& cells, double mean) const {
-  BlockSumPlanes sums = block_sums(cells, mean, q_, block_lead());
+BlockTiling BlockAlignment::patch_tiling() const {
+  const int first_cell = half_block() - reach_;  // where the block of the nadir begins at 0
+  return {block_cells_, first_cell - block_cells_ * floor_div(first_cell, block_cells_)};
+}
+
+BlockSumPlanes BlockAlignment::block_means(const CellArray& cells, double mean) const {
+  BlockSumPlanes sums = block_sums(cells, mean, patch_tiling());
   for (FloatPlane* plane : {&sums.observed, &sums.value, &sums.square}) {
-    for (float& sum : plane->values) sum /= static_cast<float>(q_ * q_);
+    for (float& sum : plane->values) sum /= static_cast<float>(block_cells_ * block_cells_);
   }
   return sums;
 }

@@ -15,8 +15,8 @@ struct ScanMeans {
   FloatPlane correction, gain;
 };
 
-/// How the positions of a scan lie among the blocks.
-class ScanMeansGrid {
+/// How the positions of a scan, and the cells of its footprints, lie among the blocks that means are known of.
+class BlockAlignment {
  public:
   struct Positions {
     int cols = 0;  ///< from -1 to cols: with the neighbours of the first and last one
@@ -24,23 +24,23 @@ class ScanMeansGrid {
     int lead_col = 0;  ///< of the first one within the map
     int lead_row = 0;
   };
-  ScanMeansGrid(const ScanMap& map, const Positions& positions);
+  BlockAlignment(const ScanMap& map, const Positions& positions);
 
-  /// Position i (from -1 on) lies between these rows or columns of ScanMeans.
-  const BlockMixes& cols(bool half_turn) const { return cols_[half_turn ? 1 : 0]; }
-  const BlockMixes& rows(bool half_turn) const { return rows_[half_turn ? 1 : 0]; }
-  /// Means over each block of the patch's cells (2 reach + 1 of them, the nadir in the middle).
+  /// Tap i + 1 tells the columns or rows of ScanMeans that position i (from -1 on) lies between.
+  const InterpolationTaps& col_taps(bool half_turn) const { return col_taps_[half_turn ? 1 : 0]; }
+  const InterpolationTaps& row_taps(bool half_turn) const { return row_taps_[half_turn ? 1 : 0]; }
+  /// Means over each block of the patch's cells (2 reach + 1 of them along an edge, the nadir in the middle).
   BlockSumPlanes block_means(const CellArray& cells, double mean) const;
 
  private:
-  /// Puts the nadir into the middle of its block (at (q - 1) / 2, rounded down).
-  int block_lead() const { return ((half_block() - reach_) % q_ + q_) % q_; }
-  int half_block() const { return (q_ - 1) / 2; }
-  int nadir_block() const { return (reach_ + block_lead()) / q_; }
+  /// Puts the nadir into the middle of its block (at half_block()).
+  BlockTiling patch_tiling() const;
+  int half_block() const { return (block_cells_ - 1) / 2; }
+  int nadir_block() const { return (reach_ + patch_tiling().lead_cells) / block_cells_; }
 
   int reach_;
-  int q_;  ///< cells per block, an edge
-  std::array<BlockMixes, 2> cols_, rows_;
+  int block_cells_;  ///< along an edge
+  std::array<InterpolationTaps, 2> col_taps_, row_taps_;
 };
 
 /// What a thread uses again and again for means.
@@ -59,7 +59,7 @@ struct ScanMeansWorkspace {
 /// A footprint's side of the means, at one heading and its opposite.
 class ScanMeansPatch {
  public:
-  /// `blocks`: ScanMeansGrid::block_means(). All outlive this.
+  /// `blocks`: BlockAlignment::block_means(). All outlive this.
   ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansWorkspace& workspace);
   /// No score where score_of() gives none for these cells.
   void at(bool half_turn, const FootprintCells& cells, ScanMeans& means) const;

@@ -28,44 +28,47 @@ FloatPlane values_of(const CellArray& cells, double mean) {
   return plane;
 }
 
-BlockSumPlanes block_sums(const CellArray& cells, double mean, int q, int lead) {
+BlockSumPlanes block_sums(const CellArray& cells, double mean, const BlockTiling& tiling) {
+  const int block_cells = tiling.block_cells;
+  const int lead = tiling.lead_cells;
   const std::array<float, 256> value_of = value_table(mean);
-  const auto blocks = [&](int count) { return (count + lead + q - 1) / q; };
+  const auto blocks = [&](int count) { return (count + lead + block_cells - 1) / block_cells; };
   const FloatPlane empty(blocks(cells.cols()), blocks(cells.rows()));
   BlockSumPlanes sums{empty, empty, empty};
   for (int row = 0; row < cells.rows(); ++row) {
     const auto in = cells.row(row);
-    const int block_row = (row + lead) / q;
+    const int block_row = (row + lead) / block_cells;
     float* observed = sums.observed.row(block_row);
     float* value = sums.value.row(block_row);
     float* square = sums.square.row(block_row);
-    int block = lead / q;
-    int left = q - lead % q;  // cells of the block
+    int block = lead / block_cells;
+    int left = block_cells - lead % block_cells;  // cells of the block
     for (const Cell cell : in) {
       const float v = value_of[cell];
       observed[block] += is_observed(cell) ? 1.0F : 0.0F;
       value[block] += v;
       square[block] += v * v;
       if (--left > 0) continue;
-      left = q;
+      left = block_cells;
       ++block;
     }
   }
   return sums;
 }
 
-BlockMixes mixes(int count, int start, int q, int offset, int blocks) {
-  const auto size = static_cast<std::size_t>(count + kRowOverrun);
-  BlockMixes result{std::vector<std::int32_t>(size), std::vector<std::int32_t>(size), std::vector<float>(size)};
-  for (int i = 0; i < count; ++i) {
-    const int block = floor_div(start + i, q);
-    const auto place = [&](int b) { return std::clamp(b + offset, 0, blocks - 1); };
+InterpolationTaps interpolation_taps(const BlockAxis& axis, int first_cell, int cells) {
+  const auto size = static_cast<std::size_t>(cells + kRowOverrun);
+  InterpolationTaps taps{std::vector<std::int32_t>(size), std::vector<std::int32_t>(size), std::vector<float>(size)};
+  const auto index_of = [&](int block) { return std::clamp(block + axis.block_of_cell_0, 0, axis.blocks - 1); };
+  for (int i = 0; i < cells; ++i) {
+    const int cell = first_cell + i;
+    const int block = floor_div(cell, axis.block_cells);
     const auto at = static_cast<std::size_t>(i);
-    result.first[at] = place(block);
-    result.second[at] = place(block + 1);
-    result.share[at] = static_cast<float>(start + i - block * q) / static_cast<float>(q);
+    taps.first[at] = index_of(block);
+    taps.second[at] = index_of(block + 1);
+    taps.share[at] = static_cast<float>(cell - block * axis.block_cells) / static_cast<float>(axis.block_cells);
   }
-  return result;
+  return taps;
 }
 
 }  // namespace roadfix

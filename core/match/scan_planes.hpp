@@ -12,22 +12,33 @@ namespace roadfix {
 /// What is observed as its value less a mean, 0 elsewhere.
 FloatPlane values_of(const CellArray& cells, double mean);
 
-/// Sums over blocks of q x q cells, the first block starting `lead` cells before the first cell: of observed cells, of
-/// their values less a mean, and of the squares of these.
+/// How cells fall into square blocks.
+struct BlockTiling {
+  int block_cells = 1;  ///< along an edge
+  int lead_cells = 0;   ///< so many cells before the first one the first block begins
+};
+
+/// Sums over blocks of cells: of observed cells, of their values less a mean, and of the squares of these.
 struct BlockSumPlanes {
   FloatPlane observed, value, square;
 };
-BlockSumPlanes block_sums(const CellArray& cells, double mean, int q, int lead);
+BlockSumPlanes block_sums(const CellArray& cells, double mean, const BlockTiling& tiling);
 
-/// Linear interpolation between two blocks: which ones, and the share of the second. Cell by cell, and as many more as
-/// vectors may read beyond the last one.
-struct BlockMixes {
+/// The two blocks that each cell of a row or column is interpolated between, linearly, and the share of the second. As
+/// many more as vectors may read beyond the last one (kRowOverrun).
+struct InterpolationTaps {
   std::vector<std::int32_t> first, second;
   std::vector<float> share;
 };
 
-/// For `count` cells from `start` on: between which of the `blocks` they lie. Block b of q cells starts at cell b * q
-/// and has place b + offset.
-BlockMixes mixes(int count, int start, int q, int offset, int blocks);
+/// A row or column of a plane of blocks. Cells beyond its ends take the block at the end.
+struct BlockAxis {
+  int block_cells = 1;
+  int block_of_cell_0 = 0;  ///< index of the block that begins at cell 0, which may lie beyond the ends
+  int blocks = 1;           ///< in all, at least 1
+};
+
+/// Of `cells` cells from `first_cell` on, which may be negative.
+InterpolationTaps interpolation_taps(const BlockAxis& axis, int first_cell, int cells);
 
 }  // namespace roadfix

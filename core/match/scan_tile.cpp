@@ -8,7 +8,7 @@
 namespace roadfix {
 namespace {
 
-int widened_for_vectors(int cols) { return cols + kRowOverrun; }
+int padded_for_vectors(int cols) { return cols + kRowOverrun; }
 
 }  // namespace
 
@@ -20,15 +20,15 @@ ScanBuffers::ScanBuffers(const ScanMap& map)
     : cross(map.values().side()),
       workspace(map.values().side()),
       means_workspace(map),
-      scores(widened_for_vectors(map.values().side()), map.values().side()) {}
+      scores(padded_for_vectors(map.values().side()), map.values().side()) {}
 
 TileScan::TileScan(const ScanMap& map, const ScanRequest& request)
     : map_(map),
       request_(request),
       lead_col_(request.positions.origin.col - map.geometry().origin.col),
       lead_row_(request.positions.origin.row - map.geometry().origin.row),
-      means_grid_(map, {request.positions.cols, request.positions.rows, lead_col_, lead_row_}),
-      eligible_(widened_for_vectors(request.positions.cols + 2), request.positions.rows + 2) {
+      alignment_(map, {request.positions.cols, request.positions.rows, lead_col_, lead_row_}),
+      eligible_(padded_for_vectors(request.positions.cols + 2), request.positions.rows + 2) {
   assert(lead_col_ >= map.reach() && lead_row_ >= map.reach());
   for (int row = 0; row < request.positions.rows; ++row) {
     for (int col = 0; col < request.positions.cols; ++col) {
@@ -50,7 +50,7 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
   const Positions at{positions(sums.col, sums.cols, lead_col_, request_.positions.cols),
                      positions(sums.row, sums.rows, lead_row_, request_.positions.rows)};
   if (at.cols.count() < 3 || at.rows.count() < 3) return;
-  widen_means(half_turn, at, buffers);
+  interpolate_means(half_turn, at, buffers);
   const std::ptrdiff_t start =
       (at.rows.first + lead_row_ + shift - sums.row) * sums.stride + at.cols.first + lead_col_ + shift - sums.col;
   for (std::size_t i = 0; i < direction.bins.size(); ++i) {
@@ -62,38 +62,39 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
 }
 
 /// The means at the columns of a tile, for the rows of blocks that its rows lie between.
-void TileScan::widen_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const {
-  const BlockMixes& of_rows = means_grid_.rows(half_turn);
-  const Range blocks{of_rows.first[static_cast<std::size_t>(at.rows.first + 1)],
-                     of_rows.second[static_cast<std::size_t>(at.rows.last)] + 1};
+void TileScan::interpolate_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const {
+  const InterpolationTaps& row_taps = alignment_.row_taps(half_turn);
+  const Range blocks{row_taps.first[static_cast<std::size_t>(at.rows.first + 1)],
+                     row_taps.second[static_cast<std::size_t>(at.rows.last)] + 1};
   const ScanMeans& means = buffers.means[half_turn ? 1 : 0];
-  const BlockMixes& mixes = means_grid_.cols(half_turn);
-  widen(means.correction, mixes, at.cols, blocks, buffers.correction);
-  widen(means.gain, mixes, at.cols, blocks, buffers.gain);
+  const InterpolationTaps& col_taps = alignment_.col_taps(half_turn);
+  interpolate_cols(means.correction, col_taps, at.cols, blocks, buffers.correction);
+  interpolate_cols(means.gain, col_taps, at.cols, blocks, buffers.gain);
 }
 
-void TileScan::widen(const FloatPlane& blocks, const BlockMixes& mixes, Range cols, Range rows, FloatPlane& out) {
-  out.resize(widened_for_vectors(cols.count()), rows.count());
+void TileScan::interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, Range cols, Range rows,
+                                FloatPlane& out) {
+  out.resize(padded_for_vectors(cols.count()), rows.count());
   const std::ptrdiff_t from = cols.first + 1;
   for (int row = 0; row < out.rows; ++row) {
-    mix_blocks(blocks.row(rows.first + row), mixes.first.data() + from, mixes.second.data() + from,
-               mixes.share.data() + from, cols.count(), out.row(row));
+    interpolate_blocks(blocks.row(rows.first + row), taps.first.data() + from, taps.second.data() + from,
+                       taps.share.data() + from, cols.count(), out.row(row));
   }
 }
 
 void TileScan::score(bool half_turn, const Positions& at, const Cross& cross, ScanBuffers& buffers) const {
-  const BlockMixes& of_rows = means_grid_.rows(half_turn);
-  const int first_block = of_rows.first[static_cast<std::size_t>(at.rows.first + 1)];
+  const InterpolationTaps& row_taps = alignment_.row_taps(half_turn);
+  const int first_block = row_taps.first[static_cast<std::size_t>(at.rows.first + 1)];
   for (int row = at.rows.first; row < at.rows.last; ++row) {
     const auto place = static_cast<std::size_t>(row + 1);
-    const int above = of_rows.first[place] - first_block;
-    const int below = of_rows.second[place] - first_block;
+    const int above = row_taps.first[place] - first_block;
+    const int below = row_taps.second[place] - first_block;
     ScoreRow scored;
     scored.sums = cross.sums + (row - at.rows.first) * cross.stride;
     scored.scale = cross.scale;
     scored.correction = {buffers.correction.row(above), buffers.correction.row(below)};
     scored.gain = {buffers.gain.row(above), buffers.gain.row(below)};
-    scored.share = of_rows.share[place];
+    scored.share = row_taps.share[place];
     scored.eligible = eligible_.row(row + 1) + at.cols.first + 1;
     score_row(scored, at.cols.count(), buffers.scores.row(row - at.rows.first));
   }

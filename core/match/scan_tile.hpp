@@ -47,7 +47,7 @@ class TileScan {
   /// Both outlive it.
   TileScan(const ScanMap& map, const ScanRequest& request);
 
-  const ScanMeansGrid& means_grid() const { return means_grid_; }
+  const BlockAlignment& alignment() const { return alignment_; }
   /// Adds the maxima above `floor`, and all scores, to what was found. `buffers` hold the spectrum of the footprints
   /// and their means in this direction.
   void scan(std::size_t tile, const ScanDirection& direction, float floor, ScanBuffers& buffers,
@@ -68,16 +68,17 @@ class TileScan {
     std::ptrdiff_t stride;
     float scale;
   };
-  void widen_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const;
+  void interpolate_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const;
   void score(bool half_turn, const Positions& at, const Cross& cross, ScanBuffers& buffers) const;
-  static void widen(const FloatPlane& blocks, const BlockMixes& mixes, Range cols, Range rows, FloatPlane& out);
+  static void interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, Range cols, Range rows,
+                               FloatPlane& out);
   static void collect(int bin, const Positions& at, float floor, ScanBuffers& buffers, ScanFindings& found);
 
   const ScanMap& map_;
   const ScanRequest& request_;
   int lead_col_;  ///< of the positions within the map
   int lead_row_;
-  ScanMeansGrid means_grid_;
+  BlockAlignment alignment_;
   FloatPlane eligible_;  ///< 1 or 0; from position (-1, -1) on
 };
 

@@ -118,7 +118,7 @@ TEST_P(ScanRowsOnEachTarget, LieBetweenTheirBlocks) {
     }
     const auto share = noise(count, random);
     std::vector<float> out(count + kRowOverrun);
-    mix_blocks(blocks.data(), first.data(), second.data(), share.data(), static_cast<int>(count), out.data());
+    interpolate_blocks(blocks.data(), first.data(), second.data(), share.data(), static_cast<int>(count), out.data());
     for (std::size_t i = 0; i < count; ++i) {
       const float a = blocks[static_cast<std::size_t>(first[i])];
       const float b = blocks[static_cast<std::size_t>(second[i])];

@@ -45,7 +45,7 @@ struct Drawing {
   std::span<const Orthoimage> imagery;
 };
 
-void draw(const Method& method, const Query& query, const Answer& answer, const Drawing& drawing) {
+void draw_picture(const Method& method, const Query& query, const Answer& answer, const Drawing& drawing) {
   if (drawing.folder.empty()) return;
   const std::filesystem::path file = drawing.folder / (query.id + ".jpg");
   const cv::Mat picture = method.drawn(query, answer, drawing.imagery);
@@ -65,7 +65,7 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
     tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
       stop_if_asked(options);
       const Answer answer = method.answer(queries[i]);
-      draw(method, queries[i], answer, drawing);
+      draw_picture(method, queries[i], answer, drawing);
       outcomes[i] = judged(queries[i].id, queries[i].truth, answer, zone);
       options.progress(task, ++done, static_cast<std::int64_t>(queries.size()));
     });

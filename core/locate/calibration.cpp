@@ -11,7 +11,7 @@ namespace roadfix {
 namespace {
 
 constexpr double kSureByExamples = 0.5;  ///< more only where chance explains nothing
-constexpr double kLargest = 1e6;
+constexpr double kLargestParameter = 1e6;
 
 const JsonFile kFile{"calibration file", "calibration-field", "calibration-json",
                      "write a new one with roadfix bench --calibrate"};
@@ -37,10 +37,11 @@ Calibration parse_calibration(std::string_view text) {
   const JsonField root(document, kFile);
   root.at("format").one_of({kCalibrationFormat});
   Calibration calibration;
-  calibration.bias = root.at("bias").number(-kLargest, kLargest);
+  calibration.bias = root.at("bias").number(-kLargestParameter, kLargestParameter);
   for (std::size_t i = 0; i < kCountedFigures.size(); ++i) {
     const JsonField term = root.at("terms").at(std::string(kCountedFigures[i].name));
-    calibration.terms[i] = {term.at("weight").number(0.0, kLargest), term.at("most").number(-kLargest, kLargest)};
+    calibration.terms[i] = {term.at("weight").number(0.0, kLargestParameter),
+                            term.at("most").number(-kLargestParameter, kLargestParameter)};
   }
   calibration.highest = root.at("highest").number(0.0, 1.0 - 1e-9);
   const JsonField scale = root.at("sigma_scale");

@@ -33,7 +33,7 @@ struct ComparedBlock {
   std::size_t bytes() const { return cells.cells().size(); }
 };
 
-ComparedBlock coarser(const MapView& map, const GridGeometry& window, int levels) {
+ComparedBlock compared_block(const MapView& map, const GridGeometry& window, int levels) {
   GridGeometry fine = window;
   for (int k = 0; k < levels; ++k) {
     fine = {0.5 * fine.cell_m, {2 * fine.origin.col, 2 * fine.origin.row}, 2 * fine.cols, 2 * fine.rows};
@@ -57,7 +57,8 @@ GridReader compared_cells(const MapView& map, double finest_cell_m) {
     for (int row = block_of(first.row); row * kBlockCells < first.row + geometry.rows; ++row) {
       for (int col = block_of(first.col); col * kBlockCells < first.col + geometry.cols; ++col) {
         const GridGeometry window{geometry.cell_m, {col * kBlockCells, row * kBlockCells}, kBlockCells, kBlockCells};
-        const auto block = kept->get<ComparedBlock>(window, {levels}, [&] { return coarser(map, window, levels); });
+        const auto block =
+            kept->get<ComparedBlock>(window, {levels}, [&] { return compared_block(map, window, levels); });
         paste(block->cells, grid.cells, window.origin.col - first.col, window.origin.row - first.row);
       }
     }

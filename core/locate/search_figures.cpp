@@ -11,7 +11,7 @@ namespace {
 // Of a region without any rival, or with too few to tell how they thin out: chance may explain everything.
 constexpr std::size_t kFewestRivals = 12;
 constexpr double kUnknown = -10.0;
-constexpr double kLargest = 1000.0;
+constexpr double kLargestFigure = 1000.0;
 
 /// Differences between correlations near 1 mean more than the same near 0.
 double fisher(double score) {
@@ -52,7 +52,7 @@ SearchFigures figures_of(const SearchResult& found) {
   const double road_width_m = std::max(kRoadWidthM, found.cell_m);
   if (ground > 0.0) figures.roads_across = found.modes.front().shared_road_m2 / (road_width_m * std::sqrt(ground));
   figures.ground = std::log(std::max(ground, 1.0));
-  if (background.sd > 0.0) figures.lead = std::clamp(ahead / background.sd, 0.0, kLargest);
+  if (background.sd > 0.0) figures.lead = std::clamp(ahead / background.sd, 0.0, kLargestFigure);
   if (background.rivals.size() < kFewestRivals) return figures;
   const double scale = mean_excess(background.rivals);
   const double excess = best - fisher(background.rivals.back());
@@ -60,8 +60,8 @@ SearchFigures figures_of(const SearchResult& found) {
   // The scale is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
   const auto count = static_cast<double>(background.rivals.size() - 1);
   const double log_expected = std::log(background.region_share * count) - count * std::log1p(excess / (scale * count));
-  figures.surprise = std::clamp(-log_expected, kUnknown, kLargest);
-  figures.gap = std::clamp(ahead / scale, 0.0, kLargest);
+  figures.surprise = std::clamp(-log_expected, kUnknown, kLargestFigure);
+  figures.gap = std::clamp(ahead / scale, 0.0, kLargestFigure);
   return figures;
 }
 

@@ -6,8 +6,8 @@
 namespace roadfix {
 namespace {
 
-// Below this mean square a spread is rounding error.
-constexpr double kRounding = 1e-9;
+// Of one cell, a mean square: below it a spread is rounding error.
+constexpr double kLeastSpread = 1e-9;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ std::optional<double> rho(const MatchSums& s) {
   const double covariance = s.ml - n * mean * mean;
   const double map_spread = s.mm - 2.0 * mean * s.m + n * mean * mean;
   const double feature_spread = s.ll - 2.0 * mean * s.l + n * mean * mean;
-  if (map_spread <= kRounding * n || feature_spread <= kRounding * n) return std::nullopt;
+  if (map_spread <= kLeastSpread * n || feature_spread <= kLeastSpread * n) return std::nullopt;
   return covariance / std::sqrt(map_spread * feature_spread);  // (5)
 }
 
@@ -27,7 +27,7 @@ std::optional<double> pearson(const MatchSums& s) {
   const auto n = static_cast<double>(s.n);
   const double map_spread = s.mm - s.m * s.m / n;
   const double feature_spread = s.ll - s.l * s.l / n;
-  if (map_spread <= kRounding * n || feature_spread <= kRounding * n) return std::nullopt;
+  if (map_spread <= kLeastSpread * n || feature_spread <= kLeastSpread * n) return std::nullopt;
   return (s.ml - s.m * s.l / n) / std::sqrt(map_spread * feature_spread);
 }
 

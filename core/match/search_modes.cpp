@@ -71,8 +71,8 @@ std::vector<LatticePose> worth_a_look(const SearchLevels& levels, std::vector<La
 }
 
 /// The first of the modes that is around the region, and not the best one in it seen from across the border.
-std::optional<SearchMode> best_around(const SearchLevels& levels, const PoseRegion& scanned, const ModeFinder& finder,
-                                      const std::vector<SearchMode>& modes, const SearchMode& best) {
+std::optional<SearchMode> best_outside(const SearchLevels& levels, const PoseRegion& scanned, const ModeFinder& finder,
+                                       const std::vector<SearchMode>& modes, const SearchMode& best) {
   const auto found = std::ranges::find_if(modes, [&](const SearchMode& mode) {
     return scanned.contains(mode.pose.position) && !levels.region().contains(mode.pose) &&
            !finder.on_one_peak(mode, best);
@@ -126,7 +126,7 @@ FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const 
   if (options.surroundings) {
     const std::vector<SearchMode> others =
         finder.first_of(worth_a_look(levels, poses.around, best, background), kOutside);
-    found.outside = best_around(levels, scan.scanned(), finder, others, best);
+    found.outside = best_outside(levels, scan.scanned(), finder, others, best);
   }
   found.complete = looks_nearby && finder.in_time();
   return found;

@@ -121,7 +121,7 @@ std::string variation(const Service& service, const Layer& layer, const std::str
   return key;
 }
 
-http::Response get_tile(const Service& service, const http::Request& request, Tiles& tiles) {
+http::Response get_localizability_tile(const Service& service, const http::Request& request, Tiles& tiles) {
   const auto& at = request.path_parameters;
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const Layer layer = layer_of(service, request);
@@ -129,7 +129,7 @@ http::Response get_tile(const Service& service, const http::Request& request, Ti
   return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, tiles); });
 }
 
-http::Response get_tilejson(const Service& service, const http::Request& request) {
+http::Response get_localizability_tilejson(const Service& service, const http::Request& request) {
   const Layer layer = layer_of(service, request);
   const std::string query = fmt::format("&footprint_m={}", layer.footprint_m) +
                             (layer.style == kTileStyles[0] ? "" : "&style=" + layer.style);
@@ -152,16 +152,17 @@ void add_localizability_routes(http::Router& router, const Service& service) {
               [&service](const http::Request& request) { return get_localizability(service, request); }});
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto tiles = std::make_shared<Tiles>(service.http.threads / kThreadsPerWaiting);
-  router.add({"GET",
-              "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
-              {"footprint_m", "style", "version"},
-              http::Load::kLight,
-              [&service, tiles](const http::Request& request) { return get_tile(service, request, *tiles); }});
+  router.add(
+      {"GET",
+       "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
+       {"footprint_m", "style", "version"},
+       http::Load::kLight,
+       [&service, tiles](const http::Request& request) { return get_localizability_tile(service, request, *tiles); }});
   router.add({"GET",
               "/v1/maps/{map}/localizability/tilejson.json",
               {"footprint_m", "style"},
               http::Load::kLight,
-              [&service](const http::Request& request) { return get_tilejson(service, request); }});
+              [&service](const http::Request& request) { return get_localizability_tilejson(service, request); }});
 }
 
 }  // namespace roadfix::server

@@ -16,7 +16,7 @@
 namespace roadfix::server {
 namespace {
 
-constexpr std::array<api::Media, 3> kFormats{
+constexpr std::array<api::Media, 3> kWindowFormats{
     {{"png", "image/png"}, {"tiff", "image/tiff"}, {"json", "application/json"}}};
 
 http::Response rendered(const api::Window& window, const MapInfo& info, std::string_view format) {
@@ -37,7 +37,7 @@ http::Response rendered(const api::Window& window, const MapInfo& info, std::str
 http::Response get_window(const Service& service, const http::Request& request, http::Admission& turns) {
   const api::Fields fields(request.query);
   const api::WindowRequest asked = api::parse_window(fields);
-  const std::string_view format = api::media_asked_for(request, fields, kFormats).name;
+  const std::string_view format = api::media_asked_for(request, fields, kWindowFormats).name;
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
   const api::Window window = api::cut_window(map->view, asked, service.limits);

@@ -9,17 +9,17 @@
 namespace roadfix::http {
 namespace {
 
-struct Address {
+struct ServerAddress {
   std::string host;
   int port = 80;
 };
 
-std::optional<Address> parsed(std::string_view base) {
+std::optional<ServerAddress> parsed_base(std::string_view base) {
   constexpr std::string_view kScheme = "http://";
   if (!base.starts_with(kScheme)) return std::nullopt;
   base.remove_prefix(kScheme.size());
   if (base.ends_with('/')) base.remove_suffix(1);
-  Address address;
+  ServerAddress address;
   if (const std::size_t colon = base.rfind(':'); colon != std::string_view::npos && !base.ends_with(']')) {
     const auto port = as_number<int>(base.substr(colon + 1));
     if (!port || *port < 1 || *port > 65535) return std::nullopt;
@@ -32,8 +32,8 @@ std::optional<Address> parsed(std::string_view base) {
   return address;
 }
 
-Address address_of(const std::string& base) {
-  const auto address = parsed(base);
+ServerAddress address_of(const std::string& base) {
+  const auto address = parsed_base(base);
   if (address) return *address;
   throw InvalidInput("bad-url", fmt::format("'{}' is not the address of a service: give http://HOST:PORT", base));
 }
@@ -51,7 +51,7 @@ std::optional<Answer> answer_of(const httplib::Result& result) {
 
 class Client::Impl {
  public:
-  Impl(const Address& address, std::chrono::seconds patience) : client(address.host, address.port) {
+  Impl(const ServerAddress& address, std::chrono::seconds patience) : client(address.host, address.port) {
     client.set_keep_alive(true);
     client.set_tcp_nodelay(true);
     client.set_connection_timeout(patience);

@@ -12,18 +12,18 @@
 namespace roadfix::http {
 namespace {
 
-using Address = std::array<std::uint8_t, 16>;
+using AddressBytes = std::array<std::uint8_t, 16>;
 constexpr int kV4Bits = 32;
 constexpr int kV6Bits = 128;
 
-struct Parsed {
-  Address address{};
+struct ParsedAddress {
+  AddressBytes address{};
   int bits = kV6Bits;  ///< of an address of its kind: 32 or 128
 };
 
-std::optional<Parsed> parsed(std::string_view text) {
+std::optional<ParsedAddress> parsed_address(std::string_view text) {
   const std::string terminated(text);
-  Parsed result;
+  ParsedAddress result;
   if (inet_pton(AF_INET6, terminated.c_str(), result.address.data()) == 1) return result;
   result.address[10] = result.address[11] = 0xff;
   result.bits = kV4Bits;
@@ -37,7 +37,7 @@ std::string_view without_port(std::string_view text) {
   return std::ranges::count(text, ':') == 1 ? text.substr(0, text.find(':')) : text;
 }
 
-bool same_bits(const Address& a, const Address& b, int bits) {
+bool same_bits(const AddressBytes& a, const AddressBytes& b, int bits) {
   const auto whole = static_cast<std::size_t>(bits / 8);
   if (!std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(whole), b.begin())) return false;
   const int rest = bits % 8;
@@ -49,7 +49,7 @@ bool same_bits(const Address& a, const Address& b, int bits) {
 Proxies::Proxies(const std::vector<std::string>& networks) {
   for (const std::string& text : networks) {
     const std::size_t slash = std::min(text.find('/'), text.size());
-    const auto address = parsed(std::string_view(text).substr(0, slash));
+    const auto address = parsed_address(std::string_view(text).substr(0, slash));
     const int all_bits = address ? address->bits : 0;
     const int bits =
         slash < text.size() ? as_number<int>(std::string_view(text).substr(slash + 1)).value_or(-1) : all_bits;
@@ -63,7 +63,7 @@ Proxies::Proxies(const std::vector<std::string>& networks) {
 }
 
 bool Proxies::contains(std::string_view address) const {
-  const auto parts = parsed(address);
+  const auto parts = parsed_address(address);
   return parts && std::ranges::any_of(networks_, [&](const Network& network) {
            return same_bits(parts->address, network.address, network.bits);
          });
@@ -76,7 +76,7 @@ std::string Proxies::client(const std::string& peer, std::string_view forwarded_
     const std::string_view last = comma == std::string_view::npos ? forwarded_for : forwarded_for.substr(comma + 1);
     forwarded_for = comma == std::string_view::npos ? std::string_view() : forwarded_for.substr(0, comma);
     const std::string_view address = without_port(trimmed(last));
-    if (!parsed(address)) break;
+    if (!parsed_address(address)) break;
     client = address;
   }
   return client;

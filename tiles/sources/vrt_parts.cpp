@@ -16,7 +16,7 @@ struct DestroyXml {
 using XmlPtr = std::unique_ptr<CPLXMLNode, DestroyXml>;
 
 /// 0 where there is none.
-double number(const CPLXMLNode* node, const char* path) { return std::atof(CPLGetXMLValue(node, path, "0")); }
+double number_at(const CPLXMLNode* node, const char* path) { return std::atof(CPLGetXMLValue(node, path, "0")); }
 
 const CPLXMLNode* band_of(const CPLXMLNode* root, int band) {
   const CPLXMLNode* child = CPLGetXMLNode(root, "VRTRasterBand");
@@ -42,8 +42,8 @@ std::optional<std::vector<cv::Rect>> filled_parts(GDALDataset& dataset, int band
   const CPLXMLNode* root = tree ? CPLGetXMLNode(tree.get(), "=VRTDataset") : nullptr;
   const CPLXMLNode* node = root != nullptr ? band_of(root, band) : nullptr;
   if (node == nullptr || !is_mosaic(node)) return std::nullopt;
-  const double across = dataset.GetRasterXSize() / number(root, "rasterXSize");
-  const double down = dataset.GetRasterYSize() / number(root, "rasterYSize");
+  const double across = dataset.GetRasterXSize() / number_at(root, "rasterXSize");
+  const double down = dataset.GetRasterYSize() / number_at(root, "rasterYSize");
   // Edges are rounded, so that images that meet within a pixel leave no gap.
   const auto edge = [](double at, double scale) { return static_cast<int>(std::lround(at * scale)); };
   std::vector<cv::Rect> parts;
@@ -51,10 +51,10 @@ std::optional<std::vector<cv::Rect>> filled_parts(GDALDataset& dataset, int band
     if (child->eType != CXT_Element || !std::string_view(child->pszValue).ends_with("Source")) continue;
     const CPLXMLNode* placed = CPLGetXMLNode(child, "DstRect");
     if (placed == nullptr) return std::nullopt;  // fills all
-    const double x = number(placed, "xOff");
-    const double y = number(placed, "yOff");
+    const double x = number_at(placed, "xOff");
+    const double y = number_at(placed, "yOff");
     const cv::Point first(edge(x, across), edge(y, down));
-    const cv::Point end(edge(x + number(placed, "xSize"), across), edge(y + number(placed, "ySize"), down));
+    const cv::Point end(edge(x + number_at(placed, "xSize"), across), edge(y + number_at(placed, "ySize"), down));
     parts.emplace_back(first, end);
   }
   if (parts.empty()) return std::nullopt;

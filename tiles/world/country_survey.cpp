@@ -13,7 +13,7 @@
 namespace roadfix::world {
 namespace {
 
-constexpr std::array<double, 6> kWavesM{900.0, 520.0, 310.0, 190.0, 120.0, 75.0};
+constexpr std::array<double, 6> kFieldWavesM{900.0, 520.0, 310.0, 190.0, 120.0, 75.0};
 constexpr double kBendStepM = 6.0;
 constexpr double kMarginM = 120.0;
 constexpr double kEstateM2 = 250'000.0;  // boundaries of more than this are likely to carry a road
@@ -60,7 +60,7 @@ class Surveyor {
       : plan_(plan),
         country_(plan.country),
         random_(random),
-        bend_(random, kWavesM, random.uniform(0.012, 0.036)),
+        bend_(random, kFieldWavesM, random.uniform(0.012, 0.036)),
         wooded_(random),
         region_(any_region(random)),
         plot_m2_(random.uniform(7'000.0, 32'000.0)),

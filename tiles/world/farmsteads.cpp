@@ -11,7 +11,7 @@
 namespace roadfix::world {
 namespace {
 
-constexpr double kPerSquareKm = 16.0;
+constexpr double kFarmsteadsPerSquareKm = 16.0;
 
 class Settler {
  public:
@@ -108,7 +108,7 @@ void lay_bales(std::vector<Box>& boxes, const Parcel& parcel, Random& random) {
 void settle(Plan& plan, Random& random) {
   if (plan.streets.empty()) return;
   Settler settler(plan, random);
-  const int count = static_cast<int>(std::lround(plan.square_km() * kPerSquareKm * random.uniform(0.3, 2.0)));
+  const int count = static_cast<int>(std::lround(plan.square_km() * kFarmsteadsPerSquareKm * random.uniform(0.3, 2.0)));
   for (int i = 0; i < count; ++i) settler.add_farm();
 }
 

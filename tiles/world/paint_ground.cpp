@@ -22,7 +22,7 @@ struct Ground {
 };
 
 /// Ground of a block before anything stands on it. The same in both pictures but for the season.
-Ground surface_of(LandUse use, double winter, Random& random) {
+Ground ground_of(LandUse use, double winter, Random& random) {
   const double draw = random.unit();
   const auto green = [&](const Colour& c) { return mixed(c, {118, 102, 76}, 0.55 * winter); };
   switch (use) {
@@ -63,7 +63,7 @@ void paint_field(Canvas& canvas, const Block& block, double winter, Random& rand
       const double length = random.uniform(60.0, 220.0);
       const Footprint grid{centre, angle, 0.0, 0.0};
       const Footprint parcel{grid.at(v + length / 2.0, u + width / 2.0), angle, length, width};
-      const Ground surface = surface_of(LandUse::kField, winter, random);
+      const Ground surface = ground_of(LandUse::kField, winter, random);
       const Colour furrow = surface.colour * random.uniform(0.9, 0.96);
       const double spacing = random.uniform(3.0, 6.0);
       const bool inside = cv::pointPolygonTest(std::vector<cv::Point2f>(block.outline.begin(), block.outline.end()),
@@ -117,7 +117,7 @@ void paint_ground(Canvas& canvas, const Plan& plan, const Conditions& conditions
     const Block& block = plan.blocks[i];
     if (block.outline.size() < 3 || !canvas.sees(block.outline)) continue;
     Random random(i, 17);
-    const Ground surface = surface_of(block.use, conditions.winter, random);
+    const Ground surface = ground_of(block.use, conditions.winter, random);
     canvas.fill(block.outline, surface.colour, surface.material);
     if (block.use == LandUse::kField) paint_field(canvas, block, conditions.winter, random);
     if (block.use == LandUse::kPark) paint_park(canvas, block, random);

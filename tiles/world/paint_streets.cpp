@@ -11,7 +11,7 @@ constexpr double kLargeM = 8.0;     // streets at least this wide have markings
 constexpr double kDividedM = 13.0;  // and these a planted strip in the middle
 
 /// Asphalt of one street. Ages differ: from nearly new, dark, to bleached; some small ones were never paved.
-Colour surface_of(const Street& street, std::size_t number, const Conditions& conditions) {
+Colour asphalt_of(const Street& street, std::size_t number, const Conditions& conditions) {
   Random random(number, 29);
   Colour colour = palette::varied(palette::kAsphalt, 0.09, random);
   if (street.width_m >= kLargeM) colour *= 0.88;
@@ -52,7 +52,7 @@ void paint_streets(Canvas& canvas, const Plan& plan, const Conditions& condition
   for (std::size_t i = 0; i < plan.streets.size(); ++i) {
     const Street& street = plan.streets[i];
     if (street.surface != Surface::kKerbed) continue;
-    const Colour surface = surface_of(street, i, conditions);
+    const Colour surface = asphalt_of(street, i, conditions);
     canvas.stroke(street.line, street.width_m, surface, Material::kAsphalt);
     // Tyres polish two tracks of each large street a little darker.
     if (street.width_m >= kLargeM)

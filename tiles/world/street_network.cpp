@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
 constexpr double kPointEveryM = 12.0;
-constexpr std::array<double, 6> kWavesM{1700.0, 1100.0, 800.0, 520.0, 310.0, 190.0};
+constexpr std::array<double, 6> kStreetWavesM{1700.0, 1100.0, 800.0, 520.0, 310.0, 190.0};
 constexpr double kBending = 0.022;
 constexpr double kCityRadiusShare = 0.62;  // of half the diagonal; beyond it lie fields
 
@@ -31,7 +31,7 @@ const StreetClass& class_of(int level) {
 
 class Layout {
  public:
-  Layout(Plan& plan, Random& random) : plan_(plan), random_(random), bend_(random, kWavesM, kBending) {}
+  Layout(Plan& plan, Random& random) : plan_(plan), random_(random), bend_(random, kStreetWavesM, kBending) {}
 
   void build() {
     centre_ = {plan_.width_m * random_.uniform(0.4, 0.6), plan_.height_m * random_.uniform(0.4, 0.6)};

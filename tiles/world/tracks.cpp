@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStepM = 5.0;
 constexpr double kLeavingM = 22.0;  // within which a track may still touch the street that it leaves
-constexpr double kPerSquareKm = 26.0;
+constexpr double kTracksPerSquareKm = 26.0;
 
 struct Start {
   PlanPoint at;
@@ -106,7 +106,7 @@ Street unpaved(Random& random) {
 void wander(Plan& plan, Random& random) {
   if (plan.streets.empty()) return;
   Wanderer wanderer(plan, random);
-  const int count = static_cast<int>(std::lround(plan.square_km() * kPerSquareKm * random.uniform(0.5, 1.5)));
+  const int count = static_cast<int>(std::lround(plan.square_km() * kTracksPerSquareKm * random.uniform(0.5, 1.5)));
   for (int i = 0; i < count; ++i) wanderer.add_track();
 }
 

@@ -8,7 +8,7 @@ namespace roadfix {
 namespace {
 
 /// A best place of `score` among rivals of which Fisher's z thins out exponentially above `lowest`.
-SearchResult found(double score, double lowest, double mean_excess, int rivals = 200) {
+SearchResult found_among(double score, double lowest, double mean_excess, int rivals = 200) {
   SearchResult result;
   result.background.sd = 0.05;
   for (int i = 0; i < rivals; ++i) {
@@ -29,12 +29,12 @@ SearchResult found(double score, double lowest, double mean_excess, int rivals =
 
 TEST(SearchFigures, CountsHowManyPlacesChanceWouldPutThere) {
   // An exponential tail of 200 places: exp(-5) of them lie five mean excesses above the lowest.
-  const SearchFigures figures = figures_of(found(std::tanh(std::atanh(0.2) + 5 * 0.02), 0.2, 0.02));
+  const SearchFigures figures = figures_of(found_among(std::tanh(std::atanh(0.2) + 5 * 0.02), 0.2, 0.02));
   EXPECT_NEAR(figures.surprise, 5.0 - std::log(200.0), 0.2);
 }
 
 TEST(SearchFigures, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
-  SearchResult result = found(0.6, 0.2, 0.02);
+  SearchResult result = found_among(0.6, 0.2, 0.02);
   const double ahead = std::atanh(0.6) - std::atanh(result.modes[1].score);
   const SearchFigures figures = figures_of(result);
   EXPECT_NEAR(figures.lead, ahead / 0.05, 1e-9);
@@ -42,7 +42,7 @@ TEST(SearchFigures, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
 }
 
 TEST(SearchFigures, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
-  SearchResult result = found(0.6, 0.2, 0.02);
+  SearchResult result = found_among(0.6, 0.2, 0.02);
   result.cell_m = 2.0;
   result.modes[0].pearson = 0.5;
   result.modes[0].observed_cells = 22'500;  // 90,000 m2, 400 samples
@@ -51,7 +51,7 @@ TEST(SearchFigures, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
 }
 
 TEST(SearchFigures, CountsSharedRoadInRoadsAcrossTheGroundThatTookPart) {
-  SearchResult result = found(0.6, 0.2, 0.02);
+  SearchResult result = found_among(0.6, 0.2, 0.02);
   result.cell_m = 2.0;
   result.modes[0].observed_cells = 22'500;  // 300 x 300 m
   result.modes[0].shared_road_m2 = 2 * 300 * kRoadWidthM;
@@ -59,27 +59,27 @@ TEST(SearchFigures, CountsSharedRoadInRoadsAcrossTheGroundThatTookPart) {
 }
 
 TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {
-  SearchResult result = found(0.4, 0.2, 0.02);
+  SearchResult result = found_among(0.4, 0.2, 0.02);
   const double whole = figures_of(result).surprise;
   result.background.region_share = 0.01;
   EXPECT_NEAR(figures_of(result).surprise - whole, std::log(100.0), 1e-9);
 }
 
 TEST(SearchFigures, WithFewRivalsChanceMayExplainEverything) {
-  const SearchFigures figures = figures_of(found(0.9, 0.2, 0.02, 5));
+  const SearchFigures figures = figures_of(found_among(0.9, 0.2, 0.02, 5));
   EXPECT_LT(figures.surprise, -5.0);
   EXPECT_EQ(figures.gap, 0.0);
 }
 
 TEST(SearchFigures, APlaceAloneInItsRegionIsComparedWithThoseAround) {
-  SearchResult result = found(0.6, 0.2, 0.02);
+  SearchResult result = found_among(0.6, 0.2, 0.02);
   result.modes.resize(1);
   result.background.rivals_within.clear();
   EXPECT_NEAR(figures_of(result).lead, (std::atanh(0.6) - std::atanh(result.background.rivals.back())) / 0.05, 1e-9);
 }
 
 TEST(SearchFigures, OfAConstantBackgroundIsNone) {
-  SearchResult result = found(0.6, 0.2, 0.0);
+  SearchResult result = found_among(0.6, 0.2, 0.0);
   result.background.sd = 0.0;
   const SearchFigures figures = figures_of(result);
   EXPECT_LT(figures.surprise, 0.0);

@@ -12,34 +12,34 @@ using testing::from_ascii;
 
 constexpr double kPlenty = 1e6;
 
-FeatureMap map_of(const char* rows) { return FeatureMap::centred(from_ascii(rows), 2.0); }
+FeatureMap frame_of(const char* rows) { return FeatureMap::centred(from_ascii(rows), 2.0); }
 
 double sigma_of(const std::vector<PlacedFeatures>& parts) { return laid_together(parts, kPlenty).nadir_sigma_m; }
 
 TEST(LaidTogether, KnowsThePlaceNoBetterThanTheWayToTheFrameThatTellsIt) {
-  const FeatureMap road = map_of("#.. #.. #..");
-  const FeatureMap field = map_of("... ... ...");
+  const FeatureMap road = frame_of("#.. #.. #..");
+  const FeatureMap field = frame_of("... ... ...");
   const BodyOffset behind{-300.0, 400.0, {}};
   EXPECT_NEAR(sigma_of({{field, {}}, {road, behind}}), 25.0, 1e-9);
   EXPECT_NEAR(sigma_of({{road, {}}, {field, behind}}), 0.0, 1e-9) << "it tells its place by itself";
-  EXPECT_NEAR(sigma_of({{road, {}}, {map_of("..# ..# ..#"), behind}}), 12.5, 1e-9);
+  EXPECT_NEAR(sigma_of({{road, {}}, {frame_of("..# ..# ..#"), behind}}), 12.5, 1e-9);
   EXPECT_EQ(sigma_of({{field, {}}, {field, behind}}), 0.0) << "there is no place to know";
 }
 
 TEST(LaidTogether, AddsTheWayToWhatTheFramesKnowOfTheirNadirs) {
-  FeatureMap leaning = map_of("#.. #.. #..");
+  FeatureMap leaning = frame_of("#.. #.. #..");
   leaning.nadir_sigma_m = 12.0;
-  EXPECT_NEAR(sigma_of({{map_of("... ..."), {}}, {leaning, {0.0, -100.0, {}}}}), 13.0, 1e-9);
+  EXPECT_NEAR(sigma_of({{frame_of("... ..."), {}}, {leaning, {0.0, -100.0, {}}}}), 13.0, 1e-9);
 }
 
 TEST(LaidTogether, LeavesTheCellsToCombined) {
-  const std::vector<PlacedFeatures> parts{{map_of("#.. #.. #.."), {}}, {map_of("### ... ..."), {4.0, 0.0, {}}}};
+  const std::vector<PlacedFeatures> parts{{frame_of("#.. #.. #.."), {}}, {frame_of("### ... ..."), {4.0, 0.0, {}}}};
   EXPECT_EQ(laid_together(parts, kPlenty).cells, combined(parts, kPlenty).cells);
 }
 
 TEST(LaidTogether, RefusesOnePictureFromTwoPlaces) {
-  const FeatureMap road = map_of("#.. #.. #..");
-  const FeatureMap field = map_of("... ... ...");
+  const FeatureMap road = frame_of("#.. #.. #..");
+  const FeatureMap field = frame_of("... ... ...");
   const auto code_of_second_at = [&](const FeatureMap& both, const BodyOffset& offset) {
     const std::vector<PlacedFeatures> parts{{both, {}}, {both, offset}};
     return testing::code_of([&] { laid_together(parts, kPlenty); });

@@ -138,6 +138,7 @@ void Tracker::Step::doubt_place() {
 void Tracker::Step::forget_support() {
   state_.claim = {};
   state_.searched = false;
+  state_.looked_time_us.reset();
 }
 
 }  // namespace roadfix

@@ -101,6 +101,18 @@ TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
   EXPECT_LE(claims.size(), 5U) << "at 20 m a step, 90 m after the last look that did";
 }
 
+TEST_F(Track, ForgetsWhatLooksSawOfABeliefThatItThrowsAway) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(state_.looked_time_us);
+  StepInput late = flight.step();
+  late.time_us += 1'000'000 * (settings().longest_gap.count() + 1);
+  late.features.reset();
+  EXPECT_FALSE(advance(tracker, late).converged);
+  EXPECT_FALSE(state_.looked_time_us);
+}
+
 TEST_F(TrackOfAVehicleThatDrifts, TakesOdometryThatIsAsItSaysAtItsWord) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     EXPECT_FALSE(flown(settings(), {}, seed).drifts) << "seed " << seed;

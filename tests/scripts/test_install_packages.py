@@ -22,6 +22,14 @@ esac
 case " $* " in *" install "*) echo "Unpacking cmake" ;; esac
 """
 NOTHING = "#!/bin/sh\n"
+DEBIAN_ON_ARM = """#!/bin/sh
+cat <<'EOF'
+config-files clang clang-x.org
+installed g++ c++-compiler, g++-aarch64-linux-gnu (= 4:12.2.0-3)
+installed git git-completion, git-core
+installed shellcheck
+EOF
+"""
 SUDO = """#!/bin/sh
 [ "$1" != -n ] || shift
 exec "$@"
@@ -32,15 +40,19 @@ class Installation(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
         for name, text in (("apt-get", APT), ("dpkg-query", NOTHING), ("sudo", SUDO)):
-            program = Path(folder.name, name)
-            program.write_text(text)
-            program.chmod(0o755)
+            self.write_program(name, text)
         self.environment = {**os.environ, "PATH": f"{folder.name}:{os.environ['PATH']}"}
 
-    def run_program(self, **streams):
-        return subprocess.run([str(PROGRAM), "build"], env=self.environment, stdin=subprocess.DEVNULL, timeout=60,
-                              check=True, **streams)
+    def write_program(self, name, text):
+        program = self.folder / name
+        program.write_text(text)
+        program.chmod(0o755)
+
+    def run_program(self, *arguments, **streams):
+        return subprocess.run([str(PROGRAM), *(arguments or ["build"])], env=self.environment, stdin=subprocess.DEVNULL,
+                              timeout=60, check=True, **streams)
 
     def test_tells_a_log_how_much_is_to_come_and_nothing_more(self):
         done = self.run_program(capture_output=True, text=True)
@@ -58,6 +70,11 @@ class Installation(unittest.TestCase):
         self.assertEqual(done.stdout, b"")
         for text in ("Get:1 bookworm", "Get:2 cmake", "Unpacking cmake"):
             self.assertIn(text, shown)
+
+    def test_counts_what_an_installed_package_provides(self):
+        self.write_program("dpkg-query", DEBIAN_ON_ARM)
+        done = self.run_program("-n", "check", capture_output=True, text=True)
+        self.assertEqual(done.stdout.split(), ["clang", "clang-tidy", "clang-format", "libclang-rt-14-dev"])
 
 
 if __name__ == "__main__":

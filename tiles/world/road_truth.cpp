@@ -39,7 +39,7 @@ std::optional<Piece> clipped(PlanPoint a, PlanPoint b, double width_m, double he
     }
   }
   if (enter >= leave) return std::nullopt;
-  return Piece{a + d * enter, a + d * leave};
+  return Piece{a + d * enter, leave < 1.0 ? a + d * leave : b};  // a + (b - a) may be a rounding beside b
 }
 
 /// Value of OpenStreetMap's `surface`; none for a town's streets.

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 namespace roadfix::world {
 namespace {
 
@@ -16,6 +18,14 @@ TEST(RoadTruth, CutsLinesAtTheRimOfThePicture) {
   ASSERT_EQ(parts.size(), 2U);
   expect_line(parts[0], {{0, 5}, {5, 5}, {5, 10}});
   expect_line(parts[1], {{8, 10}, {8, 5}, {9, 6}});
+}
+
+TEST(RoadTruth, LeavesLinesWithinThePictureWhole) {
+  Polyline line;
+  for (int i = 0; i < 100; ++i) line.emplace_back(10.0 + 9.9 * std::sin(i), 5.0 + 4.9 * std::cos(1.7 * i));
+  const auto parts = clipped(line, 20, 10);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0], line);
 }
 
 TEST(RoadTruth, LeavesOutLinesThatPassThePictureBy) {

@@ -60,7 +60,7 @@ void add_world_command(CLI::App& app) {
   const auto options = std::make_shared<WorldArguments>();
   world::WorldSettings& settings = options->settings;
   command->add_option("folder", options->folder, "Folder to write to, created if missing")->required();
-  command->add_option("--seed", settings.seed, "The same seed gives the same files")
+  command->add_option("--seed", settings.seed, "The same seed gives the same world")
       ->capture_default_str()
       ->check(seed());
   command

@@ -19,6 +19,7 @@ CLI::Option* add_angle(CLI::App& command, const char* name, Angle& angle, const 
 
 void add_basics(CLI::App& command, FlyOptions& o) {
   fly::FilterPlan& filter = o.service.filter;
+  // Not "map": later versions of CLI11 take that for --map.
   command.add_option("map_file", o.map, "Map file (GeoPackage) to localize on")->required();
   command.add_option(
       "--over", o.over,

@@ -14,7 +14,7 @@ namespace {
 bool is_borne_out(const TrackSettings& settings, const TrackerState& state) {
   if (settings.measurement_model.kind == LikelihoodKind::kEquation7) return true;
   if (!state.claim.outweighs_chance()) return false;
-  return !settings.recovers || (state.claim.confirmed && state.looked_time_us);
+  return !settings.recovers || (state.claim.confirmed && state.claim.looked_time_us);
 }
 
 bool has_converged(const TrackSettings& settings, const TrackerState& state, const Cluster& best,

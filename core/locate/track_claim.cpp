@@ -18,6 +18,7 @@ void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 void TrackClaim::reject() {
   supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
   if (!is_supported()) confirmed = false;
+  looked_time_us.reset();
 }
 
 void TrackClaim::weigh(double log_ratio) {
@@ -29,6 +30,7 @@ void TrackClaim::confirm(double probability) {
   accept();
   weigh(std::log(probability / (1.0 - probability)));
   confirmed = true;
+  looked_time_us.reset();
 }
 
 bool TrackClaim::is_supported() const { return supported >= kMinSupport; }

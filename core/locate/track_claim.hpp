@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace roadfix {
 
@@ -26,13 +27,17 @@ struct TrackClaim {
   /// some kilometres around: a fix, or nearly one at the place that was believed before it. Until measurements speak
   /// against it.
   bool confirmed = false;
+  /// Time of the last search around the place that bore it out; nullopt = none since a search found the place,
+  /// something spoke against it or such a search did not bear it out, and nothing is claimed then.
+  std::optional<std::int64_t> looked_time_us{};
 
   void accept();
-  /// A claim that is taken back waits for a search.
+  /// Something speaks against the place. A claim that is taken back waits for a search.
   void reject();
   /// `log_ratio`: how much likelier a measurement is under the belief than by chance.
   void weigh(double log_ratio);
-  /// A search gave a fix of this probability, in [0, 1), there.
+  /// A search gave a fix of this probability, in [0, 1), there. It is yet to be looked around: the next frame tells
+  /// whether the odometry carries the place on rightly.
   void confirm(double probability);
 
   bool is_supported() const;

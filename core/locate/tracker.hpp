@@ -42,9 +42,6 @@ struct TrackerState {
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
   /// before a kidnapping is not laid with what is seen after it.
   RecentFrames recent;
-  /// Time of the last search around the place that bore it out; nullopt = none since a search found the place, a
-  /// measurement spoke against it or such a search did not bear it out, and nothing is claimed then.
-  std::optional<std::int64_t> looked_time_us;
   LastView last_view;
   LearnedMotion motion;
 

@@ -47,9 +47,9 @@ bool Tracker::Step::start_by_search() {
 void Tracker::Step::look_around_if_due() {
   const bool sure = state_.claim.outweighs_chance() && state_.claim.confirmed;
   if (!settings_.recovers || !sure || outcome_.measurement == Measurement::kUseless) return;
-  const std::int64_t since_us = input_.time_us - state_.looked_time_us.value_or(state_.time_us);
+  const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
   const LookAge last{since_us, 1e-6 * static_cast<double>(since_us) * motion_.speed_m_s()};
-  if (state_.looked_time_us && !last.is_due()) return;
+  if (state_.claim.looked_time_us && !last.is_due()) return;
   const Cluster belief = clusters_of(filter_.particles(), settings_.clusters).front();
   if (const auto look = look_around(search_, map_, *features_, belief, last.flown_m)) take(*look, last);
 }
@@ -57,14 +57,14 @@ void Tracker::Step::look_around_if_due() {
 void Tracker::Step::take(const Look& look, LookAge last) {
   switch (look.outcome) {
     case Look::Outcome::kBorneOut:
-      state_.looked_time_us = input_.time_us;
+      state_.claim.looked_time_us = input_.time_us;
       motion_.try_drifts(filter_);
       break;
     case Look::Outcome::kOpen:
-      if (last.is_outdated()) state_.looked_time_us.reset();
+      if (last.is_outdated()) state_.claim.looked_time_us.reset();
       break;
     case Look::Outcome::kBeside:
-      doubt_place();
+      state_.claim.reject();
       motion_.learn_drift(filter_);
       filter_.inject(look.places, kMovedShare);
   }
@@ -111,7 +111,6 @@ void Tracker::Step::recover() {
 void Tracker::Step::confirm(const Fix& fix) {
   state_.claim.confirm(fix.probability);
   state_.accepted_time_us = input_.time_us;
-  state_.looked_time_us.reset();  // the next frame tells whether the odometry carries the place on rightly
   if (settings_.recovers) motion_.try_drifts(filter_);
 }
 

@@ -88,7 +88,7 @@ void Tracker::Step::see() {
     return;
   }
   outcome_.measurement = Measurement::kRepeated;
-  if (view == View::kStandsStill) doubt_place();  // nobody knows whether the camera has stopped or the vehicle
+  if (view == View::kStandsStill) state_.claim.reject();  // nobody knows whether the camera has stopped or the vehicle
 }
 
 void Tracker::Step::measure() {
@@ -124,21 +124,15 @@ void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
     state_.accepted_time_us = input_.time_us;
   } else {
     outcome_.measurement = Measurement::kRejected;
-    doubt_place();
+    state_.claim.reject();
     if (settings_.recovers) filter_.widen(kWidenedM);
   }
   state_.claim.weigh(std::log(correction.mean_likelihood));
 }
 
-void Tracker::Step::doubt_place() {
-  state_.claim.reject();
-  state_.looked_time_us.reset();
-}
-
 void Tracker::Step::forget_support() {
   state_.claim = {};
   state_.searched = false;
-  state_.looked_time_us.reset();
 }
 
 }  // namespace roadfix

@@ -29,8 +29,6 @@ class Tracker::Step {
   void see();
   void measure();
   void weigh(std::span<const double> log_likelihoods);
-  /// Something speaks against the place: it is claimed less, and until it was looked around, not at all.
-  void doubt_place();
   void forget_support();
 
   // tracker_searches.cpp; `seen` is the last feature map, with the frames before it laid around

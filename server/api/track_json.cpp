@@ -145,7 +145,7 @@ json counters_json(const TrackerState& state) {
           {"supported", state.claim.supported},
           {"evidence", state.claim.log_odds},
           {"accepted_time_us", json_of(state.accepted_time_us)},
-          {"looked_time_us", json_of(state.looked_time_us)},
+          {"looked_time_us", json_of(state.claim.looked_time_us)},
           {"drifts", state.motion.drifts},
           {"velocity", json_of(state.motion.velocity)},
           {"last_view", json_of(state.last_view)},
@@ -168,7 +168,7 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
     // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity and no view.
-    state.looked_time_us = time_of(counters.value("looked_time_us", json()));
+    state.claim.looked_time_us = time_of(counters.value("looked_time_us", json()));
     state.motion.drifts = counters.value("drifts", false);
     state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
     state.motion.velocity = velocity_of(counters.value("velocity", json()));

@@ -105,12 +105,12 @@ TEST_F(Track, ForgetsWhatLooksSawOfABeliefThatItThrowsAway) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);
   ASSERT_TRUE(fly(tracker, flight, 12).converged);
-  ASSERT_TRUE(state_.looked_time_us);
+  ASSERT_TRUE(state_.claim.looked_time_us);
   StepInput late = flight.step();
   late.time_us += 1'000'000 * (settings().longest_gap.count() + 1);
   late.features.reset();
   EXPECT_FALSE(advance(tracker, late).converged);
-  EXPECT_FALSE(state_.looked_time_us);
+  EXPECT_FALSE(state_.claim.looked_time_us);
 }
 
 TEST_F(TrackOfAVehicleThatDrifts, TakesOdometryThatIsAsItSaysAtItsWord) {
@@ -128,13 +128,13 @@ TEST_F(Track, LooksAroundEveryThreeSecondsWhereItIsSureOfItsPlace) {
   Flight flight(map_, start_, 5);
   std::vector<std::int64_t> looks_s;
   fly(tracker, flight, 30, [&](int, const TrackEstimate&) {
-    const std::int64_t look_s = state_.looked_time_us.value_or(0) / 1'000'000;
+    const std::int64_t look_s = state_.claim.looked_time_us.value_or(0) / 1'000'000;
     if (look_s > 0 && (looks_s.empty() || look_s != looks_s.back())) looks_s.push_back(look_s);
   });
   ASSERT_GE(looks_s.size(), 4U);
   for (std::size_t i = 1; i < looks_s.size(); ++i) EXPECT_EQ(looks_s[i] - looks_s[i - 1], 3) << "look " << i;
   for (int i = 0; i < 5; ++i) advance(tracker, flight.step(false));
-  EXPECT_EQ(state_.looked_time_us, looks_s.back() * 1'000'000) << "there was nothing to look at";
+  EXPECT_EQ(state_.claim.looked_time_us, looks_s.back() * 1'000'000) << "there was nothing to look at";
 }
 
 }  // namespace

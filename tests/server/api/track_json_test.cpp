@@ -23,7 +23,7 @@ TrackerState flown() {
   state.last_search = 11;
   state.claim = {4, 7.5, true};
   state.accepted_time_us = 42'000'000;
-  state.looked_time_us = 40'000'000;
+  state.claim.looked_time_us = 40'000'000;
   state.motion.drifts = true;
   state.nadir_sigma_m = 5.25;
   state.motion.velocity = BodyVelocity{14.5, -0.25};
@@ -37,7 +37,7 @@ TEST(TrackCounters, ComeBackAsTheyWere) {
   EXPECT_TRUE(state_of(counters_json(flown()), {}) == flown());
   TrackerState blind = flown();
   blind.accepted_time_us.reset();
-  blind.looked_time_us.reset();
+  blind.claim.looked_time_us.reset();
   blind.motion.velocity.reset();
   EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
 }
@@ -48,7 +48,7 @@ TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
   before.erase("drifts");
   for (const char* name : {"nadir_sigma_m", "velocity", "coasts", "last_view"}) before.erase(name);
   const TrackerState state = state_of(before, {});
-  EXPECT_FALSE(state.looked_time_us);
+  EXPECT_FALSE(state.claim.looked_time_us);
   EXPECT_FALSE(state.motion.drifts);
   EXPECT_EQ(state.nadir_sigma_m, 0.0);
   EXPECT_FALSE(state.motion.velocity);

@@ -11,6 +11,7 @@
 #include "core/match/deadline.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
+#include "core/match/quarter_planes.hpp"
 #include "core/units/parallel_for.hpp"
 
 namespace roadfix {
@@ -97,60 +98,17 @@ GridGeometry window_of(Poses poses, double cell_m, int reach) {
   return GridGeometry{cell_m, low, high.col - low.col + 1, high.row - low.row + 1}.padded(reach);
 }
 
-/// A window of the map; where enough poses share it, also rotated by one, two and three quarter turns to the left.
-/// Matching a footprint on such a window gives what the footprint rotated to the right would give on the window as it
-/// is: headings a quarter turn apart need one footprint.
-class Window {
- public:
-  Window(const RoadGrid& map, bool turned) : geometry_(map.geometry) {
-    planes_.emplace_back(map.cells);
-    if (!turned) return;
-    // To the left by three quarters, two and one: to the right by one more each time.
-    CellArray cells = map.cells;
-    for (int k = 0; k < 3; ++k) {
-      cells = quarter_turned(cells);
-      planes_.emplace(planes_.begin() + 1, cells);
-    }
+/// Poses of one heading, by as many quarters to the right of the footprint's.
+void match_on(const QuarterPlanes& planes, LatticeIndex origin, const PackedFootprint& footprint, int quarters,
+              Poses poses, std::span<MatchSums> sums) {
+  std::vector<PlaneCell> places;
+  places.reserve(poses.size());
+  for (const BinnedPose& pose : poses) {
+    places.push_back(planes.place({pose.cell.col - origin.col, pose.cell.row - origin.row}, quarters));
   }
-
-  bool turned() const { return planes_.size() > 1; }
-
-  /// Poses of one heading, by as many quarters to the right of the footprint's.
-  void match(const PackedFootprint& footprint, int quarters, Poses poses, std::span<MatchSums> sums) const {
-    std::vector<PlaneCell> places;
-    places.reserve(poses.size());
-    for (const BinnedPose& pose : poses) places.push_back(place_of(pose.cell, quarters));
-    std::vector<MatchSums> found(places.size());
-    match_sums(planes_[static_cast<std::size_t>(quarters)], footprint, places, found);
-    for (std::size_t k = 0; k < poses.size(); ++k) sums[poses[k].index] = found[k];
-  }
-
- private:
-  PlaneCell place_of(LatticeIndex cell, int quarters) const {
-    const int col = cell.col - geometry_.origin.col;
-    const int row = cell.row - geometry_.origin.row;
-    const int to_the_right = geometry_.cols - 1 - col;
-    const int below = geometry_.rows - 1 - row;
-    switch (quarters) {
-      case 0:
-        return {col, row};
-      case 1:
-        return {row, to_the_right};
-      case 2:
-        return {to_the_right, below};
-      default:
-        return {below, col};
-    }
-  }
-
-  GridGeometry geometry_;
-  std::vector<MapPlane> planes_;
-};
-
-/// To rotate the cells of a window costs about a quarter of what it costs to rotate and pack as many of a feature map.
-bool worth_turning(const GridGeometry& window, int reach, std::size_t footprints_spared) {
-  const double footprint_cells = std::pow(2.0 * reach + 1.0, 2.0);
-  return 4.0 * footprint_cells * static_cast<double>(footprints_spared) > 3.0 * window.cols * window.rows;
+  std::vector<MatchSums> found(places.size());
+  match_sums(planes.plane(quarters), footprint, places, found);
+  for (std::size_t k = 0; k < poses.size(); ++k) sums[poses[k].index] = found[k];
 }
 
 }  // namespace
@@ -166,8 +124,8 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
   for (const Poses block : runs(poses, [](const auto&a, const auto&b) { return block_of(a) == block_of(b); })) {
     const auto families = runs(block, [&](const auto& a, const auto& b) { return a.bin % quarter == b.bin % quarter; });
     const GridGeometry geometry = window_of(block, features.cell_m, reach);
-    const std::size_t spared = runs(block, same_heading).size() - families.size();
-    const Window window(map.read(geometry), worth_turning(geometry, reach, spared));
+    const auto spared = static_cast<double>(runs(block, same_heading).size() - families.size());
+    const QuarterPlanes planes(map.read(geometry).cells, worth_rotating(geometry, reach, spared));
     parallel_for(static_cast<int>(families.size()), threads, [&](int task) {
       const Poses family = families[static_cast<std::size_t>(task)];
       FeatureMap turned = rotator.rotated(bins.heading(family.front().bin % quarter));
@@ -176,11 +134,11 @@ void match_binned(const MapView& map, const FeatureMap& features, const HeadingB
       for (const Poses members : runs(family, same_heading)) {
         require_not_stopped(stop);
         const int quarters = members.front().bin / quarter;
-        if (!window.turned() && turns < quarters) {
+        if (!planes.rotated() && turns < quarters) {
           for (; turns < quarters; ++turns) turned = quarter_turned(turned);
           footprint = PackedFootprint(turned);
         }
-        window.match(footprint, quarters - turns, members, sums);
+        match_on(planes, geometry.origin, footprint, quarters - turns, members, sums);
       }
     });
   }

@@ -30,7 +30,7 @@ std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step) {
   return places;
 }
 
-GroundAround::GroundAround(const Level& level, int cells, const Deadline& deadline,
+GroundAround::GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
                            const std::vector<LatticePose>& poses) {
   std::vector<GridGeometry> windows;
   std::int64_t apart = 0;
@@ -38,30 +38,38 @@ GroundAround::GroundAround(const Level& level, int cells, const Deadline& deadli
     windows.push_back(window_around(level, pose, cells));
     apart += cells_of(windows.back());
   }
+  bool rotated = false;
   if (!windows.empty()) {
     const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
-    if (cells_of(all) <= apart) windows.assign(1, all);
+    if (cells_of(all) <= apart) {
+      // Three in four headings need no footprint of their own then.
+      const bool in_quarters = level.bins.count() % 4 == 0;
+      rotated = in_quarters && worth_rotating(all, level.reach(level.scales.reach()), 0.75 * headings);
+      windows.assign(1, all);
+    }
   }
   for (const GridGeometry& window : windows) {
     if (deadline.over()) return;
-    planes_.push_back({window.origin, MapPlane(level.read(window).cells)});
+    planes_.push_back({window.origin, QuarterPlanes(level.read(window).cells, rotated)});
   }
   complete_ = true;
 }
 
-PlaneCell GroundAround::place(std::size_t pose, LatticeIndex cell) const {
-  const LatticeIndex origin = at(pose).origin;
-  return {cell.col - origin.col, cell.row - origin.row};
-}
-
-void GroundAround::match(const PackedFootprint& footprint, std::span<const std::size_t> poses,
-                         std::span<const PlaneCell> places, std::span<MatchSums> sums) const {
-  if (poses.empty()) return;
-  const std::size_t each = places.size() / poses.size();
-  const std::size_t together = shared() ? places.size() : each;
-  for (std::size_t first = 0; first < places.size(); first += together) {
-    match_sums(at(poses[first / each]).plane, footprint, places.subspan(first, together),
-               sums.subspan(first, together));
+void GroundAround::match(const PackedFootprint& footprint, int quarters, std::span<const std::size_t> poses,
+                         std::span<const LatticeIndex> cells, std::span<MatchSums> sums) const {
+  std::vector<PlaneCell> places;
+  places.reserve(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Plane& below = at(poses[i]);
+    places.push_back(
+        below.quarters.place({cells[i].col - below.origin.col, cells[i].row - below.origin.row}, quarters));
+  }
+  for (std::size_t first = 0; first < places.size();) {
+    std::size_t last = shared() ? places.size() : first + 1;
+    while (last < places.size() && poses[last] == poses[first]) ++last;
+    match_sums(at(poses[first]).quarters.plane(quarters), footprint, std::span(places).subspan(first, last - first),
+               sums.subspan(first, last - first));
+    first = last;
   }
 }
 

@@ -9,7 +9,7 @@
 #include "core/match/kernel.hpp"
 #include "core/match/lattice_pose.hpp"
 #include "core/match/level.hpp"
-#include "core/match/map_plane.hpp"
+#include "core/match/quarter_planes.hpp"
 
 namespace roadfix {
 
@@ -21,20 +21,23 @@ std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
 class GroundAround {
  public:
-  /// `complete()` is false, and the rest must not be used, if time was over before.
-  GroundAround(const Level& level, int cells, const Deadline& deadline, const std::vector<LatticePose>& poses);
+  /// Of `headings` that footprints will be turned to, where the level has bins in quarters, those a quarter turn apart
+  /// may share a footprint if that pays. `complete()` is false, and the rest must not be used, if time was over before.
+  GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
+               const std::vector<LatticePose>& poses);
 
   bool complete() const { return complete_; }
-  /// Of a cell of the level around that pose.
-  PlaneCell place(std::size_t pose, LatticeIndex cell) const;
-  /// match_sums() at places around some of the poses, equally many around each, one pose after the other.
-  void match(const PackedFootprint& footprint, std::span<const std::size_t> poses, std::span<const PlaneCell> places,
-             std::span<MatchSums> sums) const;
+  /// Whether match() takes quarters beyond 0.
+  bool rotated() const { return shared() && planes_.front().quarters.rotated(); }
+  /// The sums at cells of the level, each around one of the poses, for a footprint turned by so many quarters to the
+  /// right. Cells around one pose follow each other.
+  void match(const PackedFootprint& footprint, int quarters, std::span<const std::size_t> poses,
+             std::span<const LatticeIndex> cells, std::span<MatchSums> sums) const;
 
  private:
   struct Plane {
     LatticeIndex origin;
-    MapPlane plane;
+    QuarterPlanes quarters;
   };
   bool shared() const { return planes_.size() == 1; }
   const Plane& at(std::size_t pose) const { return planes_[shared() ? 0 : pose]; }

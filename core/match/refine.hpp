@@ -9,8 +9,8 @@
 
 namespace roadfix {
 
-/// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it. False if
-/// time was over before: then they are left as they were.
+/// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it, as far as the
+/// score rises towards it at one of these headings. False if time was over before: then they are left as they were.
 bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);
 
 }  // namespace roadfix

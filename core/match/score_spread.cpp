@@ -49,10 +49,10 @@ Squares squares_at(const Level& level, int bin, const GroundAround& ground, cons
   const PackedFootprint footprint = footprint_at(level.features.rotator, level.bins.heading(bin));
   std::vector<std::size_t> poses(places.size());
   std::iota(poses.begin(), poses.end(), 0);
-  std::vector<PlaneCell> cells;
-  for (const std::size_t i : poses) cells.push_back(ground.place(i, places[i].cell));
+  std::vector<LatticeIndex> cells;
+  for (const LatticePose& place : places) cells.push_back(place.cell);
   std::vector<MatchSums> sums(cells.size());
-  ground.match(footprint, poses, cells, sums);
+  ground.match(footprint, 0, poses, cells, sums);
   Squares squares;
   for (const MatchSums& each : sums) {
     const double score = score_of(each, level.features.cells);
@@ -67,7 +67,7 @@ Squares squares_at(const Level& level, int bin, const GroundAround& ground, cons
 
 std::optional<double> score_spread(const Level& level, const PoseRegion& region, const Deadline& deadline) {
   const std::vector<LatticePose> places = places_within(level, region);
-  const GroundAround ground(level, 0, deadline, places);
+  const GroundAround ground(level, 0, 0, deadline, places);
   if (!ground.complete()) return std::nullopt;
   std::vector<Squares> of_heading(kHeadings);
   parallel_for(kHeadings, level.threads, [&](int i) {

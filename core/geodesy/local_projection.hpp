@@ -1,5 +1,5 @@
-// The projection of a UTM zone over some kilometres as polynomials: what projects the thousands of particles of a
-// filter for a tenth of the time.
+// The projection of a UTM zone over some kilometres as polynomials: what projects the thousands of poses of a match for
+// a tenth of the time.
 #pragma once
 
 #include <array>

@@ -26,10 +26,10 @@ void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
     throw InvalidInput("no-frames-to-send",
                        "a map shows roads and no pictures: name imagery with --over, or leave out --send frames");
   }
-  if (options.detector.name != "auto" || !options.detector.model.empty() || options.detector.orientations != 1) {
+  if (options.detector != DetectorChoice{}) {
     throw InvalidInput("detector-elsewhere",
-                       "with --send frames the service detects roads by its own detector: give --detector, --model and "
-                       "--orientations to roadfix serve");
+                       "with --send frames the service detects roads by its own detector: give --detector, --model, "
+                       "--orientations and --tree-... to roadfix serve");
   }
 }
 

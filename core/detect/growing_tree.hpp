@@ -32,6 +32,8 @@ struct TreeParameters {
   std::optional<double> max_explored_share;  ///< explored pixels / observed pixels, in (0, 1]
   std::optional<double> max_area_px;         ///< of the tree: sum over edges of length x estimated road width
   std::optional<double> min_score;           ///< a new node below it is not added
+
+  friend bool operator==(const TreeParameters&, const TreeParameters&) = default;
 };
 
 /// Throws InvalidInput ("tree-parameter") that names the parameter and its range.

@@ -17,6 +17,8 @@ struct DetectorChoice {
   std::filesystem::path model;  ///< ONNX file of the neural detector; empty = default_model()
   int orientations = 1;         ///< NeuralOptions::orientations
   TreeDetectorOptions tree;
+
+  friend bool operator==(const DetectorChoice&, const DetectorChoice&) = default;
 };
 
 /// "auto": neural where `model` is named or default_model() finds one, else the tree.

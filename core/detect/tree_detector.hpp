@@ -16,6 +16,8 @@ struct TreeDetectorOptions {
   double trees_per_km2 = 3000;  ///< roots are drawn uniformly over the observed pixels
   int min_nodes = 3;            ///< binary map only
   TreeParameters tree;
+
+  friend bool operator==(const TreeDetectorOptions&, const TreeDetectorOptions&) = default;
 };
 
 /// Throws InvalidInput ("tree-parameter").

@@ -143,8 +143,11 @@ TEST_F(FlyCommand, SendsFramesOnlyWhereItHasSomeAndAServiceDetectsTheirRoads) {
   const std::string service = " --server http://127.0.0.1:1 --patience 0";
   EXPECT_THAT(roadfix(frames + " --over " + after()).err, HasSubstr("frames-without-service"));
   EXPECT_THAT(roadfix(frames + service).err, HasSubstr("no-frames-to-send"));
-  EXPECT_THAT(roadfix(frames + service + " --over " + after() + " --detector tree").err,
-              HasSubstr("detector-elsewhere"));
+  for (const char* of_a_detector : {"--detector tree", "--orientations 4", "--tree-roots 500", "--tree-fan-width 30"}) {
+    EXPECT_THAT(roadfix(frames + service + " --over " + after() + " " + of_a_detector).err,
+                HasSubstr("detector-elsewhere"))
+        << of_a_detector;
+  }
   EXPECT_THAT(roadfix(frames + service + " --over " + after()).err, HasSubstr("service-silent"));
   EXPECT_EQ(roadfix("fly " + map() + " --send pictures").code, 2);
 }

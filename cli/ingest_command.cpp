@@ -46,19 +46,13 @@ void note_shifts(const std::string& map, const std::string& source, const std::m
   }
 }
 
-/// In megapixels of the source; without meaning for lines.
-double cell_size_mp(const MapSettings& settings, const SourceSummary& summary) {
-  const double side_px = settings.cell_m / summary.native_gsd_m;
-  return side_px * side_px / 1e6;
-}
-
 IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSummary& summary,
                                   const SourceRecord& record, MapWriter& writer, IngestOptions options) {
-  const bool lines = summary.native_gsd_m == 0.0;
+  const bool lines = summary.is_lines();
   const double lines_per_block =
       static_cast<double>(summary.features) / static_cast<double>(std::max<std::int64_t>(1, planned.blocks));
   Progress reading(record.name, lines ? "features" : "MP",
-                   lines ? lines_per_block : kTileCells * kTileCells * cell_size_mp(writer.settings(), summary));
+                   lines ? lines_per_block : kTileCells * kTileCells * cell_mp(summary, writer.settings()));
   Progress fusing("fusing", "tiles");
   options.on_blocks = reading.updates();
   options.on_fusing = fusing.updates();
@@ -80,7 +74,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
-    print_plan(json, arguments.json);
+    print_plan(json, planned.blocks, arguments.json);
     return;
   }
   if (!writer) writer.emplace(arguments.map, settings);
@@ -89,14 +83,14 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const IngestReport report = ingest_with_progress(planned, summary, record, *writer, std::move(options));
   if (report.observed_cells == 0 && report.blocks_before == 0) {
     fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,
-               summary.native_gsd_m > 0.0 ? "all its pixels are nodata, transparent, no numbers or in one colour"
-                                          : "its --extent holds the centre of no cell");
+               summary.is_lines() ? "its --extent holds the centre of no cell"
+                                  : "all its pixels are nodata, transparent, no numbers or in one colour");
   }
   if (report.blocks_before < report.blocks) {
     note_twins(*writer, record.name, arguments.map);
   }
   note_shifts(arguments.map, record.name, report.shifts);
-  print_report(json, report, cell_size_mp(settings, summary), arguments.json);
+  print_report(json, summary, settings, report, arguments.json);
 }
 
 /// A map that is its own source would count all that it knows twice. That it lies in the folder of its sources is fine.

@@ -25,20 +25,20 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
                       {"blocks", blocks},
                       {"blocks_km2", static_cast<double>(blocks) * side_km * side_km},
                       {"method", record.method}};
-  if (summary.native_gsd_m > 0.0) {
-    json["native_gsd_m"] = summary.native_gsd_m;
-    json["chosen_gsd_m"] = summary.chosen_gsd_m;
-  } else {
+  if (summary.is_lines()) {
     json["features"] = summary.features;
     json["left_out"] = summary.left_out;
+  } else {
+    json["native_gsd_m"] = summary.native_gsd_m;
+    json["chosen_gsd_m"] = summary.chosen_gsd_m;
   }
   if (!summary.notes.empty()) json["notes"] = summary.notes;
   return json;
 }
 
-void print_plan(nlohmann::json json, bool as_json) {
-  constexpr double kBytesPerBlock = 30'000.0;  // evidence and fused tile with overviews, of a city
-  json["expected_bytes"] = static_cast<std::int64_t>(kBytesPerBlock * json["blocks"].get<double>());
+void print_plan(nlohmann::json json, std::int64_t blocks, bool as_json) {
+  constexpr std::int64_t kBytesPerBlock = 30'000;  // evidence and fused tile with overviews, of a city
+  json["expected_bytes"] = kBytesPerBlock * blocks;
   if (as_json) {
     fmt::print("{}\n", json_text(json));
     return;
@@ -48,7 +48,13 @@ void print_plan(nlohmann::json json, bool as_json) {
   }
 }
 
-void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json) {
+double cell_mp(const SourceSummary& summary, const MapSettings& settings) {
+  const double side_px = settings.cell_m / summary.native_gsd_m;
+  return side_px * side_px / 1e6;
+}
+
+void print_report(nlohmann::json json, const SourceSummary& summary, const MapSettings& settings,
+                  const IngestReport& report, bool as_json) {
   const double fresh = static_cast<double>(report.blocks - report.blocks_before);
   json["blocks_done_before"] = report.blocks_before;
   json["observed_cells"] = report.observed_cells;
@@ -56,9 +62,9 @@ void print_report(nlohmann::json json, const IngestReport& report, double cell_m
   json["fusing_s"] = report.fusing_s;
   for (const auto& [name, shift] : report.shifts) json["shifts"][name] = api::to_json(shift);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
-  const bool lines = json.contains("features");
-  const double amount =
-      lines ? share * json["features"].get<double>() : static_cast<double>(report.observed_cells) * cell_mp;
+  const bool lines = summary.is_lines();
+  const double amount = lines ? share * static_cast<double>(summary.features)
+                              : static_cast<double>(report.observed_cells) * cell_mp(summary, settings);
   const double rate = report.reading_s > 0.0 ? amount / report.reading_s : 0.0;
   json[lines ? "features_per_s" : "megapixels_per_s"] = rate;
   if (as_json) {

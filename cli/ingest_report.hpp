@@ -15,10 +15,14 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
                             const MapSettings& settings);
 
 /// What a dry run prints: nothing is read but headers (all features, of vectors), nothing is written.
-void print_plan(nlohmann::json json, bool as_json);
+void print_plan(nlohmann::json json, std::int64_t blocks, bool as_json);
 
-/// Rates count the source's own pixels, of its observed ground; `cell_mp` is how many megapixels a cell has.
-void print_report(nlohmann::json json, const IngestReport& report, double cell_mp, bool as_json);
+/// Of a cell, in megapixels of the source, which is none of lines.
+double cell_mp(const SourceSummary& summary, const MapSettings& settings);
+
+/// Rates count lines, or the source's own pixels, of its observed ground.
+void print_report(nlohmann::json json, const SourceSummary& summary, const MapSettings& settings,
+                  const IngestReport& report, bool as_json);
 
 /// On stderr, so that --json stays clean. What the shift of a source means and, where `advised`, what to do about it.
 void print_shift_note(const std::string& source, const SourceShift& shift, double stated_sigma_m, bool advised);

@@ -46,7 +46,7 @@ SourceSummary summary_of(const CellSource& source, const SourceFiles& files) {
 
 SourceRecord record_of(const SourceFiles& files, const SourceSummary& summary, std::uint64_t seed) {
   return {.name = files.name,
-          .kind = summary.kind,
+          .kind = summary.kind == SourceKind::kImagery ? "imagery" : "roads",
           .location = files.location,
           .fingerprint = fmt::format("{}-seed{}", summary.fingerprint, seed),
           .method = summary.method,

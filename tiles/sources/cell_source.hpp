@@ -11,9 +11,11 @@
 
 namespace roadfix {
 
+enum class SourceKind { kImagery, kRoadRaster, kRoadVectors };
+
 /// What a source says about itself before anything is read from it.
 struct SourceSummary {
-  std::string kind;           ///< "imagery" or "roads"
+  SourceKind kind = SourceKind::kImagery;
   std::string method;         ///< detector or drawing rules with all parameters that change the cells
   std::string fingerprint;    ///< of the content of the files and of `method`
   std::string crs;            ///< as the files have it, or as the user said
@@ -24,6 +26,8 @@ struct SourceSummary {
   double registration_sigma_m = 0.0;
   Provenance told = {};  ///< by the files themselves; its registration error is that above, where it is told
   std::vector<std::string> notes = {};  ///< what was assumed of it, for the user to read
+
+  bool is_lines() const { return kind == SourceKind::kRoadVectors; }
 };
 
 class CellSource {

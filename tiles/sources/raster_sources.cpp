@@ -75,7 +75,7 @@ class Imagery final : public CellSource {
         cell_m_(cell_m),
         gsd_m_(detection_gsd_m(cell_m, detector.preferred_gsd_m(), mosaic_.gsd_m())) {
     require_fine_enough(paths);
-    summary_.kind = "imagery";
+    summary_.kind = SourceKind::kImagery;
     summary_.method =
         fmt::format("{}; pixels of {} m, values {}..{}, one colour over {} m unseen{}", detector.describe(), gsd_m_,
                     mosaic_.range().low, mosaic_.range().high, kBlankSideM, settings_of(options));
@@ -146,7 +146,7 @@ class RoadRaster final : public CellSource {
       : mosaic_(paths, options, ValueRule::kShare, zone),
         cell_m_(cell_m),
         gsd_m_(std::max(detection_gsd_m(cell_m, mosaic_.gsd_m(), mosaic_.gsd_m()), cell_m / kFinestParts)) {
-    summary_.kind = "roads";
+    summary_.kind = SourceKind::kRoadRaster;
     const Certainty certainty = certainty_of_values();
     summary_.method =
         fmt::format("raster of roads; values {}..{} become {}..{}, averaged over cells{}", mosaic_.range().low,

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace roadfix {
+#include "tiles/sources/cell_source.hpp"
 
-enum class SourceKind { kImagery, kRoadRaster, kRoadVectors };
+namespace roadfix {
 
 /// What the user says a source is. kAuto: vectors, maps and rasters of roads that roadfix wrote are roads, other
 /// rasters imagery.

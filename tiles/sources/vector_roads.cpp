@@ -153,7 +153,7 @@ class RoadVectors final : public CellSource {
         index_(network, extent_),
         covered_(std::move(network.covered)),
         class_attribute_(std::move(network.class_attribute)) {
-    summary_.kind = "roads";
+    summary_.kind = SourceKind::kRoadVectors;
     summary_.crs = network.crs;
     summary_.chosen_gsd_m = cell_m;
     summary_.features = static_cast<std::int64_t>(network.lines.size());

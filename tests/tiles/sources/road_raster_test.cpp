@@ -57,7 +57,7 @@ class RoadRaster : public ::testing::Test {
     const std::string path =
         write_raster(folder / "a.tif", spec, [road](int, int col, int) { return col < 31 ? road : 0.0; });
     const auto source = open_road_raster({path}, {}, kZone, 2.0);
-    EXPECT_EQ(source->summary().kind, "roads");
+    EXPECT_EQ(source->summary().kind, SourceKind::kRoadRaster);
     return source->read({2.0, {200000, -2100032}, 32, 32}, 1);
   }
   testing::TemporaryFolder folder;

@@ -8,8 +8,7 @@
 #include "cli/shift_text.hpp"
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/json_text.hpp"
-#include "server/api/fix_json.hpp"
-#include "server/api/source_json.hpp"
+#include "server/api/map_json.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
@@ -22,37 +21,18 @@ struct InfoArguments {
   bool as_json = false;
 };
 
-json source_json(const SourceStatus& source) {
-  json answer = api::to_json(source);
-  answer["location"] = source.record.location;
-  answer["fingerprint"] = source.record.fingerprint;
-  answer["ingested_at"] = source.ingested_at;
-  return answer;
-}
-
-json bbox_of(const MapInfo& info) {
-  if (info.extent.empty()) return nullptr;
-  return api::bbox_json(geo_box_around(info.settings.zone, info.extent));
-}
-
+/// With what a service does not tell everyone.
 void print_json(const std::string& path, const MapInfo& info) {
-  json sources = json::array();
-  for (const SourceStatus& source : info.sources) sources.push_back(source_json(source));
-  json extent = nullptr;
-  if (!info.extent.empty()) {
-    extent = {info.extent.min.east_m, info.extent.min.north_m, info.extent.max.east_m, info.extent.max.north_m};
+  json answer = api::to_json(info);
+  answer["map"] = path;
+  answer["pending_tiles"] = info.pending;
+  answer["schema_version"] = info.schema_version;
+  for (std::size_t i = 0; i < info.sources.size(); ++i) {
+    const SourceStatus& source = info.sources[i];
+    answer["sources"][i].update({{"location", source.record.location},
+                                 {"fingerprint", source.record.fingerprint},
+                                 {"ingested_at", source.ingested_at}});
   }
-  const json answer = {{"map", path},
-                       {"epsg", info.settings.zone.epsg()},
-                       {"cell_m", info.settings.cell_m},
-                       {"levels", info.levels},
-                       {"tiles", info.tiles},
-                       {"pending_tiles", info.pending},
-                       {"version", info.version},
-                       {"schema_version", info.schema_version},
-                       {"extent_m", extent},
-                       {"bbox", bbox_of(info)},
-                       {"sources", sources}};
   fmt::print("{}\n", json_text(answer, 2));
 }
 

@@ -42,6 +42,7 @@ TEST_F(MapCommands, InfoTellsWhatTheMapHolds) {
   const auto json = nlohmann::json::parse(roadfix("info --json " + path.string()).out);
   EXPECT_EQ(json["epsg"], 32637);
   EXPECT_EQ(json["tiles"], 4);
+  EXPECT_EQ(json["status"], "ready");
   EXPECT_EQ(json["sources"][0]["name"], "a");
   const std::vector<double> bbox = json["bbox"];
   EXPECT_NEAR(bbox[1], 37.76, 0.01);

@@ -125,13 +125,13 @@ void require_feature_map(const Fields& fields) {
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
-  static const std::vector<std::string> kFields = joined({"unobserved", "cell_m", "seed"}, frame_scale_fields());
+  static const std::vector<std::string> kFields = joined({{"unobserved", "cell_m", "seed"}, frame_scale_fields()});
   return kFields;
 }
 
 const std::vector<std::string>& feature_fields() {
   static const std::vector<std::string> kFields =
-      joined({"kind", "nadir_col", "nadir_row", "nadir_sigma_m"}, frame_fields());
+      joined({{"kind", "nadir_col", "nadir_row", "nadir_sigma_m"}, frame_fields()});
   return kFields;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -80,8 +81,9 @@ class Fields {
   std::map<std::string, Value> values_;
 };
 
-/// The names that a request may have, of several lists of them.
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);
+/// The names that a request may have, of several lists of them. A list is called ..._fields() where its names may stand
+/// in the query as well as in a body (those are the parameters of a route), ..._members() where only in a body.
+std::vector<std::string> joined(std::initializer_list<std::vector<std::string>> lists);
 
 /// The whole of `text` as a finite number; nullopt for anything else.
 std::optional<double> parse_number(std::string_view text);

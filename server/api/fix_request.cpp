@@ -43,9 +43,12 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 }  // namespace
 
 const std::vector<std::string>& prior_fields() {
-  static const std::vector<std::string> kFields{
-      "lat",        "lon",       "radius_m",    "bbox",    "heading_deg", "heading_range_deg",
-      "confidence", "max_modes", "scale_range", "proof_s", "time_limit_s"};
+  static const std::vector<std::string> kFields{"lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg"};
+  return kFields;
+}
+
+const std::vector<std::string>& fix_option_fields() {
+  static const std::vector<std::string> kFields{"confidence", "max_modes", "scale_range", "proof_s", "time_limit_s"};
   return kFields;
 }
 

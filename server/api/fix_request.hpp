@@ -13,12 +13,12 @@
 namespace roadfix::api {
 
 const std::vector<std::string>& prior_fields();
-
 /// lat, lon, radius_m; bbox = west, south, east, north; heading_deg with heading_range_deg (half the width). None of
 /// them = the whole map.
 Prior parse_prior(const Fields& fields);
 
-/// confidence, max_modes, scale_range, proof_s and time_limit_s, and the limit of the search area.
+const std::vector<std::string>& fix_option_fields();
+/// Those, and the limit of the search area.
 FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
 
 /// Ends the search early enough before the deadline to answer with what it has. Throws as time_left().

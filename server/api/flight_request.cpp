@@ -57,7 +57,7 @@ const json& others_of(const Content& content, const Limits& limits) {
 }  // namespace
 
 const std::vector<std::string>& flight_members() {
-  static const std::vector<std::string> kMembers = joined({"also"}, picture_members());
+  static const std::vector<std::string> kMembers = joined({{"also"}, picture_members()});
   return kMembers;
 }
 

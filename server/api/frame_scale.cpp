@@ -66,7 +66,7 @@ FrameCamera camera_in(std::span<const std::uint8_t> picture, const Fields& field
 }  // namespace
 
 const std::vector<std::string>& frame_scale_fields() {
-  static const std::vector<std::string> kFields = joined(joined({"gsd_m", "exif"}, lens_fields()), view_fields());
+  static const std::vector<std::string> kFields = joined({{"gsd_m", "exif"}, lens_fields(), view_fields()});
   return kFields;
 }
 
@@ -74,7 +74,7 @@ FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t>
   const bool exif = fields.flag("exif");
   if (const auto gsd_m = fields.optional_number("gsd_m", kGsd)) {
     const std::vector<std::string> exif_field(exif ? 1 : 0, "exif");
-    refuse(fields, joined(exif_field, joined(lens_fields(), view_fields())),
+    refuse(fields, joined({exif_field, lens_fields(), view_fields()}),
            "gsd_m, which means a frame seen from straight above");
     return {*gsd_m, std::nullopt, false};
   }

@@ -51,27 +51,12 @@ Odometry parse_odometry(const Fields& fields) {
 }  // namespace
 
 const std::vector<std::string>& track_members() {
-  static const std::vector<std::string> kMembers{"map",
-                                                 "lat",
-                                                 "lon",
-                                                 "radius_m",
-                                                 "bbox",
-                                                 "heading_deg",
-                                                 "heading_range_deg",
-                                                 "filter",
-                                                 "start",
-                                                 "particles",
-                                                 "measure_every",
-                                                 "seed",
-                                                 "speed_m_s",
-                                                 "speed_sigma_m_s",
-                                                 "turn_rate_deg_s",
-                                                 "turn_rate_sigma_deg_s",
-                                                 "odometry_share",
-                                                 "wind_sigma_m_s",
-                                                 "wind_walk",
-                                                 "scale_range",
-                                                 "nadir_sigma_m"};
+  static const std::vector<std::string> kMembers =
+      joined({{"map"},
+              prior_fields(),
+              {"filter", "start", "particles", "measure_every", "seed"},
+              {"speed_m_s", "speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s", "odometry_share"},
+              {"wind_sigma_m_s", "wind_walk", "scale_range", "nadir_sigma_m"}});
   return kMembers;
 }
 

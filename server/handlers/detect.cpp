@@ -16,10 +16,10 @@ namespace {
 constexpr double kDefaultCellM = 2.0;
 constexpr std::array<api::Media, 2> kDetectFormats{{{"png", "image/png"}, {"json", "application/json"}}};
 
-std::vector<std::string> detect_fields() { return joined(api::frame_fields(), {"format"}); }
+std::vector<std::string> detect_fields() { return joined({api::frame_fields(), {"format"}}); }
 
 http::Response post_detect(const Service& service, const http::Request& request) {
-  const api::Content content = api::read_content(request, joined(detect_fields(), {"image"}), service.limits);
+  const api::Content content = api::read_content(request, joined({detect_fields(), {"image"}}), service.limits);
   const std::string_view format = api::media_asked_for(request, content.fields, kDetectFormats).name;
   const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits, limit.token());

@@ -16,7 +16,8 @@ namespace roadfix::server {
 namespace {
 
 std::vector<std::string> fix_fields() {
-  return joined(joined(api::feature_fields(), api::prior_fields()), joined(api::position_fields(), {"time_us"}));
+  return joined(
+      {api::feature_fields(), api::prior_fields(), api::fix_option_fields(), api::position_fields(), {"time_us"}});
 }
 
 /// The frame was captured at time_us, or when the request came.
@@ -29,7 +30,8 @@ api::PositionTime time_of(const http::Request& request, std::optional<std::int64
 
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const api::Content content = api::read_content(request, joined(fix_fields(), api::flight_members()), service.limits);
+  const api::Content content =
+      api::read_content(request, joined({fix_fields(), api::flight_members()}), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);

@@ -11,12 +11,12 @@ namespace roadfix::server {
 namespace {
 
 /// The heading step lets many poses share rotations of the feature map.
-std::vector<std::string> match_fields() { return joined(api::feature_fields(), {"heading_step_deg"}); }
+std::vector<std::string> match_fields() { return joined({api::feature_fields(), {"heading_step_deg"}}); }
 
 http::Response post_match(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
-      api::read_content(request, joined(joined(match_fields(), {"poses"}), api::flight_members()), service.limits);
+      api::read_content(request, joined({match_fields(), {"poses"}, api::flight_members()}), service.limits);
   const std::vector<GeoPose> poses = api::parse_poses(content.fields, service.limits);
   MatchOptions options;
   options.heading_step = content.fields.optional_angle("heading_step_deg", {0.0, 90.0}).value_or(Angle());

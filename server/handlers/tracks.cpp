@@ -29,14 +29,14 @@ constexpr int kMaxParticlesShown = 10'000;
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
 
 std::vector<std::string> step_query() {
-  return joined(joined(api::step_fields(), api::feature_fields()), api::position_fields());
+  return joined({api::step_fields(), api::feature_fields(), api::position_fields()});
 }
 
 /// Of all that the step says, to tell a repeated step from another one. How it is packed says nothing: a form that is
 /// sent again may have another boundary.
 std::int64_t digest_of(const api::Content& content) {
   Fnv1a64 hash;
-  hash.add(content.fields.summary(joined(api::position_fields(), {"image"})));
+  hash.add(content.fields.summary(joined({api::position_fields(), {"image"}})));
   hash.add({reinterpret_cast<const char*>(content.image.data()), content.image.size()});
   return static_cast<std::int64_t>(hash.value());
 }
@@ -108,7 +108,7 @@ http::Response step_response(const Service& service, const PostedStep& step, Ste
 
 PostedStep read_step(const Service& service, const http::Request& request) {
   StoredTrack track = service.tracks.find(id_of(request));
-  api::Content content = api::read_content(request, joined(step_query(), api::picture_members()), service.limits);
+  api::Content content = api::read_content(request, joined({step_query(), api::picture_members()}), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   if (!api::shows_ground(content)) api::require_nothing_seen(content.fields);
   StepInput input = api::parse_step(content.fields);

@@ -153,6 +153,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   fix.insert(api::flight_members().begin(), api::flight_members().end());
   std::set<std::string> match = fix;
   fix.insert(api::prior_fields().begin(), api::prior_fields().end());
+  fix.insert(api::fix_option_fields().begin(), api::fix_option_fields().end());
   fix.insert(api::position_fields().begin(), api::position_fields().end());
   fix.insert("time_us");
   match.insert({"heading_step_deg", "poses"});
@@ -212,7 +213,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   fix.update(prior);
   expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
     api::Fields fields;
-    fields.add(body, api::joined(api::prior_fields(), {"nadir_sigma_m"}));
+    fields.add(body, api::joined({api::prior_fields(), api::fix_option_fields(), {"nadir_sigma_m"}}));
     api::parse_prior(fields);
     api::parse_fix_options(fields, limits_);
     api::told_nadir_sigma_m(fields);
@@ -239,7 +240,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
                   {"right_m", 0},  {"turn_deg", 0}, {"nadir_sigma_m", 0}};
   expect_ranges(schemas.at("StepRequest"), step, [&](const json& body) {
     api::Fields fields;
-    fields.add(body, api::joined(api::step_fields(), {"nadir_sigma_m"}));
+    fields.add(body, api::joined({api::step_fields(), {"nadir_sigma_m"}}));
     api::parse_step(fields);
     api::told_nadir_sigma_m(fields);
   });

@@ -36,7 +36,7 @@ class NoRoads : public roadfix::RoadDetector {
 const std::vector<std::string>& members() {
   static const std::vector<std::string> kMembers = [] {
     std::vector<std::string> all = api::feature_fields();
-    for (const auto* more : {&api::prior_fields(), &api::flight_members()})
+    for (const auto* more : {&api::prior_fields(), &api::fix_option_fields(), &api::flight_members()})
       all.insert(all.end(), more->begin(), more->end());
     all.emplace_back("poses");
     return all;

@@ -74,7 +74,7 @@ Content content_of(const std::string& type, const std::string& body) {
   http::Request request;
   request.headers["content-type"] = type;
   request.body = body;
-  return read_content(request, joined(feature_fields(), picture_members()), Limits{});
+  return read_content(request, joined({feature_fields(), picture_members()}), Limits{});
 }
 Content json_content(const nlohmann::json& body) { return content_of("application/json", body.dump()); }
 Content form_content(const std::string& parts) {

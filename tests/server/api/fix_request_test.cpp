@@ -74,7 +74,7 @@ TEST(PriorRequest, TellsAHeadingByHalfTheWidthOfItsRange) {
 }
 
 FixOptions options_of(const json& request, const Limits& limits = {}) {
-  return parse_fix_options(fields_of(request, prior_fields()), limits);
+  return parse_fix_options(fields_of(request, fix_option_fields()), limits);
 }
 
 TEST(FixOptionsRequest, SearchesWithoutProofOrLimitUnlessItIsAskedTo) {

@@ -31,7 +31,7 @@ json another(const std::vector<std::uint8_t>& picture, const BodyOffset& offset)
 }
 
 Content content_of(std::vector<std::uint8_t> picture, const json& request) {
-  return {fields_of(request, joined(feature_fields(), flight_members())), std::move(picture), true};
+  return {fields_of(request, joined({feature_fields(), flight_members()})), std::move(picture), true};
 }
 
 Features read(const Content& content, const Limits& limits = {}) {
@@ -139,7 +139,7 @@ TEST(FlightRequest, NeedsAListOfOthersInJson) {
 
 TEST(FlightRequest, RefusesCellsBesideOthers) {
   const Content content{fields_of({{"cell_m", 2}, {"cols", 2}, {"rows", 1}, {"cells", "AP4="}, {"also", json::array()}},
-                                  joined(feature_fields(), flight_members())),
+                                  joined({feature_fields(), flight_members()})),
                         {},
                         true};
   EXPECT_EQ(refused([&] { read(content); }), "bad-parameter cells");

@@ -6,16 +6,17 @@ namespace roadfix::server {
 
 http::Router make_router(const Service& service) {
   http::Router router;
-  add_console_routes(router);
-  add_operations_routes(router, service);
-  add_map_routes(router, service);
-  add_window_route(router, service);
-  add_tile_routes(router, service);
-  add_match_route(router, service);
-  add_fix_route(router, service);
-  add_localizability_routes(router, service);
-  add_detect_route(router, service);
-  add_track_routes(router, service);
+  Routes routes(router, service);
+  add_console_routes(routes);
+  add_operations_routes(routes);
+  add_map_routes(routes);
+  add_window_route(routes);
+  add_tile_routes(routes);
+  add_match_route(routes);
+  add_fix_route(routes);
+  add_localizability_routes(routes);
+  add_detect_route(routes);
+  add_track_routes(routes);
   return router;
 }
 

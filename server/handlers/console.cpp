@@ -28,13 +28,12 @@ http::Response get_file(const http::Request& request, std::string_view name) {
 
 }  // namespace
 
-void add_console_routes(http::Router& router) {
-  router.add({"GET", "/", {}, http::Load::kLight, [](const http::Request& request) {
-                return get_file(request, "index.html");
-              }});
-  router.add({"GET", "/console/{file}", {}, http::Load::kLight, [](const http::Request& request) {
-                return get_file(request, request.path_parameters.at("file"));
-              }});
+void add_console_routes(Routes& routes) {
+  routes.add("GET", "/", {},
+             [](const Service&, const http::Request& request) { return get_file(request, "index.html"); });
+  routes.add("GET", "/console/{file}", {}, [](const Service&, const http::Request& request) {
+    return get_file(request, request.path_parameters.at("file"));
+  });
 }
 
 }  // namespace roadfix::server

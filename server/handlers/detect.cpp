@@ -43,9 +43,8 @@ http::Response post_detect(const Service& service, const http::Request& request)
 
 }  // namespace
 
-void add_detect_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/detect", detect_fields(), http::Load::kHeavyAnswer,
-              [&service](const http::Request& request) { return post_detect(service, request); }});
+void add_detect_route(Routes& routes) {
+  routes.add("POST", "/v1/detect", detect_fields(), post_detect, http::Load::kHeavyAnswer);
 }
 
 }  // namespace roadfix::server

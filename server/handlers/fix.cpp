@@ -55,9 +55,8 @@ http::Response post_fix(const Service& service, const http::Request& request) {
 
 }  // namespace
 
-void add_fix_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/fix", fix_fields(), http::Load::kHeavyAnswer,
-              [&service](const http::Request& request) { return post_fix(service, request); }});
+void add_fix_route(Routes& routes) {
+  routes.add("POST", "/v1/maps/{map}/fix", fix_fields(), post_fix, http::Load::kHeavyAnswer);
 }
 
 }  // namespace roadfix::server

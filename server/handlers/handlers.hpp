@@ -1,7 +1,9 @@
 // One file per resource; each adds its routes.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "server/http/router.hpp"
 #include "server/service.hpp"
@@ -12,18 +14,39 @@ namespace roadfix::server {
 /// service's connections are left to others.
 inline constexpr int kThreadsPerWaiting = 4;
 
+/// Where a resource adds its routes: what answers them is called with the service.
+class Routes {
+ public:
+  template <typename Answer>
+  using Handler = std::function<Answer(const Service&, const http::Request&)>;
+
+  /// `service` must outlive the router's handlers.
+  Routes(http::Router& router, const Service& service) : router_(router), service_(service) {}
+
+  void add(const char* method, const char* path, std::vector<std::string> parameters, Handler<http::Response> handler,
+           http::Load load = http::Load::kLight);
+  /// See http::Route::prepare.
+  void add_prepared(const char* method, const char* path, std::vector<std::string> parameters,
+                    Handler<std::function<http::Response()>> prepare);
+  const Service& service() const { return service_; }
+
+ private:
+  http::Router& router_;
+  const Service& service_;
+};
+
 /// / and /console/{file}: the operator's page
-void add_console_routes(http::Router& router);
+void add_console_routes(Routes& routes);
 /// /healthz, /readyz, /metrics, /openapi.json, /v1/limits
-void add_operations_routes(http::Router& router, const Service& service);
-void add_map_routes(http::Router& router, const Service& service);
-void add_window_route(http::Router& router, const Service& service);
-void add_tile_routes(http::Router& router, const Service& service);
-void add_match_route(http::Router& router, const Service& service);
-void add_fix_route(http::Router& router, const Service& service);
+void add_operations_routes(Routes& routes);
+void add_map_routes(Routes& routes);
+void add_window_route(Routes& routes);
+void add_tile_routes(Routes& routes);
+void add_match_route(Routes& routes);
+void add_fix_route(Routes& routes);
 /// The answer for a place, and tiles of them
-void add_localizability_routes(http::Router& router, const Service& service);
-void add_detect_route(http::Router& router, const Service& service);
-void add_track_routes(http::Router& router, const Service& service);
+void add_localizability_routes(Routes& routes);
+void add_detect_route(Routes& routes);
+void add_track_routes(Routes& routes);
 
 }  // namespace roadfix::server

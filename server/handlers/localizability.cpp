@@ -144,25 +144,17 @@ http::Response get_localizability_tilejson(const Service& service, const http::R
 
 }  // namespace
 
-void add_localizability_routes(http::Router& router, const Service& service) {
-  router.add({"GET",
-              "/v1/maps/{map}/localizability",
-              {"lat", "lon", "footprint_m", "radius_m"},
-              http::Load::kHeavyAnswer,
-              [&service](const http::Request& request) { return get_localizability(service, request); }});
+void add_localizability_routes(Routes& routes) {
+  routes.add("GET", "/v1/maps/{map}/localizability", {"lat", "lon", "footprint_m", "radius_m"}, get_localizability,
+             http::Load::kHeavyAnswer);
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
-  const auto tiles = std::make_shared<Tiles>(service.http.threads / kThreadsPerWaiting);
-  router.add(
-      {"GET",
-       "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png",
-       {"footprint_m", "style", "version"},
-       http::Load::kLight,
-       [&service, tiles](const http::Request& request) { return get_localizability_tile(service, request, *tiles); }});
-  router.add({"GET",
-              "/v1/maps/{map}/localizability/tilejson.json",
-              {"footprint_m", "style"},
-              http::Load::kLight,
-              [&service](const http::Request& request) { return get_localizability_tilejson(service, request); }});
+  const auto tiles = std::make_shared<Tiles>(routes.service().http.threads / kThreadsPerWaiting);
+  routes.add("GET", "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png", {"footprint_m", "style", "version"},
+             [tiles](const Service& service, const http::Request& request) {
+               return get_localizability_tile(service, request, *tiles);
+             });
+  routes.add("GET", "/v1/maps/{map}/localizability/tilejson.json", {"footprint_m", "style"},
+             get_localizability_tilejson);
 }
 
 }  // namespace roadfix::server

@@ -19,7 +19,7 @@ json unreadable(const UnreadableMap& map) {
   return {{"name", map.name}, {"status", "unreadable"}, {"code", map.code}, {"reason", map.reason}};
 }
 
-http::Response list(const Service& service) {
+http::Response list(const Service& service, const http::Request& /*unused*/) {
   std::vector<json> maps;
   for (const auto& map : service.maps.maps()) {
     try {
@@ -40,11 +40,9 @@ http::Response details(const Service& service, const http::Request& request) {
 
 }  // namespace
 
-void add_map_routes(http::Router& router, const Service& service) {
-  router.add({"GET", "/v1/maps", {}, http::Load::kLight, [&service](const http::Request&) { return list(service); }});
-  router.add({"GET", "/v1/maps/{map}", {}, http::Load::kLight, [&service](const http::Request& request) {
-                return details(service, request);
-              }});
+void add_map_routes(Routes& routes) {
+  routes.add("GET", "/v1/maps", {}, list);
+  routes.add("GET", "/v1/maps/{map}", {}, details);
 }
 
 }  // namespace roadfix::server

@@ -31,9 +31,8 @@ http::Response post_match(const Service& service, const http::Request& request) 
 
 }  // namespace
 
-void add_match_route(http::Router& router, const Service& service) {
-  router.add({"POST", "/v1/maps/{map}/match", match_fields(), http::Load::kHeavyAnswer,
-              [&service](const http::Request& request) { return post_match(service, request); }});
+void add_match_route(Routes& routes) {
+  routes.add("POST", "/v1/maps/{map}/match", match_fields(), post_match, http::Load::kHeavyAnswer);
 }
 
 }  // namespace roadfix::server

@@ -7,7 +7,11 @@ namespace {
 
 using nlohmann::json;
 
-http::Response ready(const Service& service) {
+http::Response health(const Service& /*unused*/, const http::Request& /*unused*/) {
+  return json_response({{"status", "ok"}, {"version", ROADFIX_VERSION}});
+}
+
+http::Response ready(const Service& service, const http::Request& /*unused*/) {
   const auto maps = service.maps.maps().size();
   json answer{{"status", "ready"}, {"maps", maps}, {"unreadable_maps", service.maps.unreadable().size()}};
   // Maps are served without it, so that it is no reason to send requests elsewhere.
@@ -17,7 +21,15 @@ http::Response ready(const Service& service) {
   return json_response(answer);
 }
 
-http::Response limits(const Service& service) {
+http::Response metrics(const Service& service, const http::Request& /*unused*/) {
+  return {200, "text/plain; version=0.0.4", service.metrics.text()};
+}
+
+http::Response openapi(const Service& /*unused*/, const http::Request& /*unused*/) {
+  return {200, "application/json", std::string(schema::openapi_json())};
+}
+
+http::Response limits(const Service& service, const http::Request& /*unused*/) {
   return json_response({{"body_bytes", service.http.body_bytes},
                         {"pixels", service.limits.pixels},
                         {"cells", service.limits.cells},
@@ -39,19 +51,12 @@ http::Response limits(const Service& service) {
 
 }  // namespace
 
-void add_operations_routes(http::Router& router, const Service& service) {
-  router.add({"GET", "/healthz", {}, http::Load::kLight, [](const http::Request&) {
-                return json_response({{"status", "ok"}, {"version", ROADFIX_VERSION}});
-              }});
-  router.add({"GET", "/readyz", {}, http::Load::kLight, [&service](const http::Request&) { return ready(service); }});
-  router.add({"GET", "/metrics", {}, http::Load::kLight, [&service](const http::Request&) {
-                return http::Response{200, "text/plain; version=0.0.4", service.metrics.text()};
-              }});
-  router.add({"GET", "/openapi.json", {}, http::Load::kLight, [](const http::Request&) {
-                return http::Response{200, "application/json", std::string(schema::openapi_json())};
-              }});
-  router.add(
-      {"GET", "/v1/limits", {}, http::Load::kLight, [&service](const http::Request&) { return limits(service); }});
+void add_operations_routes(Routes& routes) {
+  routes.add("GET", "/healthz", {}, health);
+  routes.add("GET", "/readyz", {}, ready);
+  routes.add("GET", "/metrics", {}, metrics);
+  routes.add("GET", "/openapi.json", {}, openapi);
+  routes.add("GET", "/v1/limits", {}, limits);
 }
 
 }  // namespace roadfix::server

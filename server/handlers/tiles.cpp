@@ -44,16 +44,9 @@ http::Response get_tilejson(const Service& service, const http::Request& request
 
 }  // namespace
 
-void add_tile_routes(http::Router& router, const Service& service) {
-  router.add({"GET",
-              "/v1/maps/{map}/tiles/{z}/{x}/{y}.png",
-              {"style", "version"},
-              http::Load::kLight,
-              [&service](const http::Request& request) { return get_tile(service, request); }});
-  router.add(
-      {"GET", "/v1/maps/{map}/tilejson.json", {"style"}, http::Load::kLight, [&service](const http::Request& request) {
-         return get_tilejson(service, request);
-       }});
+void add_tile_routes(Routes& routes) {
+  routes.add("GET", "/v1/maps/{map}/tiles/{z}/{x}/{y}.png", {"style", "version"}, get_tile);
+  routes.add("GET", "/v1/maps/{map}/tilejson.json", {"style"}, get_tilejson);
 }
 
 }  // namespace roadfix::server

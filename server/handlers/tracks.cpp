@@ -208,22 +208,14 @@ http::Response delete_track(const Service& service, const http::Request& request
 
 }  // namespace
 
-void add_track_routes(http::Router& router, const Service& service) {
-  const auto add = [&](const char* method, const char* path, std::vector<std::string> query, http::Load load,
-                       auto handler) {
-    router.add({method, path, std::move(query), load,
-                [&service, handler](const http::Request& request) { return handler(service, request); }});
-  };
-  add("POST", "/v1/tracks", {}, http::Load::kLight, post_track);
-  add("GET", "/v1/tracks", {}, http::Load::kLight, list_tracks);
-  add("GET", "/v1/tracks/{id}", {"particles"}, http::Load::kLight, get_track);
-  add("DELETE", "/v1/tracks/{id}", {}, http::Load::kLight, delete_track);
-  router.add(
-      {"POST", "/v1/tracks/{id}/steps", step_query(), http::Load::kHeavy, {}, [&service](const http::Request& request) {
-         return post_step(service, request);
-       }});
-  add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, http::Load::kLight, get_history);
-  add("GET", "/v1/tracks/{id}/events", {}, http::Load::kLight, get_events);
+void add_track_routes(Routes& routes) {
+  routes.add("POST", "/v1/tracks", {}, post_track);
+  routes.add("GET", "/v1/tracks", {}, list_tracks);
+  routes.add("GET", "/v1/tracks/{id}", {"particles"}, get_track);
+  routes.add("DELETE", "/v1/tracks/{id}", {}, delete_track);
+  routes.add_prepared("POST", "/v1/tracks/{id}/steps", step_query(), post_step);
+  routes.add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, get_history);
+  routes.add("GET", "/v1/tracks/{id}/events", {}, get_events);
 }
 
 }  // namespace roadfix::server

@@ -52,13 +52,14 @@ http::Response get_window(const Service& service, const http::Request& request, 
 
 }  // namespace
 
-void add_window_route(http::Router& router, const Service& service) {
+void add_window_route(Routes& routes) {
   // The map around a long window on a slant takes hundreds of megabytes. Not among the heavy requests, whose turns are
   // longer.
-  const auto turns =
-      std::make_shared<http::Admission>(service.http.heavy_running, service.http.threads / kThreadsPerWaiting);
-  router.add({"GET", "/v1/maps/{map}/window", api::window_fields(), http::Load::kLight,
-              [&service, turns](const http::Request& request) { return get_window(service, request, *turns); }});
+  const http::ServerSettings& http = routes.service().http;
+  const auto turns = std::make_shared<http::Admission>(http.heavy_running, http.threads / kThreadsPerWaiting);
+  routes.add(
+      "GET", "/v1/maps/{map}/window", api::window_fields(),
+      [turns](const Service& service, const http::Request& request) { return get_window(service, request, *turns); });
 }
 
 }  // namespace roadfix::server

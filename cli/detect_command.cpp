@@ -53,18 +53,18 @@ struct Place {
 };
 
 struct Picture {
-  GroundView view;
+  api::SeenFrame frame;
   std::optional<Place> place;
 };
 
 Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
   if (options.frame.given()) {
-    return {ground_seen(options.frame, options.image, detector).view, {}};
+    return {ground_seen(options.frame, options.image, detector), {}};
   }
   require_frame_for(options.frame);
   const UtmZone zone = zone_of_image(options.image);
   Orthoimage ortho = read_orthoimage(options.image, zone);
-  return {rectified(std::move(ortho.image)), Place{zone, ortho.north_west}};
+  return {{rectified(std::move(ortho.image))}, Place{zone, ortho.north_west}};
 }
 
 /// World file and reference system beside the PNG, as GDAL and QGIS look for them.
@@ -128,9 +128,9 @@ void run_detect(const DetectOptions& options) {
   require_own_world_file(options);
   const auto detector = make_detector(options.detector);
   const Picture picture = read_picture(options, *detector);
-  const auto start = std::chrono::steady_clock::now();
-  const FeatureMap map = detect_features(*detector, picture.view, options.cell_m, options.seed);
-  const Milliseconds time = std::chrono::steady_clock::now() - start;
+  const api::Features features = api::detected(picture.frame, {*detector, options.cell_m, {}, options.seed});
+  const FeatureMap& map = features.map;
+  const auto time = features.detect_time.value();
   if (map.cells.observed_count() == 0) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
   }

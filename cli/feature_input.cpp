@@ -11,7 +11,6 @@
 #include "cli/detector_options.hpp"
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
-#include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 
@@ -46,40 +45,18 @@ Another parse_also(const std::string& text) {
 }
 
 /// `detector` is null for feature maps.
-FeatureInput input_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
-                      double map_cell_m) {
-  if (detector == nullptr) {
+api::Features features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
+                          double map_cell_m) {
+  api::Features features;
+  if (detector != nullptr) {
+    features = api::detected(ground_seen(options.frame, path, *detector), {*detector, map_cell_m, {}, options.seed});
+  } else {
     ToldScale told{options.cell_m, {}, {}};
     if (!options.nadir.empty()) told = {options.cell_m, options.nadir[0], options.nadir[1]};
-    return {.features = feature_map_in(path, told)};
+    features.map = feature_map_in(path, told);
   }
-  const SeenFrame frame = ground_seen(options.frame, path, *detector);
-  return {.features = detect_features(*detector, frame.view, map_cell_m, options.seed),
-          .camera_in_file = frame.camera_in_file};
-}
-
-FeatureInput features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
-                         double map_cell_m) {
-  FeatureInput input = input_in(path, options, detector, map_cell_m);
-  if (options.nadir_sigma_m) input.features.nadir_sigma_m = *options.nadir_sigma_m;
-  return input;
-}
-
-FeatureInput all_features(const FeatureInputOptions& options, const RoadDetector* detector, double map_cell_m) {
-  FeatureInput first = features_in(options.path, options, detector, map_cell_m);
-  if (options.also.empty()) return first;
-  if (options.also.size() >= kMaxFrames) {
-    throw LimitExceeded("too-many-frames",
-                        fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
-  }
-  std::vector<PlacedFeatures> parts{{std::move(first.features), {}}};
-  for (const std::string& text : options.also) {
-    const Another another = parse_also(text);
-    parts.push_back({features_in(another.path, options, detector, map_cell_m).features, another.offset});
-  }
-  first.features = laid_together(parts, kMaxCells);
-  first.own_frame = std::move(parts.front().features);
-  return first;
+  if (options.nadir_sigma_m) features.map.nadir_sigma_m = *options.nadir_sigma_m;
+  return features;
 }
 
 }  // namespace
@@ -115,14 +92,22 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   add_detector_options(command, o.detector);
 }
 
-FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
+api::Features read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
   require_frame_for(options.frame);
-  if (!options.frame.given()) return all_features(options, nullptr, map_cell_m);
-  const auto detector = make_detector(options.detector);
-  const auto start = std::chrono::steady_clock::now();
-  FeatureInput input = all_features(options, detector.get(), map_cell_m);
-  input.detect_time = std::chrono::steady_clock::now() - start;
-  return input;
+  const auto detector = options.frame.given() ? make_detector(options.detector) : nullptr;
+  const auto read = [&](const std::string& path) { return features_in(path, options, detector.get(), map_cell_m); };
+  api::Features first = read(options.path);
+  if (options.also.empty()) return first;
+  if (options.also.size() >= kMaxFrames) {
+    throw LimitExceeded("too-many-frames",
+                        fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
+  }
+  std::vector<api::OtherFeatures> others;
+  for (const std::string& text : options.also) {
+    const Another another = parse_also(text);
+    others.push_back({read(another.path), another.offset});
+  }
+  return api::together(std::move(first), std::move(others), kMaxCells);
 }
 
 }  // namespace roadfix::cli

@@ -1,7 +1,6 @@
 // What `match` and `fix` take as input: a feature map as PNG, or a frame whose roads are detected first.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,7 +9,6 @@
 #include "cli/command.hpp"
 #include "cli/frame_options.hpp"
 #include "core/detect/make_detector.hpp"
-#include "core/grid/feature_map.hpp"
 
 namespace roadfix::cli {
 
@@ -25,19 +23,12 @@ struct FeatureInputOptions {
   DetectorChoice detector;
 };
 
-struct FeatureInput {
-  FeatureMap features;
-  std::optional<FeatureMap> own_frame = {};        ///< where others are laid around it: the first by itself
-  std::optional<FrameCamera> camera_in_file = {};  ///< of the first, where it was read from there
-  std::optional<std::chrono::duration<double, std::milli>> detect_time = {};  ///< of the frames
-};
-
 /// Adds the input file and its options; `options` must live as long as the command.
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
 
 /// Roads of a frame come in cells of `map_cell_m`; several frames are laid together. Without options
 /// of a frame the input is a feature map. Throws InvalidInput "input-kind-missing" where it does not say so itself and
 /// no option does.
-FeatureInput read_feature_input(const FeatureInputOptions& options, double map_cell_m);
+api::Features read_feature_input(const FeatureInputOptions& options, double map_cell_m);
 
 }  // namespace roadfix::cli

@@ -86,7 +86,7 @@ void print_text(const Fix& fix) {
 
 void run_fix(const FixArguments& options) {
   const MapView view = view_of_file(options.map);
-  FeatureInput input = read_feature_input(options.input, view.cell_m);
+  api::Features input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.own_frame = std::move(input.own_frame);
@@ -96,7 +96,7 @@ void run_fix(const FixArguments& options) {
   fix_options.progress = [&](std::int64_t done, std::int64_t total) {
     if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
   };
-  const Fix fix = locate(view, input.features, prior_of(options), fix_options);
+  const Fix fix = locate(view, input.map, prior_of(options), fix_options);
   if (options.as_json) {
     nlohmann::json answer = api::to_json(fix, input.detect_time);
     if (input.camera_in_file) answer["camera"] = api::to_json(*input.camera_in_file);

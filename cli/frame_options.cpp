@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <utility>
 
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/unit_options.hpp"
 #include "core/detect/feature_map_codec.hpp"
-#include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
-#include "tiles/sources/drone_picture.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -44,9 +41,14 @@ FrameCamera told_camera(const FrameCamera& camera) {
   return camera;
 }
 
-FrameCamera camera_in(const std::string& path, const FrameCamera& told) {
-  const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
-  return decoded(path, [&](const auto& bytes) { return camera_of(drone_picture(read_picture_tags(bytes)), known); });
+api::FrameScale scale_of(const std::string& path, const FrameOptions& options) {
+  if (options.camera_in_file) {
+    const FrameCamera& told = options.camera;
+    const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
+    return decoded(path, [&](const auto& bytes) { return api::scale_in_file(bytes, known); });
+  }
+  if (!options.has_camera()) return {options.gsd_m, std::nullopt};
+  return {0.0, told_camera(options.camera)};
 }
 
 }  // namespace
@@ -115,20 +117,10 @@ void require_frame_for(const FrameOptions& options) {
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
 }
 
-SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
-  const cv::Mat picture = decoded(path, [](const auto& bytes) { return decode_frame(bytes, kMaxPixels); });
-  std::optional<FrameCamera> camera;
-  if (options.camera_in_file) {
-    camera = camera_in(path, options.camera);
-  } else if (options.has_camera()) {
-    camera = told_camera(options.camera);
-  }
-  const Border border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
-  return said_of(path, [&] {
-    GroundView view =
-        ground_seen(frame_image(picture, options.gsd_m, border), camera, detector, static_cast<double>(kMaxPixels));
-    return SeenFrame{std::move(view), options.camera_in_file ? camera : std::nullopt};
-  });
+api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
+  const cv::Mat pixels = decoded(path, [](const auto& bytes) { return decode_frame(bytes, kMaxPixels); });
+  const api::Frame frame{pixels, scale_of(path, options), options.black_unseen ? Border::kBlackUnseen : Border::kSeen};
+  return said_of(path, [&] { return api::seen_frame(frame, detector, kMaxPixels); });
 }
 
 FeatureMap feature_map_in(const std::string& path, const ToldScale& told) {

@@ -7,7 +7,7 @@
 
 #include "cli/command.hpp"
 #include "core/detect/feature_map_codec.hpp"
-#include "core/detect/frame.hpp"
+#include "server/api/features.hpp"
 
 namespace roadfix::cli {
 
@@ -28,15 +28,10 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& opt
 /// Throws CLI::RequiredError where an option says something of a frame and none that there is one.
 void require_frame_for(const FrameOptions& options);
 
-struct SeenFrame {
-  GroundView view;
-  std::optional<FrameCamera> camera_in_file;  ///< where that was asked for
-};
-
 /// The ground that the frame in a file shows, in pixels that the detector makes use of. Throws what decode_image,
 /// frame_image, rectify and camera_of(DronePicture) throw, InvalidInput "not-a-file" and NotFound "file-not-found";
 /// all about the file name it. options.given() must hold.
-SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
+api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
 /// The feature map in a file, as told where it does not say so itself: see decode_feature_map and
 /// feature_map_of; what they throw names the file here. Also throws InvalidInput "not-a-file", "input-kind-missing"

@@ -90,10 +90,10 @@ void run_match(const MatchArguments& options) {
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
   const MapView view = view_of_file(options.map);
-  const FeatureInput input = read_feature_input(options.input, view.cell_m);
+  const api::Features input = read_feature_input(options.input, view.cell_m);
   MatchOptions match_options = options.match;
   match_options.stop = stop_on_signals();
-  const std::vector<MatchScore> scores = match(view, input.features, poses, match_options);
+  const std::vector<MatchScore> scores = match(view, input.map, poses, match_options);
   if (options.as_json) {
     fmt::print("{}\n", json_text(api::to_json(scores, view), 2));
   } else {

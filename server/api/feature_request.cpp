@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "core/detect/feature_map_codec.hpp"
-#include "core/detect/frame.hpp"
-#include "core/detect/frame_image.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
@@ -79,20 +77,12 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   return feature_map_of(given_picture(content, limits), told);
 }
 
-struct SeenFrame {
-  GroundView view;
-  std::optional<FrameCamera> camera_in_file;
-};
-
-SeenFrame seen_frame(const Content& content, const RoadDetector& detector, const Limits& limits) {
+Frame given_frame(const Content& content, const Limits& limits) {
   require_picture(content);
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
   const cv::Mat pixels = decode_frame(content.image, limits.pixels);
-  const FrameScale scale = parse_frame_scale(fields, content.image);
-  const GroundImage frame = frame_image(pixels, scale.gsd_m, border);
-  return {ground_seen(frame, scale.camera, detector, static_cast<double>(limits.pixels)),
-          scale.in_file ? scale.camera : std::nullopt};
+  return {pixels, parse_frame_scale(fields, content.image), border};
 }
 
 /// Detectors draw a coarse frame in finer pixels of their own before they look at it.
@@ -161,12 +151,11 @@ std::optional<double> told_nadir_sigma_m(const Fields& fields) {
   return fields.optional_number("nadir_sigma_m", {0.0, 1000.0});
 }
 
-Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
-                     const std::stop_token& stop) {
+Features features_of(const Content& content, const Detection& detection, const Limits& limits) {
   Features features;
   if (content.fields.word("kind", kKinds) == "frame") {
     require_frame(content.fields);
-    features = detected(content, detector, default_cell_m, limits, stop);
+    features = detected(content, detection, limits);
   } else {
     require_feature_map(content.fields);
     features.map = given_map(content, limits);
@@ -175,21 +164,23 @@ Features features_of(const Content& content, const RoadDetector& detector, doubl
   return features;
 }
 
-Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
-                  const std::stop_token& stop) {
-  const double cell_m = content.fields.optional_number("cell_m", {0.1, 100.0}).value_or(default_cell_m);
-  const int seed = content.fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1);
-  const auto [view, camera_in_file] = seen_frame(content, detector, limits);
-  require_few_pixels(view.image, detector, limits);
-  const double cells = static_cast<double>(view.image.pixels.total()) * std::pow(view.image.gsd_m / cell_m, 2.0);
+Features detected(const Content& content, const Detection& detection, const Limits& limits) {
+  const Fields& fields = content.fields;
+  Detection asked = detection;
+  asked.cell_m = fields.optional_number("cell_m", {0.1, 100.0}).value_or(detection.cell_m);
+  if (const auto seed = fields.optional_integer("seed", 0, std::numeric_limits<int>::max())) {
+    asked.seed = static_cast<std::uint64_t>(*seed);
+  }
+  const SeenFrame frame = seen_frame(given_frame(content, limits), detection.detector, limits.pixels);
+  const GroundImage& ground = frame.view.image;
+  require_few_pixels(ground, detection.detector, limits);
+  const double cells = static_cast<double>(ground.pixels.total()) * std::pow(ground.gsd_m / asked.cell_m, 2.0);
   if (cells > static_cast<double>(limits.cells)) {
     throw LimitExceeded("too-many-cells", fmt::format("the frame would have {:.0f} cells of {} m; at most {} are "
                                                       "allowed: send a part of it, or ask for larger cells with cell_m",
-                                                      cells, cell_m, limits.cells));
+                                                      cells, asked.cell_m, limits.cells));
   }
-  const auto start = std::chrono::steady_clock::now();
-  FeatureMap map = detect_features(detector, view, cell_m, static_cast<std::uint64_t>(seed), stop);
-  return {std::move(map), std::chrono::steady_clock::now() - start, camera_in_file};
+  return detected(frame, asked);
 }
 
 }  // namespace roadfix::api

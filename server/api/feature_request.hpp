@@ -1,16 +1,12 @@
 // What a client posts to be matched or detected: a feature map or a frame, with the values that describe it.
 #pragma once
 
-#include <chrono>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
-#include "core/detect/frame_camera.hpp"
-#include "core/detect/road_detector.hpp"
-#include "core/grid/feature_map.hpp"
 #include "server/api/content.hpp"
+#include "server/api/features.hpp"
 #include "server/api/limits.hpp"
 
 namespace roadfix::api {
@@ -28,22 +24,12 @@ bool shows_ground(const Content& content);
 /// picture that was forgotten is not to pass for a flight without one.
 void require_nothing_seen(const Fields& fields);
 
-struct Features {
-  FeatureMap map;
-  std::optional<std::chrono::duration<double, std::milli>> detect_time;  ///< of a frame
-  std::optional<FrameCamera> camera_in_file;                             ///< of a frame with exif=true
-  std::optional<FeatureMap> own_frame{};  ///< where others are laid around it: the request's picture by itself
-};
-
 /// How well the nadir is known as the client says, 1 sigma per axis: it knows more than a camera's description tells.
 std::optional<double> told_nadir_sigma_m(const Fields& fields);
 
-/// The feature map, detected if it is a frame. `default_cell_m` is the cell size for frames that name none. Detection
-/// ends with Interrupted when a stop is requested.
-Features features_of(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
-                     const std::stop_token& stop);
+/// The feature map, detected if it is a frame. Cell size and seed of the detection are for frames that name none.
+Features features_of(const Content& content, const Detection& detection, const Limits& limits);
 /// The same of what is a frame for sure, whatever the fields say of a feature map.
-Features detected(const Content& content, const RoadDetector& detector, double default_cell_m, const Limits& limits,
-                  const std::stop_token& stop);
+Features detected(const Content& content, const Detection& detection, const Limits& limits);
 
 }  // namespace roadfix::api

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
 #include "server/api/base64.hpp"
 #include "server/http/errors.hpp"
@@ -61,29 +60,25 @@ const std::vector<std::string>& flight_members() {
   return kMembers;
 }
 
-Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
-                            const Limits& limits, const std::stop_token& stop) {
+Features flight_features_of(const Content& content, const Detection& detection, const Limits& limits) {
   if (content.fields.has("also") && content.fields.has("cells")) {
     throw InvalidField("bad-parameter", "cells", "beside 'also' the first frame is a picture too: send it as 'image'");
   }
-  Features first = features_of(content, detector, default_cell_m, limits, stop);
+  Features first = features_of(content, detection, limits);
   if (!content.fields.has("also")) return first;
   static const std::vector<std::string> kPictures{"image", "also"};  // megabytes
   Content other{content.fields.without(kPictures), {}, true};
-  std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
+  std::vector<OtherFeatures> others;
   for (const json& frame : others_of(content, limits)) {
-    const std::string place = fmt::format("also[{}]", parts.size() - 1);
+    const std::string place = fmt::format("also[{}]", others.size());
     if (!frame.is_object() || frame.size() != 4) {
       throw InvalidField("bad-parameter", place, "a frame is an object with image, forward_m, right_m and turn_deg");
     }
     const BodyOffset offset = offset_of(frame, place);
     other.image = picture_of(frame, place);
-    Features features = named(place, [&] { return features_of(other, detector, default_cell_m, limits, stop); });
-    parts.push_back({std::move(features.map), offset});
-    if (first.detect_time) *first.detect_time += features.detect_time.value();
+    others.push_back({named(place, [&] { return features_of(other, detection, limits); }), offset});
   }
-  FeatureMap all = laid_together(parts, static_cast<double>(limits.cells));
-  return {std::move(all), first.detect_time, first.camera_in_file, std::move(parts.front().features)};
+  return together(std::move(first), std::move(others), static_cast<double>(limits.cells));
 }
 
 }  // namespace roadfix::api

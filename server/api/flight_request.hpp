@@ -11,7 +11,6 @@ const std::vector<std::string>& flight_members();
 /// As features_of, laid together with each of "also" (JSON objects with image in base64, forward_m, right_m and
 /// turn_deg, seen from the UAV at the request's picture; all else is as for that picture). Throws InvalidField with the
 /// place ("also[2].turn_deg") and LimitExceeded ("too-many-frames", "frames-too-far-apart").
-Features flight_features_of(const Content& content, const RoadDetector& detector, double default_cell_m,
-                            const Limits& limits, const std::stop_token& stop);
+Features flight_features_of(const Content& content, const Detection& detection, const Limits& limits);
 
 }  // namespace roadfix::api

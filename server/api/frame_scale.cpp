@@ -6,7 +6,6 @@
 
 #include "core/detect/frame.hpp"
 #include "server/http/errors.hpp"
-#include "tiles/sources/drone_picture.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -57,10 +56,9 @@ FrameCamera told_camera(const Fields& fields) {
   return camera;
 }
 
-FrameCamera camera_in(std::span<const std::uint8_t> picture, const Fields& fields) {
-  const KnownView known{fields.optional_number("agl_m", kHeight), fields.optional_angle("roll_deg", kQuarterTurn),
-                        fields.optional_angle("pitch_deg", kQuarterTurn)};
-  return camera_of(drone_picture(read_picture_tags(picture)), known);
+KnownView known_view(const Fields& fields) {
+  return {fields.optional_number("agl_m", kHeight), fields.optional_angle("roll_deg", kQuarterTurn),
+          fields.optional_angle("pitch_deg", kQuarterTurn)};
 }
 
 }  // namespace
@@ -80,7 +78,11 @@ FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t>
   }
   if (!exif) return {0.0, told_camera(fields), false};
   refuse(fields, lens_fields(), "exif=true, by which the file tells the lens");
-  return {0.0, camera_in(picture, fields), true};
+  return scale_in_file(picture, known_view(fields));
+}
+
+FrameScale scale_in_file(std::span<const std::uint8_t> picture, const KnownView& known) {
+  return {0.0, camera_of(drone_picture(read_picture_tags(picture)), known), true};
 }
 
 nlohmann::json to_json(const FrameCamera& camera) {

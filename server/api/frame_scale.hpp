@@ -11,6 +11,7 @@
 
 #include "core/detect/frame_camera.hpp"
 #include "server/api/fields.hpp"
+#include "tiles/sources/drone_picture.hpp"
 
 namespace roadfix::api {
 
@@ -24,6 +25,9 @@ struct FrameScale {
 
 /// `picture` are the bytes of the frame's file. Throws InvalidField, and what camera_of(DronePicture) throws.
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);
+
+/// By the drone's notes alone. Throws what camera_of(DronePicture) throws.
+FrameScale scale_in_file(std::span<const std::uint8_t> picture, const KnownView& known);
 
 /// A camera that was read from a file, by the names of the fields that would tell it.
 nlohmann::json to_json(const FrameCamera& camera);

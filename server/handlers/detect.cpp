@@ -22,7 +22,8 @@ http::Response post_detect(const Service& service, const http::Request& request)
   const api::Content content = api::read_content(request, joined({detect_fields(), {"image"}}), service.limits);
   const std::string_view format = api::media_asked_for(request, content.fields, kDetectFormats).name;
   const api::TimeLimit limit(request.deadline, request.abandoned);
-  const api::Features features = api::detected(content, service.detector, kDefaultCellM, service.limits, limit.token());
+  const api::Features features =
+      api::detected(content, {service.detector, kDefaultCellM, limit.token()}, service.limits);
   http::Response response;
   if (format == "json") {
     nlohmann::json answer = api::to_json(features.map);

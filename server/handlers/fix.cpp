@@ -38,7 +38,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const api::TimeLimit limit(request.deadline, request.abandoned);
   const api::Features features =
-      api::flight_features_of(content, service.detector, map->view.cell_m, service.limits, limit.token());
+      api::flight_features_of(content, {service.detector, map->view.cell_m, limit.token()}, service.limits);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
   api::shorten(options, request.deadline);

@@ -126,7 +126,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   if (api::shows_ground(step.content)) {
     const auto map = service.maps.find(track.map);
     input.features =
-        api::features_of(step.content, service.detector, map->view.cell_m, service.limits, limit.token()).map;
+        api::features_of(step.content, {service.detector, map->view.cell_m, limit.token()}, service.limits).map;
   }
   StepLimits limits;
   const SearchThreads::Share share(service.search_threads);

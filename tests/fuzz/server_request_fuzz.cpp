@@ -67,7 +67,7 @@ void read_body(const std::string& type, std::string_view body, const http::Param
   const api::Content content = api::read_content(request, members(), limits);
   api::parse_prior(content.fields);
   if (content.fields.has("poses")) api::parse_poses(content.fields, limits);
-  api::features_of(content, NoRoads(), 2.0, limits, {});
+  api::features_of(content, {NoRoads(), 2.0}, limits);
 }
 
 void read_request(char kind, std::string_view text) {

@@ -20,7 +20,7 @@ double nadir_sigma_m_of(const nlohmann::json& request) {
   Content content;
   content.fields.add(request, feature_fields());
   content.image = encode_feature_map(CellArray(20, 20, kNoRoad));
-  return features_of(content, NoRoads(), 2.0, Limits{}, {}).map.nadir_sigma_m;
+  return features_of(content, {NoRoads(), 2.0}, Limits{}).map.nadir_sigma_m;
 }
 
 TEST(FeatureRequest, ExpectsAnErrorOfADegreeOfAnAttitudeThatIsToldAndOfTheHeightWhereTheCameraLeans) {
@@ -56,7 +56,7 @@ TEST(FeatureRequest, TakesCellSizeAndNadirFromAFeatureMapThatTellsThem) {
     Content content;
     content.fields.add(request, feature_fields());
     content.image = encode_feature_map(map);
-    return features_of(content, NoRoads(), 2.0, Limits{}, {}).map;
+    return features_of(content, {NoRoads(), 2.0}, Limits{}).map;
   };
   EXPECT_EQ(read(nlohmann::json::object()), map);
   EXPECT_EQ(read({{"cell_m", 1.5}}), map);
@@ -102,7 +102,7 @@ TEST(FeatureRequest, RefusesWhatItWouldNotLookAt) {
   const nlohmann::json cells{{"cell_m", 2}, {"cols", 2}, {"rows", 1}, {"cells", "AP4="}};
   const auto refused_beside = [&](nlohmann::json request) {
     request["image"] = "cGljdHVyZQ==";
-    return refused([&] { features_of(json_content(request), NoRoads(), 2.0, Limits{}, {}); });
+    return refused([&] { features_of(json_content(request), {NoRoads(), 2.0}, Limits{}); });
   };
   EXPECT_EQ(refused_beside(cells), "duplicate-parameter cells");
   EXPECT_EQ(refused_beside({{"cell_m", 2}, {"cols", 2}}), "bad-parameter cols");
@@ -122,7 +122,7 @@ Content photo(const nlohmann::json& request, const std::string& tags = kDrone) {
   return content;
 }
 
-Features seen(const Content& content) { return features_of(content, NoRoads(), 2.0, Limits{}, {}); }
+Features seen(const Content& content) { return features_of(content, {NoRoads(), 2.0}, Limits{}); }
 
 TEST(FeatureRequest, TakesTheCameraOfAPhotoFromItsFile) {
   const Features told = seen(photo({{"focal_px", 30}, {"agl_m", 40}, {"roll_deg", 0}, {"pitch_deg", 10}}));

@@ -35,7 +35,7 @@ Content content_of(std::vector<std::uint8_t> picture, const json& request) {
 }
 
 Features read(const Content& content, const Limits& limits = {}) {
-  return flight_features_of(content, NoRoads(), 2.0, limits, {});
+  return flight_features_of(content, {NoRoads(), 2.0}, limits);
 }
 
 /// Features of a request in cells of 2 m, beside whose picture there is `also`.

@@ -1,0 +1,33 @@
+#include "server/api/features.hpp"
+
+#include <utility>
+
+#include "core/locate/told_frames.hpp"
+
+namespace roadfix::api {
+
+SeenFrame seen_frame(const Frame& frame, const RoadDetector& detector, std::int64_t max_pixels) {
+  const FrameScale& scale = frame.scale;
+  return {ground_seen(frame_image(frame.pixels, scale.gsd_m, frame.border), scale.camera, detector,
+                      static_cast<double>(max_pixels)),
+          scale.in_file ? scale.camera : std::nullopt};
+}
+
+Features detected(const SeenFrame& frame, const Detection& detection) {
+  const auto start = std::chrono::steady_clock::now();
+  FeatureMap map = detect_features(detection.detector, frame.view, detection.cell_m, detection.seed, detection.stop);
+  return {std::move(map), std::chrono::steady_clock::now() - start, frame.camera_in_file};
+}
+
+Features together(Features first, std::vector<OtherFeatures> others, double max_cells) {
+  std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
+  for (OtherFeatures& other : others) {
+    parts.push_back({std::move(other.features.map), other.offset});
+    if (first.detect_time) *first.detect_time += other.features.detect_time.value();
+  }
+  first.map = laid_together(parts, max_cells);
+  first.own_frame = std::move(parts.front().features);
+  return first;
+}
+
+}  // namespace roadfix::api

@@ -12,7 +12,7 @@ CREATE TABLE IF NOT EXISTS tracks (
   ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
   counters    TEXT NOT NULL DEFAULT '',-- JSON: the tracker's state beside the particles
   particles   BLOB,                    -- core/filter/particle_bytes
-  frames      BLOB                     -- core/locate/recent_frames, since version 2
+  frames      BLOB                     -- core/locate/recent_frames_bytes
 ) WITHOUT ROWID;
 
 CREATE TABLE IF NOT EXISTS steps (

@@ -14,8 +14,7 @@
 namespace roadfix {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3230'5346'4652ULL;        // "RFFS02"
-constexpr std::uint64_t kMagicBefore = 0x3130'5346'4652ULL;  // "RFFS01": without the last column
+constexpr std::uint64_t kMagic = 0x3230'5346'4652ULL;  // "RFFS02"
 constexpr std::size_t kMaxParticles = 10'000'000;
 constexpr std::size_t kColumns = 7;
 constexpr std::size_t kHeaderWords = 7;
@@ -50,10 +49,9 @@ std::vector<std::byte> to_bytes(const FilterState& state) {
 
 FilterState filter_state_of(std::span<const std::byte> bytes) {
   const std::uint64_t magic = bytes.size() < kWordBytes * kHeaderWords ? 0 : word_at(bytes, 0);
-  if (magic != kMagic && magic != kMagicBefore) refuse("is of no known version");
-  const std::size_t columns = magic == kMagic ? kColumns : kColumns - 1;
+  if (magic != kMagic) refuse("is of no known version");
   const std::uint64_t count = word_at(bytes, 1);
-  if (count == 0 || count > kMaxParticles || bytes.size() != kWordBytes * (kHeaderWords + columns * count)) {
+  if (count == 0 || count > kMaxParticles || bytes.size() != kWordBytes * (kHeaderWords + kColumns * count)) {
     refuse("is not whole");
   }
   FilterState state;
@@ -64,8 +62,7 @@ FilterState filter_state_of(std::span<const std::byte> bytes) {
   state.fast_support = std::bit_cast<double>(word_at(bytes, 6));
   state.particles.resize(count);
   std::size_t at = kWordBytes * kHeaderWords;
-  const auto all = columns_of(state.particles);
-  for (auto* column : std::span(all).first(columns)) {
+  for (auto* column : columns_of(state.particles)) {
     std::memcpy(column->data(), bytes.data() + at, kWordBytes * count);
     at += kWordBytes * count;
     if (!std::ranges::all_of(*column, [](double x) { return std::isfinite(x); })) refuse("holds what is no number");

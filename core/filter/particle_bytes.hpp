@@ -11,8 +11,8 @@ namespace roadfix {
 
 /// Little endian: a magic number with the version, the counters and averages, then the columns one after the other.
 std::vector<std::byte> to_bytes(const FilterState& state);
-/// Reads those of version 1 too, which knew no scale. Throws CorruptData ("filter-state-corrupt") for bytes that are
-/// not whole, of another version, or hold values that no filter has.
+/// Throws CorruptData ("filter-state-corrupt") for bytes that are not whole, of another version, or hold values that no
+/// filter has.
 FilterState filter_state_of(std::span<const std::byte> bytes);
 
 }  // namespace roadfix

@@ -3,13 +3,8 @@ from pathlib import Path
 
 import torch
 
-from .network import SMALL, Ensemble, RoadNet
+from .network import Ensemble, RoadNet
 from .unfold import read_onnx
-
-
-def read_checkpoint(path, device="cpu"):
-    """Runs from before networks had other widths do not name theirs."""
-    return {"widths": SMALL, **torch.load(path, map_location=device)}
 
 
 def read_network(checkpoints):
@@ -19,7 +14,7 @@ def read_network(checkpoints):
 
 
 def averaged(path):
-    state = read_checkpoint(path)
+    state = torch.load(path, map_location="cpu")
     network = RoadNet(state["widths"])
     network.load_state_dict(state["averaged"])
     return network.eval()
@@ -28,7 +23,7 @@ def averaged(path):
 def mean_of_weights(checkpoints):
     """One network of the averaged weights' mean, for checkpoints of which one began with another (Wortsman et al. 2022,
     "Model soups"); in evaluation mode."""
-    states = [read_checkpoint(path) for path in checkpoints]
+    states = [torch.load(path, map_location="cpu") for path in checkpoints]
     network = RoadNet(states[0]["widths"])
     network.load_state_dict({name: torch.stack([state["averaged"][name].double() for state in states]).mean(0).to(value.dtype)
                              for name, value in states[0]["averaged"].items()})

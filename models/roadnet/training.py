@@ -7,7 +7,7 @@ from pathlib import Path
 import torch
 from torch.utils.data import DataLoader, Sampler
 
-from .checkpoints import read_checkpoint, read_network
+from .checkpoints import read_network
 from .losses import distillation_loss, road_loss, taught_in_a_random_orientation
 from .metrics import evaluate_pairs
 from .network import RoadNet
@@ -89,7 +89,7 @@ class Run:
             self.resume()
 
     def resume(self):
-        state = read_checkpoint(self.checkpoint, self.device)
+        state = torch.load(self.checkpoint, map_location=self.device)
         require_same_run(state, self.checkpoint, self.identity)
         for name in ("model", "averaged", "optimizer"):
             getattr(self, name).load_state_dict(state[name])

@@ -60,10 +60,8 @@ RecentFrames frames_of(const std::string& base64) {
 }
 
 LastView view_of(const json& view) {
-  if (view.is_null()) return {};
-  // Programs from before compared no earlier view.
   return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad"),
-          view.value("stands_still", false), frames_of(view.value("earlier", std::string()))};
+          view.at("stands_still"), frames_of(view.at("earlier"))};
 }
 
 /// Throws where it is no whole number; get() would take any, and one beyond the range for anything.
@@ -167,13 +165,12 @@ TrackerState state_of(const json& counters, FilterState filter) {
     state.claim.supported = whole(counters.at("supported"));
     state.claim.log_odds = counters.at("evidence");
     state.accepted_time_us = time_of(counters.at("accepted_time_us"));
-    // Programs from before did not look around, told no nadir_sigma_m of frames, and kept no velocity and no view.
-    state.claim.looked_time_us = time_of(counters.value("looked_time_us", json()));
-    state.motion.drifts = counters.value("drifts", false);
-    state.nadir_sigma_m = counters.value("nadir_sigma_m", 0.0);
-    state.motion.velocity = velocity_of(counters.value("velocity", json()));
-    state.last_view = view_of(counters.value("last_view", json()));
-    state.motion.coasts = counters.value("coasts", false);
+    state.claim.looked_time_us = time_of(counters.at("looked_time_us"));
+    state.motion.drifts = counters.at("drifts");
+    state.nadir_sigma_m = counters.at("nadir_sigma_m");
+    state.motion.velocity = velocity_of(counters.at("velocity"));
+    state.last_view = view_of(counters.at("last_view"));
+    state.motion.coasts = counters.at("coasts");
   } catch (const json::exception& error) {
     throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
                                                  error.what() + "): delete the track and begin a new one");

@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
 constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
-constexpr int kVersion = 3;              // of what the blobs hold, too: particles have had a scale since 3
+constexpr int kVersion = 3;              // of what the blobs hold, too
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 IoFailure not_writable(const std::filesystem::path& path) {
@@ -75,7 +75,7 @@ bool is_of_another_program(sqlite::Connection& connection, std::int64_t version)
   return version == 0 ||
          sqlite::number(connection,
                         "SELECT count(*) FROM pragma_table_info('tracks') WHERE name IN ('id', 'client', "
-                        "'request', 'map', 'counters', 'particles')") != 6;
+                        "'request', 'map', 'map_version', 'touched_us')") != 6;
 }
 
 const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
@@ -112,9 +112,10 @@ class TrackStore::Impl {
                                   "--tracks FILE",
                                   path_.string()));
     }
-    if (version > kVersion) {
+    if (version != 0 && version != kVersion) {
       throw IoFailure("track-store-unavailable",
-                      fmt::format("{}: written by a newer version of roadfix: start the service with --tracks FILE",
+                      fmt::format("{}: written by another version of roadfix: move it away, or start the service with "
+                                  "--tracks FILE",
                                   path_.string()));
     }
     with([&] {
@@ -124,7 +125,6 @@ class TrackStore::Impl {
                                .c_str());
       sqlite::Transaction transaction(*connection_, sqlite::Transaction::Kind::kWrite);
       connection_->execute(std::string(schema::tracks_sql()).c_str());
-      if (version == 1) connection_->execute("ALTER TABLE tracks ADD COLUMN frames BLOB");
       connection_->execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());  // and sees that it can write
       transaction.commit();
     });

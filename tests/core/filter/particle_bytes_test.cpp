@@ -15,15 +15,6 @@ namespace {
 using testing::kSquare;
 using testing::seen_at;
 
-TEST(FilterState, OfTheVersionBeforeHasEveryScaleAsItWasTold) {
-  Filter filter({}, {kSquare}, 5);
-  filter.start_uniformly(kSquare);
-  std::vector<std::byte> before = to_bytes(filter.state());
-  before.resize(before.size() - 8 * filter.particles().size());  // the scales are the last column
-  before[5] = std::byte{'1'};                                    // of "RFFS02"
-  EXPECT_EQ(filter_state_of(before), filter.state());
-}
-
 TEST(FilterState, ComesBackFromItsBytesAndGoesOnTheSame) {
   Filter filter({}, {kSquare, 0.0, 0.2}, 5);
   filter.start_uniformly(kSquare);

@@ -42,35 +42,12 @@ TEST(TrackCounters, ComeBackAsTheyWere) {
   EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
 }
 
-TEST(TrackCounters, OfAProgramThatDidNotLookAroundSayThatItDidNot) {
-  nlohmann::json before = counters_json(flown());
-  before.erase("looked_time_us");
-  before.erase("drifts");
-  for (const char* name : {"nadir_sigma_m", "velocity", "coasts", "last_view"}) before.erase(name);
-  const TrackerState state = state_of(before, {});
-  EXPECT_FALSE(state.claim.looked_time_us);
-  EXPECT_FALSE(state.motion.drifts);
-  EXPECT_EQ(state.nadir_sigma_m, 0.0);
-  EXPECT_FALSE(state.motion.velocity);
-  EXPECT_FALSE(state.motion.coasts);
-  EXPECT_TRUE(state.last_view == LastView());
-  EXPECT_EQ(state.sequence, 41);
-}
-
-TEST(TrackCounters, OfAProgramThatComparedNoEarlierViewHaveNone) {
-  nlohmann::json before = counters_json(flown());
-  for (const char* name : {"stands_still", "earlier"}) before["last_view"].erase(name);
-  const LastView view = state_of(before, {}).last_view;
-  EXPECT_EQ(view.digest, 0xfedcba9876543210U);
-  EXPECT_TRUE(view.earlier.frames().empty());
-}
-
 TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
   const nlohmann::json good = counters_json(flown());
-  for (const std::string name : {"sequence", "measured", "evidence", "accepted_time_us"}) {
+  for (const auto& member : good.items()) {
     nlohmann::json damaged = good;
-    damaged.erase(name);
-    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
+    damaged.erase(member.key());
+    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << member.key();
   }
   for (const std::string name :
        {"searched", "accepted_time_us", "looked_time_us", "drifts", "velocity", "coasts", "last_view"}) {

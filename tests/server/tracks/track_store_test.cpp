@@ -52,23 +52,6 @@ TEST(TrackStore, KeepsTracksAndStepsWhenItIsOpenedAgain) {
   EXPECT_EQ(store.steps_after("a", -1, 1).front().sequence, 3);
 }
 
-/// As version 0.1 with user_version 1 wrote it.
-TEST(TrackStore, GoesOnWithTracksThatWereStoredWithoutFrames) {
-  const testing::TemporaryFolder folder;
-  testing::open_sqlite(folder / "tracks.sqlite", sqlite::Access::kCreate)
-      .execute(
-          "PRAGMA user_version = 1; CREATE TABLE tracks (id TEXT PRIMARY KEY NOT NULL, client TEXT NOT NULL, request "
-          "TEXT NOT NULL, map TEXT NOT NULL, map_version TEXT NOT NULL, created_us INTEGER NOT NULL, touched_us "
-          "INTEGER NOT NULL, ended TEXT NOT NULL DEFAULT '', counters TEXT NOT NULL DEFAULT '', particles BLOB) "
-          "WITHOUT ROWID; INSERT INTO tracks VALUES ('old', '::1', '{}', 'town', 'v1', 1, 1, '', '{}', x'0707')");
-  for (int i = 0; i < 2; ++i) {
-    TrackStore store(folder / "tracks.sqlite", kPlenty);
-    EXPECT_EQ(store.state("old").particles, state(2).particles);
-    EXPECT_TRUE(store.state("old").frames.empty());
-    EXPECT_TRUE(store.add_step("old", 2 + i, state(2), {i, 0, "answer"}));
-  }
-}
-
 TEST(TrackStore, ReturnsTheLastStepsOfATrackThatEnds) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);
@@ -193,6 +176,24 @@ TEST(TrackStore, LeavesTheFileOfAnotherProgramAsItIs) {
   }
 }
 
+TEST(TrackStore, LeavesTheTracksOfAnotherVersionAsTheyAre) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "tracks.sqlite";
+  { TrackStore(path, kPlenty).add(track("a")); }
+  const std::int64_t version = [&] {
+    sqlite::Connection written = testing::open_sqlite(path);
+    return sqlite::number(written, "PRAGMA user_version");
+  }();
+  for (const std::int64_t other : {version - 1, version + 1}) {
+    testing::open_sqlite(path).execute(("PRAGMA user_version = " + std::to_string(other)).c_str());
+    const std::string before = bytes_of(path);
+    const auto open = [&] { TrackStore(path, kPlenty); };
+    EXPECT_EQ(code_of(open), "track-store-unavailable");
+    EXPECT_THAT(message_of(open), HasSubstr("another version of roadfix"));
+    EXPECT_TRUE(bytes_of(path) == before) << other;
+  }
+}
+
 TEST(TrackStore, SaysWhyItCannotBeOpened) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder / "noise.sqlite") << std::string(8192, 'x');
@@ -200,8 +201,6 @@ TEST(TrackStore, SaysWhyItCannotBeOpened) {
   const auto open_in_no_folder = [&] { const TrackStore store(folder / "no/folder.sqlite", kPlenty); };
   EXPECT_EQ(code_of(open_in_no_folder), "track-store-unavailable");
   EXPECT_THAT(message_of(open_in_no_folder), HasSubstr("(No such file or directory)"));
-  testing::open_sqlite(folder / "newer.sqlite", sqlite::Access::kCreate).execute("PRAGMA user_version = 4");
-  EXPECT_EQ(code_of([&] { const TrackStore store(folder / "newer.sqlite", kPlenty); }), "track-store-unavailable");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 -- State of the tracks being served. One step is one transaction: what was answered is in here.
--- Times are microseconds since 1970 by the server's clock; those of the vehicle stand in the answers and counters.
+-- Times are microseconds since 1970 by the server's clock; those of the vehicle stand in the answers and states.
 
 CREATE TABLE IF NOT EXISTS tracks (
   id          TEXT PRIMARY KEY NOT NULL,
@@ -10,9 +10,7 @@ CREATE TABLE IF NOT EXISTS tracks (
   created_us  INTEGER NOT NULL,
   touched_us  INTEGER NOT NULL,        -- created, or the last step
   ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
-  counters    TEXT NOT NULL DEFAULT '',-- JSON: the tracker's state beside the particles
-  particles   BLOB,                    -- core/filter/particle_bytes
-  frames      BLOB                     -- core/locate/recent_frames_bytes
+  state       BLOB                     -- core/locate/tracker_bytes; NULL before the first step and after the end
 ) WITHOUT ROWID;
 
 CREATE TABLE IF NOT EXISTS steps (

@@ -7,7 +7,6 @@ namespace roadfix {
 namespace {
 
 constexpr std::int64_t kMinSupport = 3;
-constexpr std::int64_t kMaxSupport = 5;
 const double kMinLogOdds = std::log(100.0);
 const double kMaxLogOdds = 2.0 * kMinLogOdds;
 

@@ -16,8 +16,10 @@ inline constexpr double kMaxDoubt = 0.4;
 
 /// What measurements and searches have said of a belief since it began.
 struct TrackClaim {
-  /// Balance of the last measurements: up by one when accepted, down when rejected. Three rejections in a row take a
-  /// claim back.
+  static constexpr std::int64_t kMaxSupport = 5;
+
+  /// Balance of the last measurements: up by one when accepted, down when rejected, in [0, kMaxSupport]. Three
+  /// rejections in a row take a claim back.
   std::int64_t supported = 0;
   /// Log of the odds of the belief against chance, a sum that begins anew at 0 (Page's test): it forgets what came
   /// before a kidnapping, and has an upper bound, so that a track that has long been right does not go on for long when

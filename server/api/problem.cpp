@@ -55,8 +55,6 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"track-store-read-only", 503},
       {"track-store-unavailable", 503},
       {"track-store-corrupt", 503},
-      {"filter-state-corrupt", 503},
-      {"track-frames-corrupt", 503},
   };
   return kByCode;
 }

@@ -1,15 +1,11 @@
 #include "server/api/track_json.hpp"
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/locate/recent_frames_bytes.hpp"
 #include "core/units/error.hpp"
-#include "server/api/base64.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/geojson.hpp"
 
@@ -28,47 +24,6 @@ json cluster_json(const TrackCluster& cluster) {
                  {"scale", cluster.scale},
                  {"scale_sigma", cluster.scale_sigma}});
   return answer;
-}
-
-json json_of(std::optional<std::int64_t> time_us) { return time_us ? json(*time_us) : json(); }
-
-json json_of(const std::optional<BodyVelocity>& velocity) {
-  return velocity ? json::array({velocity->forward_m_s, velocity->right_m_s}) : json();
-}
-
-std::optional<BodyVelocity> velocity_of(const json& velocity) {
-  if (velocity.is_null()) return std::nullopt;
-  return BodyVelocity{velocity.at(0), velocity.at(1)};
-}
-
-json json_of(const LastView& view) {
-  const std::vector<std::byte> earlier = to_bytes(view.earlier);
-  return {{"digest", view.digest},
-          {"moved_m", view.moved_m},
-          {"turned_rad", view.turned_rad},
-          {"stands_still", view.stands_still},
-          {"earlier", base64_encoded({reinterpret_cast<const std::uint8_t*>(earlier.data()), earlier.size()})}};
-}
-
-RecentFrames frames_of(const std::string& base64) {
-  const Base64Result decoded = base64_decoded(base64);
-  if (decoded.bad_byte) {
-    throw CorruptData("track-frames-corrupt",
-                      "the stored frames of a track are no base64: delete the track and begin a new one");
-  }
-  return recent_frames_of(std::as_bytes(std::span(decoded.bytes)));
-}
-
-LastView view_of(const json& view) {
-  return {view.at("digest").get_ref<const json::number_unsigned_t&>(), view.at("moved_m"), view.at("turned_rad"),
-          view.at("stands_still"), frames_of(view.at("earlier"))};
-}
-
-/// Throws where it is no whole number; get() would take any, and one beyond the range for anything.
-std::int64_t whole(const json& number) { return number.get_ref<const json::number_integer_t&>(); }
-
-std::optional<std::int64_t> time_of(const json& time_us) {
-  return time_us.is_null() ? std::nullopt : std::optional(whole(time_us));
 }
 
 }  // namespace
@@ -131,51 +86,6 @@ json history_json(std::span<const std::string> answers) {
     features.push_back({{"type", "Feature"}, {"geometry", line_json(line)}, {"properties", json::object()}});
   }
   return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
-}
-
-json counters_json(const TrackerState& state) {
-  return {{"sequence", state.sequence},
-          {"time_us", state.time_us},
-          {"searched", state.searched},
-          {"compared", state.claim.confirmed},
-          {"measured", state.measured},
-          {"last_search", state.last_search},
-          {"supported", state.claim.supported},
-          {"evidence", state.claim.log_odds},
-          {"accepted_time_us", json_of(state.accepted_time_us)},
-          {"looked_time_us", json_of(state.claim.looked_time_us)},
-          {"drifts", state.motion.drifts},
-          {"velocity", json_of(state.motion.velocity)},
-          {"last_view", json_of(state.last_view)},
-          {"coasts", state.motion.coasts},
-          {"nadir_sigma_m", state.nadir_sigma_m}};
-}
-
-TrackerState state_of(const json& counters, FilterState filter) {
-  TrackerState state;
-  state.filter = std::move(filter);
-  state.started = true;
-  try {
-    state.sequence = whole(counters.at("sequence"));
-    state.time_us = whole(counters.at("time_us"));
-    state.searched = counters.at("searched");
-    state.claim.confirmed = counters.at("compared");
-    state.measured = whole(counters.at("measured"));
-    state.last_search = whole(counters.at("last_search"));
-    state.claim.supported = whole(counters.at("supported"));
-    state.claim.log_odds = counters.at("evidence");
-    state.accepted_time_us = time_of(counters.at("accepted_time_us"));
-    state.claim.looked_time_us = time_of(counters.at("looked_time_us"));
-    state.motion.drifts = counters.at("drifts");
-    state.nadir_sigma_m = counters.at("nadir_sigma_m");
-    state.motion.velocity = velocity_of(counters.at("velocity"));
-    state.last_view = view_of(counters.at("last_view"));
-    state.motion.coasts = counters.at("coasts");
-  } catch (const json::exception& error) {
-    throw CorruptData("track-store-corrupt", std::string("the stored counters of a track cannot be read (") +
-                                                 error.what() + "): delete the track and begin a new one");
-  }
-  return state;
 }
 
 }  // namespace roadfix::api

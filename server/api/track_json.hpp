@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "core/locate/tracker.hpp"
+#include "core/locate/track_estimate.hpp"
 
 namespace roadfix::api {
 
@@ -22,10 +21,5 @@ nlohmann::json history_json(std::span<const std::string> answers);
 
 /// Text of the store. Throws CorruptData ("track-store-corrupt").
 nlohmann::json stored_json(const std::string& text);
-
-/// The tracker's state beside the particles, for the store.
-nlohmann::json counters_json(const TrackerState& state);
-/// Throws CorruptData ("track-store-corrupt").
-TrackerState state_of(const nlohmann::json& counters, FilterState filter);
 
 }  // namespace roadfix::api

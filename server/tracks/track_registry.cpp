@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <random>
 
-#include "core/filter/particle_bytes.hpp"
-#include "core/locate/recent_frames_bytes.hpp"
+#include "core/locate/tracker_bytes.hpp"
 #include "core/units/error.hpp"
-#include "core/units/json_text.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/json_body.hpp"
-#include "server/api/track_json.hpp"
 #include "server/api/track_request.hpp"
 
 namespace roadfix::server {
@@ -179,16 +176,12 @@ std::shared_ptr<LiveTrack> TrackRegistry::in_memory(const std::string& id) const
 }
 
 TrackerState TrackRegistry::stored_state(const std::string& id) const {
-  const StoredState stored = store().state(id);
-  if (stored.counters.empty()) return {};
-  TrackerState state = api::state_of(api::stored_json(stored.counters), filter_state_of(stored.particles));
-  state.recent = recent_frames_of(stored.frames);
-  return state;
+  const std::vector<std::byte> stored = store().state(id);
+  return stored.empty() ? TrackerState() : tracker_state_of(stored);
 }
 
 void TrackRegistry::store_step(const std::string& id, const StoredStep& step, const TrackerState& state) {
-  const StoredState stored{json_text(api::counters_json(state)), to_bytes(state.filter), to_bytes(state.recent)};
-  if (!store().add_step(id, now_us(), stored, step)) throw track_ended(id, TrackEnd::kFinished);
+  if (!store().add_step(id, now_us(), to_bytes(state), step)) throw track_ended(id, TrackEnd::kFinished);
 }
 
 void TrackRegistry::announce_step(const std::string& id, std::int64_t sequence, TrackTimes::Clock::time_point came) {

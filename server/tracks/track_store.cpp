@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kPageBytes = 4096;
 constexpr int kEndedKept = 100;
 constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
-constexpr int kVersion = 3;              // of what the blobs hold, too
+constexpr int kVersion = 4;              // of what a state holds, too
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 IoFailure not_writable(const std::filesystem::path& path) {
@@ -181,18 +181,12 @@ std::optional<StoredTrack> TrackStore::find(const std::string& id) const {
   });
 }
 
-StoredState TrackStore::state(const std::string& id) const {
-  return impl_->with([&] {
-    sqlite::Statement rows(impl_->connection(), "SELECT counters, particles, frames FROM tracks WHERE id = ?1");
-    StoredState state;
-    if (rows.with(id).step()) {
-      state.counters = rows.text(0);
-      const auto particles = rows.blob(1);
-      state.particles.assign(particles.begin(), particles.end());
-      const auto frames = rows.blob(2);
-      state.frames.assign(frames.begin(), frames.end());
-    }
-    return state;
+std::vector<std::byte> TrackStore::state(const std::string& id) const {
+  return impl_->with([&]() -> std::vector<std::byte> {
+    sqlite::Statement rows(impl_->connection(), "SELECT state FROM tracks WHERE id = ?1");
+    if (!rows.with(id).step()) return {};
+    const auto state = rows.blob(0);
+    return {state.begin(), state.end()};
   });
 }
 
@@ -207,17 +201,13 @@ std::vector<StoredTrack> TrackStore::flying() const {
   });
 }
 
-bool TrackStore::add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
+bool TrackStore::add_step(const std::string& id, std::int64_t now_us, std::span<const std::byte> state,
                           const StoredStep& step) {
   return impl_->with([&] {
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    sqlite::Statement update(
-        impl_->connection(),
-        "UPDATE tracks SET touched_us = ?2, counters = ?3, particles = ?4, frames = ?5 WHERE id = ?1 "
-        "AND ended = '' RETURNING 1");
-    update.with(id, now_us, state.counters, std::span<const std::byte>(state.particles),
-                std::span<const std::byte>(state.frames));
-    if (!update.step()) return false;
+    sqlite::Statement update(impl_->connection(),
+                             "UPDATE tracks SET touched_us = ?2, state = ?3 WHERE id = ?1 AND ended = '' RETURNING 1");
+    if (!update.with(id, now_us, state).step()) return false;
     update.reset();
     sqlite::Statement(impl_->connection(),
                       "INSERT INTO steps (track, sequence, digest, answer) VALUES (?1, ?2, ?3, ?4)")
@@ -269,8 +259,7 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
       while (rows.step()) last.push_back(step_of(rows));
       std::ranges::reverse(last);
     }
-    sqlite::Statement(impl_->connection(),
-                      "UPDATE tracks SET ended = ?2, counters = '', particles = NULL, frames = NULL WHERE id = ?1")
+    sqlite::Statement(impl_->connection(), "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1")
         .with(id, end_column(how))
         .run();
     sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,6 @@ struct StoredTrack {
   std::optional<TrackEnd> ended;  ///< nullopt while it flies
 };
 
-struct StoredState {
-  std::string counters;  ///< JSON; empty before the first step
-  std::vector<std::byte> particles;
-  std::vector<std::byte> frames;
-};
-
 struct StoredStep {
   std::int64_t sequence = 0;
   std::int64_t digest = 0;
@@ -56,12 +51,13 @@ class TrackStore {
 
   void add(const StoredTrack& track);
   std::optional<StoredTrack> find(const std::string& id) const;
-  StoredState state(const std::string& id) const;
+  /// After the last step (core/locate/tracker_bytes); empty before the first one.
+  std::vector<std::byte> state(const std::string& id) const;
   /// Newest first.
   std::vector<StoredTrack> flying() const;
 
   /// The step and the state after it, at once. False where the track has ended; nothing is written then.
-  [[nodiscard]] bool add_step(const std::string& id, std::int64_t now_us, const StoredState& state,
+  [[nodiscard]] bool add_step(const std::string& id, std::int64_t now_us, std::span<const std::byte> state,
                               const StoredStep& step);
   std::optional<StoredStep> step(const std::string& id, std::int64_t sequence) const;
   /// The last one, if there was any.
@@ -69,7 +65,7 @@ class TrackStore {
   /// Up to `count` steps above the sequence number, in order.
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
 
-  /// Takes the particles and steps away and keeps that there was such a track, for as long as it is among the last
+  /// Takes the state and steps away and keeps that there was such a track, for as long as it is among the last
   /// 100 that ended. Returns the steps above the sequence number, in order: the last 10,000 of them at most, none
   /// without one.
   std::vector<StoredStep> end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence = {});

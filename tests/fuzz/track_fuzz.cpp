@@ -1,6 +1,5 @@
 // Tracks: what begins one, their steps, and what a damaged store hands back.
-// The first byte chooses: 't' JSON of a track, 's' JSON of a step, 'c' stored counters, 'p' stored particles,
-// 'f' stored frames.
+// The first byte chooses: 't' JSON of a track, 's' JSON of a step, 'b' the bytes of a state.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -8,12 +7,10 @@
 #include <span>
 #include <string>
 
-#include "core/filter/particle_bytes.hpp"
-#include "core/locate/recent_frames_bytes.hpp"
+#include "core/locate/tracker_bytes.hpp"
 #include "core/units/error.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/position_answer.hpp"
-#include "server/api/track_json.hpp"
 #include "server/api/track_request.hpp"
 
 namespace {
@@ -34,14 +31,9 @@ void read(char kind, const std::string& body) {
     api::parse_position_format({}, fields);
     api::parse_step(fields);
   }
-  if (kind == 'c') api::state_of(api::stored_json(body), {});
-  if (kind == 'p') {
+  if (kind == 'b') {
     const auto bytes = std::as_bytes(std::span(body));
-    if (!std::ranges::equal(roadfix::to_bytes(roadfix::filter_state_of(bytes)), bytes)) std::abort();
-  }
-  if (kind == 'f') {
-    const auto bytes = std::as_bytes(std::span(body));
-    if (!std::ranges::equal(roadfix::to_bytes(roadfix::recent_frames_of(bytes)), bytes)) std::abort();
+    if (!std::ranges::equal(roadfix::to_bytes(roadfix::tracker_state_of(bytes)), bytes)) std::abort();
   }
 }
 

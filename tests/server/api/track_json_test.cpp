@@ -6,72 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/code_of.hpp"
-
 namespace roadfix::api {
 namespace {
-
-using testing::code_of;
-
-TrackerState flown() {
-  TrackerState state;
-  state.started = true;
-  state.searched = true;
-  state.sequence = 41;
-  state.time_us = 42'000'000;
-  state.measured = 40;
-  state.last_search = 11;
-  state.claim = {4, 7.5, true};
-  state.accepted_time_us = 42'000'000;
-  state.claim.looked_time_us = 40'000'000;
-  state.motion.drifts = true;
-  state.nadir_sigma_m = 5.25;
-  state.motion.velocity = BodyVelocity{14.5, -0.25};
-  state.motion.coasts = true;
-  state.last_view = {0xfedcba9876543210U, 12.5, 0.25, true, {}};
-  state.last_view.earlier.keep(FeatureMap::centred(CellArray(3, 2, kRoad), 4.0));
-  return state;
-}
-
-TEST(TrackCounters, ComeBackAsTheyWere) {
-  EXPECT_TRUE(state_of(counters_json(flown()), {}) == flown());
-  TrackerState blind = flown();
-  blind.accepted_time_us.reset();
-  blind.claim.looked_time_us.reset();
-  blind.motion.velocity.reset();
-  EXPECT_TRUE(state_of(counters_json(blind), {}) == blind);
-}
-
-TEST(TrackCounters, ThatAreNotWholeOrOfAnotherTypeAreRefused) {
-  const nlohmann::json good = counters_json(flown());
-  for (const auto& member : good.items()) {
-    nlohmann::json damaged = good;
-    damaged.erase(member.key());
-    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << member.key();
-  }
-  for (const std::string name :
-       {"searched", "accepted_time_us", "looked_time_us", "drifts", "velocity", "coasts", "last_view"}) {
-    nlohmann::json damaged = good;
-    damaged[name] = "soon";
-    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
-  }
-  for (const std::string name : {"sequence", "time_us", "measured", "looked_time_us"}) {
-    nlohmann::json damaged = good;
-    damaged[name] = 7e111;
-    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-store-corrupt") << name;
-  }
-}
-
-TEST(TrackCounters, WithAnEarlierViewThatIsDamagedAreRefused) {
-  const nlohmann::json good = counters_json(flown());
-  const std::string whole = good["last_view"]["earlier"];
-  for (const std::string& text :
-       {"!" + whole, whole.substr(0, 9) + "!" + whole.substr(10), whole + "!", whole.substr(0, 8)}) {
-    nlohmann::json damaged = good;
-    damaged["last_view"]["earlier"] = text;
-    EXPECT_EQ(code_of([&] { state_of(damaged, {}); }), "track-frames-corrupt") << text;
-  }
-}
 
 std::string answer_at(double lon_deg) {
   return nlohmann::json{{"sequence", 1},

@@ -36,9 +36,6 @@ void add_basics(CLI::App& command, FlyOptions& o) {
   command.add_option("--particles", filter.particles, "At most")
       ->capture_default_str()
       ->check(CLI::Range(10, 1'000'000));
-  command.add_option("--measure-every", filter.measure_every, "Weight by every k-th frame only")
-      ->capture_default_str()
-      ->check(positive());
   command
       .add_option("--runs", o.runs, "Flights, with seeds that count up; of a recorded flight so many of each sequence")
       ->capture_default_str()

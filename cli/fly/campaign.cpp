@@ -75,7 +75,6 @@ std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
 LocalizerFactory library_localizers(const MapView& map, const FilterPlan& plan, std::stop_token stop) {
   return [=](const std::string& filter, std::uint64_t seed) -> std::unique_ptr<Localizer> {
     TrackSettings settings = filter_named(filter, plan.particles);
-    settings.measure_every = plan.measure_every;
     settings.vehicle = plan.vehicle;
     settings.seed = seed;
     settings.max_search_km2.reset();  // nobody waits for the processors

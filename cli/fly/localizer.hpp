@@ -28,7 +28,6 @@ std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSetting
 /// What all filters are asked for alike.
 struct FilterPlan {
   int particles = 10'000;  ///< at most
-  int measure_every = 1;   ///< weights by every k-th frame only
   VehicleNoise vehicle = {};
 };
 

@@ -27,9 +27,8 @@ TrackCluster cluster_of(const json& value) {
 }
 
 Measurement measurement_of(const std::string& word) {
-  for (const Measurement measurement :
-       {Measurement::kNone, Measurement::kSkipped, Measurement::kSearched, Measurement::kAccepted,
-        Measurement::kRejected, Measurement::kUseless, Measurement::kRepeated}) {
+  for (const Measurement measurement : {Measurement::kNone, Measurement::kSearched, Measurement::kAccepted,
+                                        Measurement::kRejected, Measurement::kUseless, Measurement::kRepeated}) {
     if (word == to_string(measurement)) return measurement;
   }
   throw unreadable("measurement " + word);

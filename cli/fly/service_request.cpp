@@ -83,7 +83,6 @@ json track_request(const ServicePlan& plan, const std::string& filter, std::uint
   json request{{"map", plan.map},
                {"filter", filter == "paper" ? "paper" : "adaptive"},
                {"particles", plan.filter.particles},
-               {"measure_every", plan.filter.measure_every},
                {"seed", seed},
                {"odometry_share", vehicle.odometry_share},
                {"wind_sigma_m_s", vehicle.wind.sigma_m_s},

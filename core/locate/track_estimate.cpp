@@ -6,8 +6,6 @@ const char* to_string(Measurement measurement) {
   switch (measurement) {
     case Measurement::kNone:
       return "none";
-    case Measurement::kSkipped:
-      return "skipped";
     case Measurement::kSearched:
       return "searched";
     case Measurement::kAccepted:

@@ -23,8 +23,8 @@ struct TrackCluster {
 };
 
 /// What became of a step's feature map; kRepeated = nothing, since the camera or its link has stopped (LastView).
-enum class Measurement { kNone, kSkipped, kSearched, kAccepted, kRejected, kUseless, kRepeated };
-/// "none", "skipped" ...: the word for it in answers and files.
+enum class Measurement { kNone, kSearched, kAccepted, kRejected, kUseless, kRepeated };
+/// "none", "searched" ...: the word for it in answers and files.
 const char* to_string(Measurement measurement);
 
 struct TrackEstimate {

@@ -61,7 +61,6 @@ struct TrackSettings {
   VehicleNoise vehicle;
   ClusterOptions clusters;
   std::uint64_t seed = 1;
-  int measure_every = 1;  ///< weight by every k-th feature map only
   double converged_weight = 0.9;
   double converged_sigma_m = 25.0;
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of

@@ -93,10 +93,6 @@ void Tracker::Step::see() {
 
 void Tracker::Step::measure() {
   ++state_.measured;
-  if (settings_.measure_every > 1 && state_.measured % settings_.measure_every != 1) {
-    outcome_.measurement = Measurement::kSkipped;
-    return;
-  }
   if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
   const ParticleMatches matches = match_particles(map_, *features_, filter_.particles(), settings_.vehicle.scale_range,
                                                   limits_.threads, limits_.stop);

@@ -54,7 +54,7 @@ const std::vector<std::string>& track_members() {
   static const std::vector<std::string> kMembers =
       joined({{"map"},
               prior_fields(),
-              {"filter", "start", "particles", "measure_every", "seed"},
+              {"filter", "start", "particles", "seed"},
               {"speed_m_s", "speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s", "odometry_share"},
               {"wind_sigma_m_s", "wind_walk", "scale_range", "nadir_sigma_m"}});
   return kMembers;
@@ -76,7 +76,6 @@ TrackRequest parse_track(const Fields& fields, const Limits& limits) {
   }
   settings.prior = parse_prior(fields);
   settings.vehicle = parse_vehicle(fields);
-  settings.measure_every = fields.optional_integer("measure_every", 1, 1000).value_or(1);
   settings.seed =
       static_cast<std::uint64_t>(fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1));
   settings.max_search_km2 = limits.search_km2;

@@ -220,7 +220,6 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   });
   json track{{"map", "m"},
              {"particles", 1000},
-             {"measure_every", 1},
              {"nadir_sigma_m", 3},
              {"seed", 1},
              {"speed_m_s", 3},

@@ -30,7 +30,6 @@ TEST(TrackRequest, NeedsAMapAndNothingElse) {
   EXPECT_TRUE(settings.recovers);
   EXPECT_EQ(settings.filter.max_particles, 10'000);
   EXPECT_TRUE(settings.filter.adapts_count);
-  EXPECT_EQ(settings.measure_every, 1);
   EXPECT_EQ(settings.seed, 1U);
   EXPECT_FALSE(settings.vehicle.planar);
   EXPECT_EQ(settings.vehicle.odometry_share, 0.05);
@@ -102,11 +101,9 @@ TEST(TrackRequest, TellsAWindByEitherOfItsFiguresOrBoth) {
 TEST(TrackRequest, TellsWhatHoldsForAllOfTheTrack) {
   Limits limits;
   limits.search_km2 = 12.5;
-  const TrackSettings settings = settings_of(
-      {{"seed", 7}, {"measure_every", 3}, {"odometry_share", 0.2}, {"scale_range", 0.1}, {"nadir_sigma_m", 12}},
-      limits);
+  const TrackSettings settings =
+      settings_of({{"seed", 7}, {"odometry_share", 0.2}, {"scale_range", 0.1}, {"nadir_sigma_m", 12}}, limits);
   EXPECT_EQ(settings.seed, 7U);
-  EXPECT_EQ(settings.measure_every, 3);
   EXPECT_EQ(settings.vehicle.odometry_share, 0.2);
   EXPECT_EQ(settings.vehicle.scale_range, 0.1);
   EXPECT_EQ(settings.vehicle.nadir_sigma_m, 12.0);

@@ -8,6 +8,10 @@
 namespace roadfix {
 namespace {
 
+// Particles in bins that touch belong together.
+constexpr double kBinM = 20.0;
+constexpr std::int64_t kTurnBins = 24;
+
 using Bin = std::array<std::int64_t, 3>;
 
 class UnionFind {
@@ -32,14 +36,13 @@ struct Binning {
   std::vector<std::size_t> bin_of;  ///< for each of the particles with weight
 };
 
-Binning binned(const Particles& particles, const std::vector<std::size_t>& members, const ClusterOptions& options,
-               std::int64_t turn_bins) {
+Binning binned(const Particles& particles, const std::vector<std::size_t>& members) {
   std::vector<Bin> of_member;
   for (const std::size_t i : members) {
     const double turned = Angle::radians(particles.heading_rad[i]).compass_degrees() / 360.0;
-    of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / options.bin_m)),
-                         static_cast<std::int64_t>(std::floor(particles.north_m[i] / options.bin_m)),
-                         static_cast<std::int64_t>(turned * static_cast<double>(turn_bins)) % turn_bins});
+    of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / kBinM)),
+                         static_cast<std::int64_t>(std::floor(particles.north_m[i] / kBinM)),
+                         static_cast<std::int64_t>(turned * static_cast<double>(kTurnBins)) % kTurnBins});
   }
   Binning result{of_member, {}};
   std::ranges::sort(result.bins);
@@ -51,12 +54,12 @@ Binning binned(const Particles& particles, const std::vector<std::size_t>& membe
 }
 
 /// Joins each bin with those of its 26 neighbours that hold particles; headings go round.
-UnionFind joined(const std::vector<Bin>& bins, std::int64_t turn_bins) {
+UnionFind joined(const std::vector<Bin>& bins) {
   UnionFind groups(bins.size());
   for (std::size_t i = 0; i < bins.size(); ++i) {
     for (int k = 0; k < 27; ++k) {
       const Bin near{bins[i][0] + k % 3 - 1, bins[i][1] + k / 3 % 3 - 1,
-                     (bins[i][2] + k / 9 - 1 + turn_bins) % turn_bins};
+                     (bins[i][2] + k / 9 - 1 + kTurnBins) % kTurnBins};
       const auto found = std::ranges::lower_bound(bins, near);
       if (found != bins.end() && *found == near) groups.join(i, static_cast<std::size_t>(found - bins.begin()));
     }
@@ -113,14 +116,13 @@ double Cluster::sigma_m() const {
   return std::sqrt(mean2 + std::hypot(0.5 * (covariance[0][0] - covariance[1][1]), covariance[0][1]));
 }
 
-std::vector<Cluster> clusters_of(const Particles& particles, const ClusterOptions& options) {
+std::vector<Cluster> clusters_of(const Particles& particles) {
   std::vector<std::size_t> members;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.weight[i] > 0.0) members.push_back(i);
   }
-  const auto turn_bins = std::max<std::int64_t>(1, std::llround(360.0 / options.bin_heading.degrees()));
-  const Binning binning = binned(particles, members, options, turn_bins);
-  UnionFind groups = joined(binning.bins, turn_bins);
+  const Binning binning = binned(particles, members);
+  UnionFind groups = joined(binning.bins);
   std::vector<std::vector<std::size_t>> of_root(binning.bins.size());
   for (std::size_t m = 0; m < members.size(); ++m) of_root[groups.root(binning.bin_of[m])].push_back(members[m]);
   std::vector<Cluster> clusters;

@@ -8,11 +8,6 @@
 
 namespace roadfix {
 
-struct ClusterOptions {
-  double bin_m = 20.0;  ///< particles in bins that touch belong together
-  Angle bin_heading = Angle::degrees(15.0);
-};
-
 struct Cluster {
   GridPose mean;        ///< the heading is the circular mean
   double weight = 0.0;  ///< share of all weight
@@ -27,6 +22,6 @@ struct Cluster {
 };
 
 /// Heaviest first. Particles without weight are left out.
-std::vector<Cluster> clusters_of(const Particles& particles, const ClusterOptions& options);
+std::vector<Cluster> clusters_of(const Particles& particles);
 
 }  // namespace roadfix

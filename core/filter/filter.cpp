@@ -9,6 +9,13 @@
 namespace roadfix {
 namespace {
 
+// Of the averages of what measurements gave the belief.
+constexpr double kSlowRate = 0.02;
+constexpr double kFastRate = 0.2;
+constexpr double kCalmDoubt = 0.15;  // below it doubt is but their fluctuation, and nothing is drawn anew
+
+constexpr double kRougheningLogScale = 0.003;  // where the region leaves the scale open
+
 /// Returns false, and leaves the weights, where they sum to nothing.
 bool normalise(std::vector<double>& weights) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -133,8 +140,8 @@ Correction Filter::correct(std::span<const double> log_likelihoods) {
   result.mean_likelihood = sum * std::exp(largest);
   // Odds of the belief against chance, as a probability: one lucky or useless frame cannot swamp the averages.
   const double support = result.mean_likelihood / (1.0 + result.mean_likelihood);
-  state_.slow_support += options_.slow_rate * (support - state_.slow_support);
-  state_.fast_support += options_.fast_rate * (support - state_.fast_support);
+  state_.slow_support += kSlowRate * (support - state_.slow_support);
+  state_.fast_support += kFastRate * (support - state_.fast_support);
   const double effective = effective_sample_size(p.weight) / static_cast<double>(p.size());
   result.resampled =
       options_.effective_share >= 1.0 || effective < options_.effective_share || share_to_inject() > 0.01;
@@ -146,7 +153,7 @@ double Filter::doubt() const { return std::clamp(1.0 - state_.fast_support / sta
 
 double Filter::share_to_inject() const {
   if (options_.injection == Injection::kFixedShare) return 0.0;
-  return std::clamp(doubt() - options_.calm_doubt, 0.0, options_.injected_share);
+  return std::clamp(doubt() - kCalmDoubt, 0.0, options_.injected_share);
 }
 
 void Filter::resample() {
@@ -184,7 +191,7 @@ void Filter::roughen(std::span<const std::size_t> ancestors) {
     p.north_m[k] += options_.roughening_m * random.normal();
     const double turn = options_.roughening_heading.radians() * random.normal();
     p.heading_rad[k] = Angle::radians(p.heading_rad[k] + turn).wrapped().radians();
-    const double log_scale = p.log_scale[k] + options_.roughening_log_scale * random.normal();
+    const double log_scale = p.log_scale[k] + kRougheningLogScale * random.normal();
     p.log_scale[k] = std::clamp(log_scale, -region_.max_log_scale, region_.max_log_scale);
   }
 }

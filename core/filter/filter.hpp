@@ -30,12 +30,8 @@ struct FilterOptions {
   double effective_share = 0.5;  ///< resample when fewer are effective; 1 = after every measurement
   Injection injection = Injection::kLikelihoodAverages;
   double injected_share = 0.15;  ///< of kFixedShare; the most of kLikelihoodAverages
-  double calm_doubt = 0.15;      ///< below it doubt is but the fluctuation of the averages, and nothing is drawn anew
-  double slow_rate = 0.02;
-  double fast_rate = 0.2;
-  double roughening_m = 1.0;  ///< 1 sigma by which copies of a particle are moved apart
+  double roughening_m = 1.0;     ///< 1 sigma by which copies of a particle are moved apart
   Angle roughening_heading = Angle::degrees(0.5);
-  double roughening_log_scale = 0.003;  ///< where the region leaves the scale open
 
   /// The paper's: a fixed number, resampling after every measurement, 15 % drawn uniformly in every step, copies stay
   /// copies.

@@ -5,8 +5,10 @@
 namespace roadfix {
 
 OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise) {
-  const double metres = noise.odometry_m + noise.odometry_share * distance_m(odometry);
-  const double turn = noise.odometry_turn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
+  constexpr double kLeastM = 0.3;
+  constexpr Angle kLeastTurn = Angle::degrees(0.5);
+  const double metres = kLeastM + noise.odometry_share * distance_m(odometry);
+  const double turn = kLeastTurn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
   return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
 }
 

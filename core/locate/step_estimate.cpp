@@ -9,6 +9,9 @@
 namespace roadfix {
 namespace {
 
+constexpr double kConvergedWeight = 0.9;
+constexpr double kConvergedSigmaM = 25.0;
+
 /// Equation (7) is no ratio to chance, and bears out what it does not reject. Where no look has borne the place out of
 /// late there is no time of one.
 bool is_borne_out(const TrackSettings& settings, const TrackerState& state) {
@@ -19,7 +22,7 @@ bool is_borne_out(const TrackSettings& settings, const TrackerState& state) {
 
 bool has_converged(const TrackSettings& settings, const TrackerState& state, const Cluster& best,
                    const TrackEstimate& estimate) {
-  return best.weight >= settings.converged_weight && best.sigma_m() <= settings.converged_sigma_m &&
+  return best.weight >= kConvergedWeight && best.sigma_m() <= kConvergedSigmaM &&
          estimate.measurement != Measurement::kRejected && !state.last_view.stands_still &&
          state.claim.is_supported() && is_borne_out(settings, state) && estimate.doubt <= kMaxDoubt &&
          estimate.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
@@ -33,7 +36,7 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   TrackEstimate estimate;
   estimate.sequence = state.sequence;
   estimate.time_us = state.time_us;
-  const std::vector<Cluster> clusters = clusters_of(filter.particles(), settings.clusters);
+  const std::vector<Cluster> clusters = clusters_of(filter.particles());
   estimate.cluster_count = clusters.size();
   const double nadir_sigma_m = settings.vehicle.nadir_sigma_m.value_or(state.nadir_sigma_m);
   for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {

@@ -1,12 +1,10 @@
 // What a track is told before its first step: where to begin, what the vehicle is like, how sure to be.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 
-#include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
 #include "core/locate/calibration.hpp"
 #include "core/locate/measurement_model.hpp"
@@ -34,10 +32,8 @@ struct VehicleNoise {
     Gaussian turn_rate_rad_s;
   };
   std::optional<Planar> planar;
-  // Odometry without covariance: 1 sigma is the share of the distance or turn, and at least ...
+  /// Odometry without covariance: 1 sigma is this share of the distance or turn, and a little (covariance_of()).
   double odometry_share = 0.05;
-  double odometry_m = 0.3;  ///< ... so much per axis
-  Angle odometry_turn = Angle::degrees(0.5);
   Wind wind;
   /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
   /// that stays much the same from step to step; in [0, kMaxScaleRange].
@@ -59,17 +55,13 @@ struct TrackSettings {
   FilterOptions filter;
   MeasurementModel measurement_model;
   VehicleNoise vehicle;
-  ClusterOptions clusters;
   std::uint64_t seed = 1;
-  double converged_weight = 0.9;
-  double converged_sigma_m = 25.0;
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
   /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
   double beyond_map_m = 1000.0;
   /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
   /// place.
   std::optional<double> max_search_km2 = 2000.0;
-  std::chrono::seconds longest_gap{600};           ///< after it the belief is thrown away
   std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
 
   /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.

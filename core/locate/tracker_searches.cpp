@@ -50,7 +50,7 @@ void Tracker::Step::look_around_if_due() {
   const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
   const LookAge last{since_us, 1e-6 * static_cast<double>(since_us) * motion_.speed_m_s()};
   if (state_.claim.looked_time_us && !last.is_due()) return;
-  const Cluster belief = clusters_of(filter_.particles(), settings_.clusters).front();
+  const Cluster belief = clusters_of(filter_.particles()).front();
   if (const auto look = look_around(search_, map_, *features_, belief, last.flown_m)) take(*look, last);
 }
 
@@ -85,7 +85,7 @@ bool Tracker::Step::wants_search() const {
 }
 
 void Tracker::Step::recover() {
-  const GridPose believed = clusters_of(filter_.particles(), settings_.clusters).front().mean;
+  const GridPose believed = clusters_of(filter_.particles()).front().mean;
   const FeatureMap seen = state_.recent.laid_around(*features_);
   Prior prior;
   std::optional<Fix> fix = search_within(prior, seen);

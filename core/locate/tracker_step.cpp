@@ -14,6 +14,8 @@ namespace {
 // was told.
 constexpr double kWidenedM = 4.0;
 
+constexpr double kLongestGapS = 600.0;  // after it the belief is thrown away
+
 ToldMotion told_motion(const TrackerState& before, const StepInput& input) {
   if (!before.started) return {input.odometry, input.covariance, 0.0, 0};
   return {input.odometry, input.covariance, 1e-6 * static_cast<double>(input.time_us - before.time_us),
@@ -64,7 +66,7 @@ void Tracker::Step::begin_or_move() {
 
 void Tracker::Step::move() {
   state_.last_view.move(input_.odometry, motion_.covers_ground());
-  if (motion_.told().seconds > static_cast<double>(settings_.longest_gap.count())) {
+  if (motion_.told().seconds > kLongestGapS) {
     filter_.start_uniformly(tracker_.region_.poses);
     motion_.begin_anew();
     forget_support();

@@ -32,7 +32,7 @@ Particles particles_of(const std::vector<Blob>& blobs, int each) {
 
 TEST(Clusters, SeparatePlacesAndHeadingsHeaviestFirst) {
   const auto clusters =
-      clusters_of(particles_of({{0, 0, 90, 5, 2, 0.2}, {500, 0, 90, 5, 2, 0.5}, {0, 0, -90, 5, 2, 0.3}}, 2000), {});
+      clusters_of(particles_of({{0, 0, 90, 5, 2, 0.2}, {500, 0, 90, 5, 2, 0.5}, {0, 0, -90, 5, 2, 0.3}}, 2000));
   ASSERT_EQ(clusters.size(), 3U);
   EXPECT_NEAR(clusters[0].weight, 0.5, 1e-9);
   EXPECT_NEAR(clusters[0].mean.position.east_m, 500.0, 0.6);
@@ -41,14 +41,14 @@ TEST(Clusters, SeparatePlacesAndHeadingsHeaviestFirst) {
 }
 
 TEST(Clusters, GoRoundSouth) {
-  const auto clusters = clusters_of(particles_of({{0, 0, 179.0, 3, 8, 1.0}}, 3000), {});
+  const auto clusters = clusters_of(particles_of({{0, 0, 179.0, 3, 8, 1.0}}, 3000));
   ASSERT_EQ(clusters.size(), 1U);
   EXPECT_NEAR(std::abs(clusters[0].mean.heading.degrees()), 179.0, 1.5);
   EXPECT_NEAR(Angle::radians(std::sqrt(clusters[0].covariance[2][2])).degrees(), 8.0, 0.6);
 }
 
 TEST(Clusters, TellSpreadAndThe95PercentRadius) {
-  const auto clusters = clusters_of(particles_of({{1e6, 4e6, 0, 6, 1, 1.0}}, 20'000), {});
+  const auto clusters = clusters_of(particles_of({{1e6, 4e6, 0, 6, 1, 1.0}}, 20'000));
   ASSERT_EQ(clusters.size(), 1U);
   EXPECT_NEAR(clusters[0].sigma_m(), 6.0, 0.2);
   EXPECT_NEAR(clusters[0].radius95_m, 6.0 * std::sqrt(5.991), 0.4) << "chi-square of two degrees of freedom";
@@ -57,14 +57,14 @@ TEST(Clusters, TellSpreadAndThe95PercentRadius) {
 TEST(Clusters, TellTheirScale) {
   Particles p = particles_of({{0, 0, 0, 5, 1, 0.25}, {0, 0, 0, 5, 1, 0.75}}, 100);
   std::fill(p.log_scale.begin() + 100, p.log_scale.end(), 0.1);
-  const auto clusters = clusters_of(p, {});
+  const auto clusters = clusters_of(p);
   ASSERT_EQ(clusters.size(), 1U);
   EXPECT_NEAR(clusters[0].log_scale, 0.075, 1e-12);
   EXPECT_NEAR(clusters[0].log_scale_sigma, 0.1 * std::sqrt(0.25 * 0.75), 1e-12);
 }
 
 TEST(Clusters, LeaveOutWhatHasNoWeight) {
-  const auto clusters = clusters_of(particles_of({{0, 0, 0, 5, 1, 1.0}, {900, 0, 0, 5, 1, 0.0}}, 100), {});
+  const auto clusters = clusters_of(particles_of({{0, 0, 0, 5, 1, 1.0}, {900, 0, 0, 5, 1, 0.0}}, 100));
   EXPECT_EQ(clusters.size(), 1U);
 }
 

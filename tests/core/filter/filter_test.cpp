@@ -157,10 +157,10 @@ TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
   };
   feed(4.0, 60);
   EXPECT_LT(filter.doubt(), 0.05);
-  EXPECT_EQ(clusters_of(filter.particles(), {}).size(), 1U);
+  EXPECT_EQ(clusters_of(filter.particles()).size(), 1U);
   feed(-3.0, 15);
   EXPECT_GT(filter.doubt(), 0.3);
-  EXPECT_GT(clusters_of(filter.particles(), {}).size(), 20U);
+  EXPECT_GT(clusters_of(filter.particles()).size(), 20U);
 }
 
 TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
@@ -171,7 +171,7 @@ TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {
     filter.correct(std::vector<double>(filter.particles().size(), i % 2 == 0 ? 1.0 : -0.5));
     ASSERT_LT(filter.doubt(), 0.15) << "step " << i;
   }
-  EXPECT_EQ(clusters_of(filter.particles(), {}).size(), 1U);
+  EXPECT_EQ(clusters_of(filter.particles()).size(), 1U);
 }
 
 TEST(Filter, InjectsProposalsOfASearch) {
@@ -179,7 +179,7 @@ TEST(Filter, InjectsProposalsOfASearch) {
   start_at(filter, {{{300.0, 300.0}, Angle()}, {}, 1.0});
   const Proposal there{{{800.0, 700.0}, Angle::degrees(45.0)}, {{{4.0, 0, 0}, {0, 4.0, 0}, {0, 0, 1e-4}}}, 1.0};
   filter.inject(std::span(&there, 1), 0.25);
-  const auto clusters = clusters_of(filter.particles(), {});
+  const auto clusters = clusters_of(filter.particles());
   ASSERT_EQ(clusters.size(), 2U);
   EXPECT_NEAR(clusters[1].weight, 0.25, 1e-9);
   EXPECT_NEAR(clusters[1].mean.position.east_m, 800.0, 1.0);

@@ -32,6 +32,16 @@ void TrackClaim::confirm(double probability) {
   looked_time_us.reset();
 }
 
+void TrackClaim::bear_out(std::int64_t time_us) {
+  looked_time_us = time_us;
+  flown_m = 0.0;
+}
+
+void TrackClaim::fly(double way_m) {
+  if (!looked_time_us) flown_m = 0.0;
+  flown_m += way_m;
+}
+
 bool TrackClaim::is_supported() const { return supported >= kMinSupport; }
 
 bool TrackClaim::outweighs_chance() const { return log_odds >= kMinLogOdds; }

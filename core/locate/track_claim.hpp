@@ -32,6 +32,8 @@ struct TrackClaim {
   /// Time of the last search around the place that bore it out; nullopt = none since a search found the place,
   /// something spoke against it or such a search did not bear it out, and nothing is claimed then.
   std::optional<std::int64_t> looked_time_us{};
+  /// The way flown since that search, or where there was none, since the step before.
+  double flown_m = 0.0;
 
   void accept();
   /// Something speaks against the place. A claim that is taken back waits for a search.
@@ -41,6 +43,10 @@ struct TrackClaim {
   /// A search gave a fix of this probability, in [0, 1), there. It is yet to be looked around: the next frame tells
   /// whether the odometry carries the place on rightly.
   void confirm(double probability);
+
+  /// A search around the place found it there.
+  void bear_out(std::int64_t time_us);
+  void fly(double way_m);
 
   bool is_supported() const;
   /// A hundred to one against chance.

@@ -47,14 +47,14 @@ bool LookAge::is_outdated() const {
   return us >= kOpenLooks * kLookEvery.us || flown_m >= kOpenLooks * kLookEvery.flown_m;
 }
 
-std::optional<Look> look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame,
-                                const Cluster& belief, double flown_m) {
+Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
+                 double flown_m) {
   const double radius_m = std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM);
   const auto around = prior_near(map, belief.mean, radius_m, kLookHeading);
-  if (!around) return std::nullopt;
+  if (!around) return {};
   const FeatureMap seen = resampled(frame, frame.cell_m, std::exp(belief.log_scale));
   const std::optional<Fix> fix = search.find(seen, *around, {.looks_beyond_prior = false});
-  if (!fix) return std::nullopt;
+  if (!fix) return {};
   Look look{outcome_of(*fix, belief, map.zone), {}};
   if (look.outcome == Look::Outcome::kBeside) {
     look.places = proposals_of(map, *fix, seen);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/filter/clusters.hpp"
@@ -32,9 +31,9 @@ struct Look {
   std::vector<Proposal> places;  ///< that are likely instead; only of kBeside
 };
 
-/// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. nullopt where
+/// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. Open where
 /// that lies beyond the map or is too much to search.
-std::optional<Look> look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame,
-                                const Cluster& belief, double flown_m);
+Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
+                 double flown_m);
 
 }  // namespace roadfix

@@ -37,6 +37,11 @@ double StepMotion::speed_m_s() const {
   return vehicle_.planar ? std::abs(vehicle_.planar->speed_m_s.mean) : 0.0;
 }
 
+double StepMotion::way_m() const {
+  if (!told_.odometry) return speed_m_s() * told_.seconds;
+  return std::hypot(told_.odometry->forward_m, told_.odometry->right_m) * static_cast<double>(1 + told_.lost_steps);
+}
+
 Wind StepMotion::wind() const {
   const Wind& told = vehicle_.wind;
   if (!learned_.drifts) return told;

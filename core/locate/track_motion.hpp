@@ -41,6 +41,8 @@ class StepMotion {
   bool covers_ground() const;
   /// That the last odometry told; where none is to be expected, that of the vehicle.
   double speed_m_s() const;
+  /// Of the step, by the odometry or that speed.
+  double way_m() const;
   /// Where particles live, with the drift of new ones.
   AcceptanceRegion region() const;
 

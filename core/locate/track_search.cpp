@@ -7,12 +7,18 @@
 #include "core/units/error.hpp"
 
 namespace roadfix {
+namespace {
 
-std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& prior, FixOptions options) const {
+constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for exact, before a fix is believed
+
+}  // namespace
+
+std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& prior, FixOptions options,
+                                     double time_share) const {
   options.max_search_km2 = settings_.max_search_km2;
   options.threads = limits_.threads;
   if (limits_.searches_end) {
-    const auto left = *limits_.searches_end - std::chrono::steady_clock::now();
+    const auto left = time_share * (*limits_.searches_end - std::chrono::steady_clock::now());
     options.time_limit = std::max(std::chrono::ceil<std::chrono::milliseconds>(left), std::chrono::milliseconds(0));
   }
   options.stop = limits_.stop;
@@ -25,12 +31,20 @@ std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& pr
 }
 
 bool TrackSearch::holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const {
-  constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for exact, before a fix is believed
-  constexpr double kMaxRivalShare = 0.3;      // of the weight of the place
+  constexpr double kTimeShare = 0.5;
   if (settings_.vehicle.scale_range >= kUntoldScaleRange) return true;
+  if (const auto holds = has_no_rival(fix, features, prior, kTimeShare)) return *holds;
+  Prior around;
+  around.circle = GeoCircle{fix.modes.front().pose.position, kAroundM};
+  return has_no_rival(fix, features, around, 1.0).value_or(false);
+}
+
+std::optional<bool> TrackSearch::has_no_rival(const Fix& fix, const FeatureMap& features, const Prior& prior,
+                                              double time_share) const {
+  constexpr double kMaxRivalShare = 0.3;  // of the weight of the place
   const std::optional<Fix> other =
-      find(features, prior, {.scale_range = kUntoldScaleRange, .looks_beyond_prior = false});
-  if (!other || !other->complete) return false;
+      find(features, prior, {.scale_range = kUntoldScaleRange, .looks_beyond_prior = false}, time_share);
+  if (!other || !other->complete) return std::nullopt;
   const GridPose place = on_grid(fix.modes.front().pose, map_.zone);
   double here = 0.0;
   double elsewhere = 0.0;

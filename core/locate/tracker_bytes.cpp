@@ -34,7 +34,7 @@ void pass_members(auto& io, auto& state) {
   auto& [filter, started, searched, sequence, time_us, measured, last_search, nadir_sigma_m, claim, accepted_time_us,
          recent, last_view, motion] = state;
   io(searched, sequence, time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
-  io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us);
+  io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
   io(motion.velocity, motion.drifts, motion.coasts);
   io(last_view.digest, last_view.moved_m, last_view.turned_rad, last_view.stands_still, last_view.earlier);
   io(filter.seed, filter.step, filter.resets, filter.slow_support, filter.fast_support, filter.particles);

@@ -15,7 +15,10 @@ constexpr double kProbabilityForClaim = 0.95;         // of a search at the plac
 constexpr double kInjectedShare = 0.3;
 constexpr double kMovedShare = 0.8;   // of the particles, to where a look found the vehicle
 constexpr double kMaxFixShare = 0.9;  // of the particles; the others begin anew
-constexpr double kRecoveryRadiusM = 3000.0;
+// Of the time that a step has left, for a search over the whole map: what that does not find in time, one around the
+// belief has to, and what either finds has to be told from other places.
+constexpr double kWholeMapTimeShare = 0.3;
+constexpr double kAroundTimeShare = 0.5;
 
 double probability_of_all(const Fix& fix) {
   double known = 0.0;
@@ -34,7 +37,7 @@ bool Tracker::Step::start_by_search() {
   if (!prior) return false;
   state_.searched = true;
   const FeatureMap seen = state_.recent.laid_around(*features_);
-  const std::optional<Fix> fix = search_within(*prior, seen);
+  const std::optional<Fix> fix = search_within(*prior, seen, 1.0);
   if (!fix || fix->modes.empty()) return false;
   const double uniform_share = std::clamp(1.0 - probability_of_all(*fix), 1.0 - kMaxFixShare, 0.9);
   filter_.restart_from(proposals_of(map_, *fix, *features_), uniform_share,
@@ -48,16 +51,16 @@ void Tracker::Step::look_around_if_due() {
   const bool sure = state_.claim.outweighs_chance() && state_.claim.confirmed;
   if (!settings_.recovers || !sure || outcome_.measurement == Measurement::kUseless) return;
   const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
-  const LookAge last{since_us, 1e-6 * static_cast<double>(since_us) * motion_.speed_m_s()};
+  const LookAge last{since_us, state_.claim.flown_m};
   if (state_.claim.looked_time_us && !last.is_due()) return;
   const Cluster belief = clusters_of(filter_.particles()).front();
-  if (const auto look = look_around(search_, map_, *features_, belief, last.flown_m)) take(*look, last);
+  take(look_around(search_, map_, *features_, belief, last.flown_m), last);
 }
 
 void Tracker::Step::take(const Look& look, LookAge last) {
   switch (look.outcome) {
     case Look::Outcome::kBorneOut:
-      state_.claim.looked_time_us = input_.time_us;
+      state_.claim.bear_out(input_.time_us);
       motion_.try_drifts(filter_);
       break;
     case Look::Outcome::kOpen:
@@ -88,10 +91,10 @@ void Tracker::Step::recover() {
   const GridPose believed = clusters_of(filter_.particles()).front().mean;
   const FeatureMap seen = state_.recent.laid_around(*features_);
   Prior prior;
-  std::optional<Fix> fix = search_within(prior, seen);
+  std::optional<Fix> fix = search_within(prior, seen, kWholeMapTimeShare);
   if (!fix) {
-    prior.circle = GeoCircle{map_.zone.unproject(believed.position), kRecoveryRadiusM};
-    fix = search_within(prior, seen);
+    prior.circle = GeoCircle{map_.zone.unproject(believed.position), TrackSearch::kAroundM};
+    fix = search_within(prior, seen, kAroundTimeShare);
   }
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, map_.zone), believed);
@@ -116,10 +119,10 @@ void Tracker::Step::confirm(const Fix& fix) {
 
 /// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
 /// takes longer. At its beginning that is an error, as a smaller prior helps.
-std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen) {
+std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen, double time_share) {
   state_.last_search = state_.measured;
   std::optional<Fix> fix =
-      search_.find(seen, prior, {.scale_range = settings_.vehicle.scale_range, .own_frame = features_});
+      search_.find(seen, prior, {.scale_range = settings_.vehicle.scale_range, .own_frame = features_}, time_share);
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
   if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);

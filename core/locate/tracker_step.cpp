@@ -49,6 +49,8 @@ StepResult Tracker::Step::run() {
   state_.time_us = input_.time_us;
   state_.motion = motion_.learned();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, outcome_);
+  // Particles that part and gather again bring no claim back that ended unseen.
+  if (!features_ && !estimate.converged) state_.claim.looked_time_us.reset();
   if (estimate.converged) state_.recent.clear();
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};
@@ -74,6 +76,7 @@ void Tracker::Step::move() {
     return;
   }
   if (!motion_.move(filter_)) forget_support();
+  state_.claim.fly(motion_.way_m());
   // Only where the odometry tells how the ground below goes on, and the frames how large it is.
   if (input_.odometry && motion_.covers_ground() && settings_.vehicle.scale_range <= 0.0) {
     state_.recent.move(*input_.odometry, motion_.odometry_covariance());

@@ -40,7 +40,7 @@ class Tracker::Step {
   bool wants_search() const;
   void recover();
   void confirm(const Fix& fix);
-  std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen);
+  std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen, double time_share);
 
   const Tracker& tracker_;
   const MapView& map_;

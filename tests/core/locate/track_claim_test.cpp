@@ -70,5 +70,17 @@ TEST(TrackClaim, IsAsSureOfAFixAsTheFixIs) {
   EXPECT_FALSE(claim.is_supported());
 }
 
+TEST(TrackClaim, CountsTheWayFromTheLastSearchThatBoreItOut) {
+  TrackClaim claim;
+  claim.fly(30.0);
+  claim.fly(40.0);
+  EXPECT_EQ(claim.flown_m, 40.0) << "no search has borne it out: since the step before";
+  claim.bear_out(7'000'000);
+  EXPECT_EQ(claim.looked_time_us, 7'000'000);
+  claim.fly(30.0);
+  claim.fly(40.0);
+  EXPECT_EQ(claim.flown_m, 70.0);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -66,5 +66,13 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
   EXPECT_TRUE(filter.particles() == before);
 }
 
+TEST(StepMotion, TellsTheWayOfAStep) {
+  const VehicleNoise vehicle;
+  const auto way_m = [&](const ToldMotion& told) { return StepMotion(vehicle, kFlight, told, kFlewAt20MS).way_m(); };
+  EXPECT_DOUBLE_EQ(way_m({Odometry{3.0, -4.0, {}}, {}, 1.0}), 5.0);
+  EXPECT_DOUBLE_EQ(way_m({Odometry{3.0, -4.0, {}}, {}, 1.0, 2}), 15.0) << "two steps of the same kind were lost";
+  EXPECT_DOUBLE_EQ(way_m({{}, {}, 2.5}), 50.0) << "on as it flew";
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -44,7 +44,7 @@ TrackerState flown() {
   state.measured = 40;
   state.last_search = 11;
   state.nadir_sigma_m = 5.25;
-  state.claim = {4, 7.5, true, 40'000'000};
+  state.claim = {4, 7.5, true, 40'000'000, 12.5};
   state.accepted_time_us = 41'000'000;
   for (int i = 0; i < 3; ++i) {
     state.recent.keep(FeatureMap::centred(CellArray(20 + i, 21, kNoRoad), 2.0));

@@ -101,6 +101,20 @@ TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
   EXPECT_LE(claims.size(), 5U) << "at 20 m a step, 90 m after the last look that did";
 }
 
+TEST_F(Track, TakesItsClaimBackWhereItCannotLookAroundItsPlace) {
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged);
+  // Farther beyond the rim than looks reach, though frames still agree with what the map shows there.
+  MapView beside = view_;
+  beside.extent.max.east_m = flight.pose().position.east_m - 200.0;
+  const Tracker tracker(beside, settings());
+  flight.step_m = 5.0;
+  TrackEstimate estimate;
+  for (int i = 0; i < 8; ++i) estimate = advance(tracker, flight.step());
+  EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
+  EXPECT_FALSE(estimate.converged);
+}
+
 TEST_F(Track, ForgetsWhatLooksSawOfABeliefThatItThrowsAway) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);

@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <thread>
 
+#include "core/locate/track_search.hpp"
 #include "core/locate/tracker.hpp"
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
@@ -150,6 +154,65 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
   }
   EXPECT_GE(recovered, 0);
   EXPECT_LT(recovered, 40);
+}
+
+TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
+  using std::chrono::steady_clock;
+  MapView wide = view_;
+  wide.extent.max.east_m += 10'000.0;
+  const double far_east_m = wide.extent.max.east_m - 1000.0;
+  std::optional<steady_clock::time_point> slow_until;
+  int outlasted = 0;
+  wide.read = [&](const GridGeometry& window) {
+    if (slow_until && window.box().max.east_m > far_east_m) {
+      ++outlasted;
+      std::this_thread::sleep_until(*slow_until);
+    }
+    return view_.read(window);
+  };
+  TrackSettings near_start = settings();
+  near_start.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 300.0};
+  const Tracker tracker(wide, near_start);
+  Flight flight(map_, start_, 5);
+  ASSERT_TRUE(fly(tracker, flight, 15).converged);
+
+  // Time enough, on any machine, for what is searched around.
+  const StepLimits unlimited;
+  const TrackSearch searches(wide, near_start, unlimited);
+  Prior around;
+  around.circle = GeoCircle{view_.zone.unproject(start_.position), TrackSearch::kAroundM};
+  const auto begin = steady_clock::now();
+  ASSERT_TRUE(searches.find(*flight.step().features, around, {.scale_range = 0.15}));
+  const auto time = 10 * (steady_clock::now() - begin);
+
+  flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});
+  bool recovered = false;
+  for (int i = 0; i < 40 && !recovered; ++i) {
+    StepLimits limits;
+    limits.searches_end = steady_clock::now() + time;
+    slow_until = steady_clock::now() + time / 3;
+    StepResult result = tracker.advance(state_, flight.step(), limits);
+    state_ = std::move(result.state);
+    recovered = result.estimate.converged && error_m(result.estimate, flight.pose()) < 20.0;
+  }
+  EXPECT_GT(outlasted, 0);
+  EXPECT_TRUE(recovered);
+}
+
+TEST_F(Track, ClaimsNoPlaceAgainThatItLostSightOfBeforeASearchFindsItThere) {
+  const Tracker tracker(view_, settings());
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    ASSERT_TRUE(fly(tracker, flight, 12).converged);
+    bool lost = false;
+    for (int i = 0; i < 45; ++i) {
+      const TrackEstimate estimate = advance(tracker, flight.step(false));
+      EXPECT_FALSE(lost && estimate.converged) << "seed " << seed << ", step " << i;
+      lost = lost || !estimate.converged;
+    }
+    EXPECT_TRUE(lost);
+  }
 }
 
 TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {

@@ -15,6 +15,7 @@
 #include "tiles/export/one_side.hpp"
 #include "tiles/export/side_files.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
 namespace {
@@ -169,6 +170,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
     const fs::path reference = unfinished.string() + ".aux.xml";
     if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, map.info());
     if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
+    if (options.format == ExportFormat::kMbTiles) sqlite::remove_logs(target);
     fs::rename(unfinished, target);
     remove_side_files(target);
     if (fs::exists(world)) fs::rename(world, common_world_file(target));

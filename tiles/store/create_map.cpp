@@ -80,7 +80,7 @@ void write_map(const fs::path& path, const MapSettings& settings) {
 void remove_map(const fs::path& path) {
   std::error_code ignored;
   fs::remove(path, ignored);
-  fs::remove(path.string() + "-journal", ignored);
+  sqlite::remove_logs(path);
 }
 
 /// Makes a rename durable.
@@ -106,6 +106,7 @@ void create_map(const fs::path& path, const MapSettings& settings) {
     remove_map(unfinished);
     throw;
   }
+  sqlite::remove_logs(path);  // of a map that was deleted without them
   std::error_code error;
   fs::rename(unfinished, path, error);
   if (error) throw IoFailure("map-not-writable", fmt::format("{}: {}", path.string(), error.message()));

@@ -7,7 +7,8 @@
 
 namespace roadfix {
 
-/// Makes an empty map under the name in one step: killed at any point, there is a whole map or none.
+/// Makes an empty map under the name, which must be free, in one step: killed at any point, there is a whole map or
+/// none.
 /// Throws InvalidInput ("cell-size-not-supported") or IoFailure.
 void create_map(const std::filesystem::path& path, const MapSettings& settings);
 

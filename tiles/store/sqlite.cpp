@@ -167,6 +167,11 @@ std::int64_t number(Connection& connection, std::string_view query) {
   return statement.integer(0);
 }
 
+void remove_logs(const std::filesystem::path& database) {
+  std::error_code ignored;
+  for (const char* log : {"-journal", "-wal", "-shm"}) std::filesystem::remove(database.string() + log, ignored);
+}
+
 Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {
   connection_.execute(kind == Kind::kWrite ? "BEGIN IMMEDIATE" : "BEGIN");
 }

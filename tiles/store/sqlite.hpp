@@ -109,6 +109,10 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
+/// Removes what SQLite keeps beside the database of this name (-journal, -wal, -shm), where it is there. Of a database
+/// that is gone it would be played back into the next one that gets the name.
+void remove_logs(const std::filesystem::path& database);
+
 /// What a query answers that asks for one number.
 std::int64_t number(Connection& connection, std::string_view query);
 

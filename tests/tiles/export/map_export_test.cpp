@@ -125,6 +125,22 @@ TEST_F(MapExport, APictureLiesWhereItsMapDoesWhereverTheOneBeforeLay) {
   EXPECT_TRUE(fs::exists(folder / "out.wld")) << "of the PNG beside it";
 }
 
+TEST_F(MapExport, MbTilesTakeNothingFromTheFileThatTheyReplace) {
+  const auto target = folder / "out.mbtiles";
+  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
+  {
+    sqlite::Connection killed = testing::open_sqlite(target);
+    killed.execute("UPDATE tiles SET tile_data = 'of before'");
+    killed.execute("PRAGMA cache_size = 1; BEGIN; UPDATE tiles SET tile_data = zeroblob(50000)");
+    fs::copy_file(target.string() + "-journal", folder / "journal");
+  }
+  fs::rename(folder / "journal", target.string() + "-journal");
+  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
+  sqlite::Connection file = testing::open_sqlite(target);
+  EXPECT_EQ(sqlite::number(file, "SELECT count(*) FROM tiles WHERE tile_data = 'of before'"), 0);
+  EXPECT_EQ(files(), 2U);
+}
+
 TEST_F(MapExport, MbTilesCoverTheMapAtAllZooms) {
   const auto target = folder / "out.mbtiles";
   export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});

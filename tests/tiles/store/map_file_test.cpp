@@ -10,6 +10,7 @@
 #include "tests/support/as_another_user.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/store/map_verifier.hpp"
 
 namespace roadfix {
 namespace {
@@ -197,6 +198,31 @@ TEST_F(MapFile, AWriterThatDiesDuringAReadIsUndone) {
       << std::ifstream(killed, std::ios::binary).rdbuf();
   fs::rename(killed.string() + "-journal", copy.string() + "-journal");
   for (const TileIndex tile : some_blocks(2)) EXPECT_EQ(reader.tile(0, tile), testing::random_cells(1, tile));
+}
+
+TEST_F(MapFile, ANewOneTakesNothingFromWhatADeletedOneLeft) {
+  const auto copy = folder / "copy.gpkg";
+  const auto expect_as_told = [&](const char* log) {
+    SCOPED_TRACE(log);
+    ASSERT_GT(fs::file_size(copy.string() + log), 0U);
+    fs::remove(copy);
+    {
+      MapWriter writer(copy, {*UtmZone::from_epsg(32638), 1.0});
+      ingest(writer, {"a", 1, some_blocks(1)});
+    }
+    EXPECT_EQ(MapReader(copy).info().settings.zone.epsg(), 32638);
+    EXPECT_TRUE(verify_map(copy).problems.empty());
+    fs::remove(copy);
+  };
+  copy_as_if_killed(path, copy);
+  expect_as_told("-journal");
+  execute("PRAGMA journal_mode = WAL");
+  {
+    sqlite::Connection open_elsewhere = testing::open_sqlite(path);
+    open_elsewhere.execute("UPDATE road_probability SET tile_data = zeroblob(50000)");
+    for (const char* part : {"", "-wal", "-shm"}) fs::copy_file(path.string() + part, copy.string() + part);
+  }
+  expect_as_told("-wal");
 }
 
 TEST_F(MapFile, GdalFindsItValid) {

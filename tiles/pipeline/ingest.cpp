@@ -29,7 +29,10 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 [[noreturn]] void outside_map(const std::string& source, const MapSettings& settings) {
   throw InvalidInput("source-outside-map",
-                     fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map", source, settings.zone.epsg()));
+                     fmt::format("'{}' covers no ground in UTM zone EPSG:{} of the map. A new map gets the zone of the "
+                                 "first layer of lines that holds any; --layer names the one with the roads, --zone "
+                                 "another zone",
+                                 source, settings.zone.epsg()));
 }
 
 /// The source and those that share ground with it. While it is replaced, with what it was.

@@ -177,9 +177,18 @@ RoadNetwork join(RoadParts& parts, const RoadRules& rules) {
                   path, options.layer.empty() ? "it is" : fmt::format("its layer '{}' is", options.layer)));
 }
 
-/// nullopt where the file has no layer or no feature to look at.
-std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path) {
+/// Layers of an unknown type may.
+bool may_hold_lines(OGRLayer& layer) {
+  const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+  const auto is = [type](OGRwkbGeometryType kind) { return OGR_GT_IsSubClassOf(type, kind) != FALSE; };
+  return !is(wkbPoint) && !is(wkbMultiPoint) && !is(wkbSurface) && !is(wkbMultiSurface);
+}
+
+/// Of its first layer, among those that may hold lines or among the others; nullopt where there is none, or no feature
+/// to look at.
+std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path, bool of_lines) {
   for (OGRLayer* layer : file.layers()) {
+    if (may_hold_lines(*layer) != of_lines) continue;
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
     if (!box) continue;
     refuse_degrees_as_metres(*box, file.crs_of(*layer), path);
@@ -210,10 +219,12 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
 LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options) {
   if (!options.extent.empty()) return centre_of_extent(options.extent);
   bool any_layer = false;
-  for (const std::string& path : paths) {
-    VectorFile file(path, options);
-    any_layer = any_layer || !file.layers().empty();
-    if (const std::optional<LatLon> centre = centre_of_file(file, path)) return *centre;
+  for (const bool of_lines : {true, false}) {  // areas of countries, and points of interest, may lie anywhere
+    for (const std::string& path : paths) {
+      VectorFile file(path, options);
+      any_layer = any_layer || !file.layers().empty();
+      if (const std::optional<LatLon> centre = centre_of_file(file, path, of_lines)) return *centre;
+    }
   }
   if (!any_layer) refuse_layer(paths.front(), options);
   refuse_empty(paths.front(), options);

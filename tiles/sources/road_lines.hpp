@@ -55,7 +55,8 @@ struct RoadNetwork {
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);
 
-/// Geographic centre of the ground that is asked for, or of the first file with features, to choose a zone by.
+/// Geographic centre of the ground that is asked for, or of the first layer with features, to choose a zone by; layers
+/// of points or areas count where no other has any.
 LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options);
 
 }  // namespace roadfix

@@ -117,21 +117,24 @@ std::optional<OGREnvelope> VectorFile::cut_out(OGRLayer& layer) const {
 }
 
 std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
-  if (std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
+  // A GeoPackage states what it ever held: few programs make that smaller when features go.
+  if (!EQUAL(dataset_->GetDriverName(), "GPKG")) {
+    if (std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
+  }
   OGREnvelope box;
-  // Not layer.GetExtent(TRUE): the OpenStreetMap driver gives its layers interleaved only.
-  for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
+  const auto add = [&](OGRLayer& of, OGRFeature& feature) {
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (&of != &layer || geometry == nullptr || geometry->IsEmpty() != FALSE) return;
     OGREnvelope own;
     geometry->getEnvelope(&own);
     box.Merge(own);
-  });
+  };
+  osm_ ? for_each_feature(add) : for_each_feature_of(layer, add);  // OpenStreetMap's layers come interleaved only
   if (box.IsInit() == 0) return std::nullopt;
   return box;
 }
 
-void VectorFile::for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit) {
+void VectorFile::for_each_feature(const Visit& visit) {
   const GdalMessages messages;
   dataset_->ResetReading();
   while (true) {
@@ -140,6 +143,18 @@ void VectorFile::for_each_feature(const std::function<void(OGRLayer&, OGRFeature
     if (!feature) break;
     visit(*layer, *feature);
   }
+  refuse_unread(messages);
+}
+
+void VectorFile::for_each_feature_of(OGRLayer& layer, const Visit& visit) {
+  const GdalMessages messages;
+  layer.ResetReading();
+  while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()}) visit(layer, *feature);
+  refuse_unread(messages);
+}
+
+/// Where reading ended in a failure.
+void VectorFile::refuse_unread(const GdalMessages& messages) const {
   if (messages.text() != GdalMessages::kNone) {
     throw CorruptData("roads-unreadable", fmt::format("{}: reading its features failed ({}); the file is cut off or "
                                                       "damaged: fetch it again and repeat the command",

@@ -40,12 +40,16 @@ class VectorFile {
   /// What the file was cut out of the world with, in the layer's own coordinates: a vector tile, the box of an extract
   /// of OpenStreetMap. nullopt for other files, in which an extent only says where features are, or once were.
   std::optional<OGREnvelope> cut_out(OGRLayer& layer) const;
-  /// About where its features are, in the layer's own coordinates. nullopt for an empty layer.
+  /// About where its features are, in the layer's own coordinates. nullopt for an empty layer. Of a GeoPackage and
+  /// where the file does not state it, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
+  using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
   /// Once through all features of all layers. Throws CorruptData "roads-unreadable".
-  void for_each_feature(const std::function<void(OGRLayer&, OGRFeature&)>& visit);
+  void for_each_feature(const Visit& visit);
 
  private:
+  void for_each_feature_of(OGRLayer& layer, const Visit& visit);
+  void refuse_unread(const GdalMessages& messages) const;
   std::optional<OGREnvelope> bounding_box(OGRLayer& layer);
 
   std::string path_;

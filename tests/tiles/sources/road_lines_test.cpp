@@ -268,5 +268,43 @@ TEST_F(RoadLines, TablesWithoutGeometriesBesideTheRoadsAreNoConcern) {
   EXPECT_EQ(read_road_network({path}, {}, RoadRules(), kZone).lines.size(), 1U);
 }
 
+TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) {
+  const auto another = [&](const std::string& name, const std::string& geometry) {
+    std::ofstream(folder / name) << R"({"type":"Feature","properties":{},"geometry":)" + geometry + "}";
+    return std::string(folder / name);
+  };
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  const std::string countries =
+      another("countries.geojson", R"({"type":"Polygon","coordinates":[[[-180,-80],[180,-80],[180,80],[-180,-80]]]})");
+  const std::string points = another("points.geojson", R"({"type":"Point","coordinates":[7,50]})");
+  const std::string project = (folder / "project.gpkg").string();
+  {
+    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
+    const DatasetPtr to(driver.Create(project.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    for (const std::string& from : {countries, points, roads}) {
+      to->CopyLayer(open_dataset(from, GDAL_OF_VECTOR)->GetLayer(0), std::filesystem::path(from).stem().c_str());
+    }
+  }
+  for (const std::vector<std::string>& source : {std::vector{project}, {countries, points, roads}}) {
+    EXPECT_NEAR(kZone.project(centre_of_roads(source, {})).east_m, kCentre.east_m, 1.0) << source.front();
+  }
+  EXPECT_NEAR(centre_of_roads({points}, {}).lon_deg, 7.0, 0.01) << "where there is nothing else";
+}
+
+TEST_F(RoadLines, TheCentreIsWhereTheyAreWhateverAGeoPackageStates) {
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  const std::string path = (folder / "roads.gpkg").string();
+  {
+    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
+    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    to->CopyLayer(open_dataset(roads, GDAL_OF_VECTOR)->GetLayer(0), "roads");
+  }
+  {
+    const DatasetPtr stale(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
+    stale->ExecuteSQL("UPDATE gpkg_contents SET min_x = -180, min_y = -90, max_x = 180, max_y = 90", nullptr, nullptr);
+  }
+  EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -65,6 +65,12 @@ void require_gdal() {
   });
 }
 
+void keep_in_cache(double bytes) {
+  const double largest = static_cast<double>(CPLGetUsablePhysicalRAM()) / 4.0;
+  const auto wanted = static_cast<GIntBig>(std::min(bytes, largest));
+  if (wanted > GDALGetCacheMax64()) GDALSetCacheMax64(wanted);
+}
+
 GdalMessages::GdalMessages() : outer_(innermost) {
   innermost = this;
   CPLPushErrorHandler(&GdalMessages::collect);

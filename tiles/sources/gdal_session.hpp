@@ -16,6 +16,9 @@ namespace roadfix {
 /// Registers the drivers and sets the options that make damaged files an error. Cheap when repeated.
 void require_gdal();
 
+/// Lets GDAL's cache of pixels hold so many bytes, as far as they are no more than a quarter of the memory.
+void keep_in_cache(double bytes);
+
 /// Collects what GDAL complains about on this thread, while it lives, instead of printing it.
 class GdalMessages {
  public:

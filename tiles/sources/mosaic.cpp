@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::size_t kIdleHandles = 48;
 constexpr ValueRange kExportedBytes{0.0, 254.0};
+/// Windows one above the other that are read at a time by all threads together, or soon again.
+constexpr double kHeightsKept = 6.0;
 
 ValueRange share_range(const std::vector<float>& values, bool integers) {
   if (!integers) return {0.0, 1.0};
@@ -67,6 +69,12 @@ void require_no_heights_beside_colours(const RasterFile& first, const RasterFile
   }
 }
 
+double bytes_of_rows(const RasterFile& file, double rows) {
+  GDALDataset& dataset = file.dataset();
+  const int bytes = GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType());
+  return std::min<double>(rows, file.size().height) * file.size().width * dataset.GetRasterCount() * bytes;
+}
+
 }  // namespace
 
 struct Mosaic::Image {
@@ -83,10 +91,10 @@ struct Mosaic::Image {
 };
 
 struct Mosaic::Handle {
-  Handle(std::size_t image_index, std::unique_ptr<RasterFile> raster, UtmZone zone)
+  Handle(std::size_t image_index, std::shared_ptr<RasterFile> raster, UtmZone zone)
       : image(image_index), file(std::move(raster)), georeference(*file, zone) {}
   std::size_t image;
-  std::unique_ptr<RasterFile> file;
+  std::shared_ptr<RasterFile> file;
   Georeference georeference;
 };
 
@@ -181,7 +189,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
                      gsd_m};
   for (std::size_t i = 0; i < images_.size(); ++i) {
     if (!images_[i].footprint.overlaps(box)) continue;
-    std::unique_ptr<Handle> handle = borrow(i, gsd_m);
+    std::unique_ptr<Handle> handle = borrow(i, box, gsd_m);
     warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));
     if (rule_ == ValueRule::kPicture) exclude_blank(result);
@@ -189,7 +197,17 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   return result;
 }
 
-std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, double gsd_m) const {
+std::shared_ptr<RasterFile> Mosaic::open(const Image& image, double gsd_m) const {
+  auto file = std::make_shared<RasterFile>(image.path, options_);
+  const int overview = file->overview_for(gsd_m / image.gsd_m);
+  // The collar was judged on the pixels of the full image, and its windows are in them.
+  if (overview >= 0 && !image.collar) file = std::make_shared<RasterFile>(image.path, options_, overview);
+  file->set_full_opacity(image.full_opacity);
+  return file;
+}
+
+std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, const GridBox& box, double gsd_m) const {
+  std::shared_ptr<RasterFile> file;
   {
     const std::lock_guard lock(mutex_);
     const auto found = std::ranges::find_if(idle_, [&](const auto& handle) { return handle->image == image; });
@@ -198,15 +216,21 @@ std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, double gsd_m) 
       idle_.erase(found);
       return handle;
     }
+    if (const auto known = by_turns_.find(image); known != by_turns_.end()) file = known->second.lock();
   }
-  auto file = std::make_unique<RasterFile>(images_[image].path, options_);
-  const int overview = file->overview_for(gsd_m / images_[image].gsd_m);
-  // The collar was judged on the pixels of the full image, and its windows are in them.
-  if (overview >= 0 && !images_[image].collar) {
-    file = std::make_unique<RasterFile>(images_[image].path, options_, overview);
+  if (!file) file = open(images_[image], gsd_m);
+  if (file->comes_in_rows()) {
+    const std::lock_guard lock(mutex_);
+    std::weak_ptr<RasterFile>& known = by_turns_[image];
+    if (const auto other = known.lock()) {
+      file = other;
+    } else {
+      known = file;
+      keep_in_cache(bytes_of_rows(*file, kHeightsKept * box.height_m() / images_[image].gsd_m));
+    }
   }
-  file->set_full_opacity(images_[image].full_opacity);
-  return std::make_unique<Handle>(image, std::move(file), zone_);
+  const auto turn = file->take_turn();  // the georeference is read from the file
+  return std::make_unique<Handle>(image, file, zone_);
 }
 
 void Mosaic::give_back(std::unique_ptr<Handle> handle) const {

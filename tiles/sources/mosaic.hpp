@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -68,7 +69,8 @@ class Mosaic {
   void add_image(std::string path, std::vector<float>& values);
   void choose_ranges(std::vector<float> values);
   void find_collars();
-  std::unique_ptr<Handle> borrow(std::size_t image, double gsd_m) const;
+  std::unique_ptr<Handle> borrow(std::size_t image, const GridBox& box, double gsd_m) const;
+  std::shared_ptr<RasterFile> open(const Image& image, double gsd_m) const;
   void give_back(std::unique_ptr<Handle> handle) const;
 
   RasterOptions options_;
@@ -87,6 +89,8 @@ class Mosaic {
   std::vector<Provenance> told_;  ///< by each image
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first
+  /// Of images that all threads read through one file, since each file would unpack and keep all their rows.
+  mutable std::map<std::size_t, std::weak_ptr<RasterFile>> by_turns_;
 };
 
 }  // namespace roadfix

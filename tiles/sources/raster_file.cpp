@@ -168,6 +168,12 @@ int RasterFile::overview_for(double reduction) const {
   return best;
 }
 
+bool RasterFile::comes_in_rows() const {
+  cv::Size block;
+  dataset_->GetRasterBand(colour_bands_.front())->GetBlockSize(&block.width, &block.height);
+  return block.width >= size().width && block.height < size().height;
+}
+
 RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
   const bool bytes = declared_range().has_value();
   const cv::Mat raw = read_bands(window, bytes ? CV_8U : CV_32F, bytes ? GDT_Byte : GDT_Float32);
@@ -196,6 +202,7 @@ RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
 }
 
 cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type) {
+  const auto turn = take_turn();
   const GdalMessages messages;
   const auto channels = static_cast<int>(colour_bands_.size());
   cv::Mat pixels(window.size(), CV_MAKETYPE(cv_depth, channels));
@@ -212,6 +219,7 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
 }
 
 cv::Mat RasterFile::read_alpha(cv::Rect window) {
+  const auto turn = take_turn();
   GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_)
                                          : dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
   const GdalMessages messages;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -39,7 +40,8 @@ struct RasterPixels {
   cv::Mat valid;   ///< CV_8UC1, 0 or 255
 };
 
-/// Not thread-safe: a GDAL handle belongs to one thread at a time.
+/// Several threads may call read() and read_opacity() once full_opacity() is known, which take turns with the file; all
+/// else that reads it needs take_turn() there.
 class RasterFile {
  public:
   /// Throws NotFound, InvalidInput ("source-unreadable", "image-without-bands", "image-without-georeference").
@@ -61,6 +63,11 @@ class RasterFile {
   /// knows what of it holds nothing; -1 for none.
   int overview_for(double reduction) const;
 
+  /// Whether a few rows come from the file in all their width: of a JPEG or PNG after all those above them, as long as
+  /// they are not in GDAL's cache, which another handle of the file has to fill anew.
+  bool comes_in_rows() const;
+
+  std::unique_lock<std::mutex> take_turn() { return std::unique_lock(turns_); }
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
   RasterPixels read(cv::Rect window, const ValueRange& range);
   /// Value of the alpha band where all is opaque, 1 without. Of more than 8 bits by the largest value that is sampled:
@@ -95,6 +102,7 @@ class RasterFile {
   std::optional<std::vector<cv::Rect>> filled_;       ///< parts of a VRT in which its images lie
   bool signed_bytes_ = false;                         ///< in the type of unsigned ones
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
+  std::mutex turns_;                                  ///< with the dataset, for reading
 };
 
 }  // namespace roadfix

@@ -3,8 +3,15 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <barrier>
+#include <filesystem>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "core/geodesy/utm.hpp"
 #include "core/units/error.hpp"
@@ -280,6 +287,38 @@ TEST_F(MosaicTest, SharesOfRoadOfSeveralTypesAreRefused) {
   for (const auto& paths : {std::vector{bytes, shares}, std::vector{shares, bytes}, std::vector{bytes, wide}}) {
     EXPECT_EQ(testing::code_of([&] { Mosaic(paths, {}, ValueRule::kShare, kZone); }), "road-values-mixed");
   }
+}
+
+TEST_F(MosaicTest, ThreadsShareOneFileOfAnImageThatComesInRows) {
+  const std::string path = (folder / "a.jpg").string();
+  {
+    const DatasetPtr tile(GDALDataset::Open(square("a.tif", 0, 0, 512, 100).c_str(), GDAL_OF_RASTER));
+    const DatasetPtr made(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(path.c_str(), tile.get(), FALSE,
+                                                                                      nullptr, nullptr, nullptr));
+  }
+  const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+  const auto opened = [&] {
+    return std::ranges::count_if(std::filesystem::directory_iterator("/proc/self/fd"), [&](const auto& descriptor) {
+      std::error_code gone;
+      return std::filesystem::read_symlink(descriptor, gone) == path;
+    });
+  };
+  mosaic.view(box(0, 0, 128), 1.0);
+  const auto by_one_thread = opened();
+  EXPECT_GT(by_one_thread, 0);
+  std::barrier start(4);
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      start.arrive_and_wait();
+      for (int row = 0; row < 4; ++row) {
+        const GroundImage view = mosaic.view(box(128 * i, 128 * row, 128), 1.0);
+        EXPECT_EQ(cv::countNonZero(view.observed), 128 * 128);
+      }
+    });
+  }
+  threads.clear();
+  EXPECT_EQ(opened(), by_one_thread);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "core/units/shell_word.hpp"
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
+#include "tiles/sources/temporary_files.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -110,6 +111,7 @@ void refuse_the_map_itself(SourceFiles& files, const std::string& map) {
 void run(const IngestArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   require_name(arguments.map);
+  keep_temporary_files_beside(arguments.map);
   if (arguments.cell_m && !is_map_cell_size(*arguments.cell_m)) {
     throw InvalidInput("cell-size-unknown", fmt::format("--cell {}: cells are a power of two of metres from {} to {}",
                                                         *arguments.cell_m, kMinCellM, kMaxCellM));

@@ -48,10 +48,10 @@ struct RoadNetwork {
 /// class and road_class whose values are mostly classes (of fclass a tenth is enough). Where no layer has any, every
 /// line is a road; where some layers of lines have one, the lines of the others (rivers, bus routes) are not drawn. OSM
 /// PBF and XML, GeoJSON, Shapefile, GeoPackage, vector tiles named Z-X-Y.mvt or Z/X/Y.mvt, ... Throws NotFound,
-/// InvalidInput
-/// ("source-unreadable", "layer-unknown" where none of the files has it, "roads-without-georeference",
+/// InvalidInput ("source-unreadable", "layer-unknown" where none of the files has it, "roads-without-georeference",
 /// "source-without-roads", "crs-not-transformable", "degrees-as-metres", "extent-unreadable", "roads-around-the-earth"
-/// where they span more than 180 degrees of longitude and no extent is given) or CorruptData ("roads-unreadable").
+/// where they span more than 180 degrees of longitude and no extent is given), CorruptData ("roads-unreadable") or
+/// IoFailure ("temporary-files-refused").
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone);
 

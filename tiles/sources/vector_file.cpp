@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/temporary_files.hpp"
 
 namespace roadfix {
 namespace {
@@ -155,11 +156,19 @@ void VectorFile::for_each_feature_of(OGRLayer& layer, const Visit& visit) {
 
 /// Where reading ended in a failure.
 void VectorFile::refuse_unread(const GdalMessages& messages) const {
-  if (messages.text() != GdalMessages::kNone) {
-    throw CorruptData("roads-unreadable", fmt::format("{}: reading its features failed ({}); the file is cut off or "
-                                                      "damaged: fetch it again and repeat the command",
-                                                      path_, messages.text()));
+  const std::string said = messages.text();
+  if (said == GdalMessages::kNone) return;
+  if (is_about_temporary_files(said)) {
+    throw IoFailure(
+        "temporary-files-refused",
+        fmt::format("{}: what is read of it does not fit into memory, and finds no room in a file ({}). Name "
+                    "a folder that may be written to and has room: CPL_TMPDIR=FOLDER roadfix ...",
+                    path_, said));
   }
+  throw CorruptData("roads-unreadable",
+                    fmt::format("{}: reading its features failed ({}); the file is cut off or damaged: fetch it again "
+                                "and repeat the command",
+                                path_, said));
 }
 
 PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path) {

@@ -44,7 +44,8 @@ class VectorFile {
   /// where the file does not state it, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
-  /// Once through all features of all layers. Throws CorruptData "roads-unreadable".
+  /// Once through all features of all layers. Throws CorruptData "roads-unreadable" or IoFailure
+  /// "temporary-files-refused".
   void for_each_feature(const Visit& visit);
 
  private:

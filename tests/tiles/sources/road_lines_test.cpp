@@ -1,5 +1,6 @@
 #include "tiles/sources/road_lines.hpp"
 
+#include <cpl_conv.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <ogrsf_frmts.h>
@@ -13,6 +14,7 @@
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/sources/road_features.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/temporary_files.hpp"
 #include "tiles/sources/vector_roads.hpp"
 
 namespace roadfix {
@@ -304,6 +306,31 @@ TEST_F(RoadLines, TheCentreIsWhereTheyAreWhateverAGeoPackageStates) {
     stale->ExecuteSQL("UPDATE gpkg_contents SET min_x = -180, min_y = -90, max_x = 180, max_y = 90", nullptr, nullptr);
   }
   EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
+}
+
+TEST_F(RoadLines, OfOpenStreetMapBeyondMemoryAskForRoomAndAreNotCalledDamaged) {
+  const std::string path = (folder / "large.osm").string();
+  {
+    std::ofstream file(path);
+    file << "<?xml version='1.0'?><osm version='0.6'>";
+    for (int i = 1; i <= 4000; ++i) {  // far apart, each takes half a kilobyte
+      file << fmt::format("<node id='{}' version='1' lat='37.7' lon='38.{:04}'/>", 64 * i, i);
+    }
+    file << "<way id='1' version='1'><nd ref='64'/><nd ref='128'/><tag k='highway' v='primary'/></way></osm>";
+  }
+  require_gdal();
+  const auto read = [&](const std::string& temporary) {
+    keep_temporary_files_beside(temporary + "/m.gpkg");
+    const std::string code = code_of([&] { read_road_network({path}, {}, RoadRules(), kZone); });
+    CPLSetConfigOption("CPL_TMPDIR", nullptr);
+    return code;
+  };
+  const char* const asked = CPLGetConfigOption("TMPDIR", CPLGetConfigOption("TEMP", nullptr));
+  if (asked != nullptr) GTEST_SKIP() << "the environment says where temporary files are";
+  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", "1");
+  EXPECT_EQ(read((folder / "not there").string()), "temporary-files-refused");
+  EXPECT_EQ(read(folder.path().string()), "no error");
+  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", nullptr);
 }
 
 }  // namespace

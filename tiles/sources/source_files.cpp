@@ -74,6 +74,13 @@ bool is_vector_vrt(const std::string& path) {
   return ending_of(path) == ".vrt" && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
 }
 
+/// What programs leave beside roads: settings, descriptions, answers of Overpass.
+bool is_other_json(const std::string& path) {
+  if (ending_of(path) != ".json") return false;
+  const GdalMessages messages;
+  return GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) == nullptr;
+}
+
 struct FileKind {
   SourceKind kind = SourceKind::kRoadVectors;
   bool is_map = false;
@@ -156,7 +163,7 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
   for (const std::string& file : files) {
     if (fs::path(file).filename().string().starts_with(".")) continue;  // "._roads.shp" of a Mac is no Shapefile
     const std::string ending = ending_of(file);
-    if (is_vector_vrt(file) || is_geopackage_of_pixels(file)) {
+    if (is_vector_vrt(file) || is_geopackage_of_pixels(file) || is_other_json(file)) {
       others.push_back(file);  // a VRT is of the layers beside it, mostly
       continue;
     }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -184,6 +186,16 @@ TEST_F(SourceFilesTest, FormatsThatAreNotLookedForInFoldersAreNamed) {
               ::testing::HasSubstr("name it itself"));
   image("a.tif");
   EXPECT_THAT(find_source(folder.path().string(), SourceMeaning::kAuto).left_out, ElementsAre(notes, grid));
+}
+
+TEST_F(SourceFilesTest, OtherJsonBesideTheRoadsOfAFolderIsLeftOutAndNamed) {
+  const std::string roads = (folder / "roads.json").string();
+  const std::string about = (folder / "metadata.json").string();
+  std::ofstream{roads} << kLine;
+  std::ofstream{about} << R"({"date":"2023","licence":"ODbL"})";
+  const SourceFiles files = find_source(folder.path().string(), SourceMeaning::kAuto);
+  EXPECT_THAT(files.paths, ElementsAre(roads));
+  EXPECT_THAT(files.left_out, ElementsAre(about));
 }
 
 TEST_F(SourceFilesTest, AFileOfPixelsAndLinesIsPixelsUnlessALayerIsNamed) {

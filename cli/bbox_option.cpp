@@ -6,10 +6,14 @@ namespace roadfix::cli {
 
 void add_bbox_option(CLI::App& command, const std::string& what, std::optional<GeoBox>& box) {
   const auto take = [&box](const std::vector<double>& bounds) {
-    box = GeoBox{{bounds[1], bounds[0]}, {bounds[3], bounds[2]}};
+    constexpr double kTurn = 360.0;
+    const double east = bounds[2] + (bounds[0] - bounds[2] > kTurn / 2.0 ? kTurn : 0.0);  // across the antimeridian
+    box = GeoBox{{bounds[1], bounds[0]}, {bounds[3], east}};
     if (box->empty()) throw CLI::ValidationError("--bbox", "west must lie below east, and south below north");
   };
-  command.add_option_function<std::vector<double>>("--bbox", take, what + ": WEST,SOUTH,EAST,NORTH in degrees")
+  command
+      .add_option_function<std::vector<double>>(
+          "--bbox", take, what + ": WEST,SOUTH,EAST,NORTH in degrees (WEST above EAST across the antimeridian)")
       ->delimiter(',')
       ->expected(4);
 }

@@ -116,6 +116,9 @@ TEST_F(MapCommands, ExportWritesARegion) {
     EXPECT_THAT(result.err, HasSubstr("[region-outside-map]"));
   }
   EXPECT_EQ(roadfix("export " + arguments + " --bbox 0 0 90 80 --cell 4").code, 0) << "reaches beyond the UTM zone";
+  const ProgramResult across = roadfix("export " + arguments + " --bbox 179,37,-179,38");
+  EXPECT_THAT(across.err, HasSubstr("[region-outside-map]")) << "the antimeridian is not on this map";
+  EXPECT_EQ(roadfix("export " + arguments + " --bbox 38.25,37,38.24,38").code, 2) << "west above east";
 }
 
 TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {

@@ -86,8 +86,10 @@ std::string fingerprint(const std::vector<std::string>& paths, const std::string
         continue;
       }
       hash.add(std::filesystem::path(file).filename().string());
-      hash.add(fmt::format("{};{};", stat.st_size, stat.st_mtime));
-      if (VSI_ISREG(stat.st_mode)) add_content(hash, file, static_cast<vsi_l_offset>(stat.st_size));
+      const bool regular = VSI_ISREG(stat.st_mode) != 0;
+      const bool whole = regular && static_cast<vsi_l_offset>(stat.st_size) <= kWholeBytes;
+      hash.add(fmt::format("{};{};", stat.st_size, whole ? 0 : stat.st_mtime));  // a copy has another time
+      if (regular) add_content(hash, file, static_cast<vsi_l_offset>(stat.st_size));
     }
   }
   return hash.text();

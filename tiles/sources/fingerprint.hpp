@@ -6,9 +6,9 @@
 
 namespace roadfix {
 
-/// Size, time of change and content (all of it up to 8 MiB, otherwise the first and last MiB) of every file, side files
-/// included where they lie beside it under the same stem, and the settings. Of an .aux.xml only what it tells of the
-/// image, since QGIS writes statistics there. Throws IoFailure for an unreadable file.
+/// Size and content of every file up to 8 MiB, of a larger one also the time of change and only the first and last MiB;
+/// side files included where they lie beside it under the same stem; and the settings. Of an .aux.xml only what it
+/// tells of the image, since QGIS writes statistics there. Throws IoFailure for an unreadable file.
 std::string fingerprint(const std::vector<std::string>& paths, const std::string& settings);
 
 }  // namespace roadfix

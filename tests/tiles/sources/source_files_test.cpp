@@ -266,6 +266,19 @@ TEST_F(SourceFilesTest, TheFingerprintChangesWithContentSideFilesAndSettings) {
   EXPECT_NE(fingerprint({path}, "x"), before);
 }
 
+TEST_F(SourceFilesTest, TheFingerprintOfASmallFileIsThatOfItsCopies) {
+  const auto at_another_time = [&](const std::string& path) {
+    const std::string before = fingerprint({path}, "x");
+    std::filesystem::last_write_time(path, std::filesystem::last_write_time(path) - std::chrono::hours(1));
+    return fingerprint({path}, "x") == before;
+  };
+  EXPECT_TRUE(at_another_time(image("a.tif", 1.0)));
+  const std::string large = (folder / "large.mvt").string();
+  std::ofstream(large) << "only its begin and end are looked at";
+  std::filesystem::resize_file(large, 9 << 20);
+  EXPECT_FALSE(at_another_time(large));
+}
+
 TEST_F(SourceFilesTest, TheFingerprintStaysWhereAnImageWasOnlyLookedAt) {
   const std::string path = image("a.tif", 1.0);
   const std::string aux = path + ".aux.xml";

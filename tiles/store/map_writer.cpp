@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 
 #include "core/units/error.hpp"
 #include "tiles/store/create_map.hpp"
@@ -22,6 +23,16 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
+
+/// What a link leads to, though it may not be there.
+std::filesystem::path behind_links(std::filesystem::path path) {
+  constexpr int kMaxLinks = 40;  // as the operating system has it
+  std::error_code error;
+  for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(path, error); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  }
+  return path;
+}
 
 /// Makes the map where there is none, and says so.
 bool create_if_missing(const std::filesystem::path& path, const MapSettings& settings) {
@@ -66,6 +77,7 @@ void refuse_other_content(const Connection& map, SourceTable& sources, const Sou
 }  // namespace
 
 struct MapWriter::State {
+  /// `path` is no link, so that all writers of a map meet at one lock, and a new map does not take the place of a link.
   State(const std::filesystem::path& path, const MapSettings& wanted)
       : lock(path),
         made_here(create_if_missing(path, wanted)),
@@ -95,7 +107,7 @@ struct MapWriter::State {
 };
 
 MapWriter::MapWriter(const std::filesystem::path& path, const MapSettings& settings)
-    : state_(std::make_unique<State>(path, settings)) {}
+    : state_(std::make_unique<State>(behind_links(path), settings)) {}
 MapWriter::~MapWriter() = default;
 MapWriter::MapWriter(MapWriter&&) noexcept = default;
 MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;

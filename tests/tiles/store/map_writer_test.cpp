@@ -260,5 +260,23 @@ TEST(MapWriter, AnExistingMapKeepsItsSettings) {
   EXPECT_EQ(code_of([&] { MapWriter(path, {*UtmZone::from_epsg(32636), 2.0}); }), "map-settings-differ");
 }
 
+TEST(MapWriter, WritesWhereALinkLeadsThoughNothingIsThereYet) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  const auto map = folder / "disk/m.gpkg";
+  const auto alias = folder / "alias.gpkg";
+  std::filesystem::create_symlink("m.gpkg", folder / "disk/other.gpkg");
+  std::filesystem::create_symlink("disk/other.gpkg", alias);
+  {
+    MapWriter writer(alias, settings_37n());
+    ingest(writer, {"a", 1, some_blocks(1)});
+    EXPECT_EQ(code_of([&] { MapWriter(map, settings_37n()); }), "map-in-use");
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(alias));
+  EXPECT_EQ(MapReader(map).info().sources.size(), 1U);
+  std::filesystem::create_symlink("loop.gpkg", folder / "loop.gpkg");
+  EXPECT_EQ(code_of([&] { MapWriter(folder / "loop.gpkg", settings_37n()); }), "map-io");
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -1,4 +1,4 @@
--- The tables of a map file, version 1. Described in map-format.md.
+-- The tables of a map file, version 2. Described in map-format.md.
 -- The definitions of the gpkg_ tables are those of OGC GeoPackage 1.2 (12-128r14) and of its extension
 -- Tiled Gridded Coverage Data (17-066r1), to the letter: validators compare them.
 PRAGMA application_id = 0x47504B47; -- "GPKG"
@@ -146,6 +146,16 @@ CREATE TABLE roadfix_evidence (
   UNIQUE (tile_column, tile_row, source_id)
 );
 
+-- Sources in force that lie beside the others: where their roads fit those better.
+CREATE TABLE roadfix_shifts (
+  source_id INTEGER NOT NULL PRIMARY KEY REFERENCES roadfix_sources(id),
+  east_m REAL NOT NULL,
+  north_m REAL NOT NULL,
+  correlation REAL NOT NULL,
+  correlation_in_place REAL NOT NULL,
+  sigma_m REAL NOT NULL
+);
+
 -- Tiles of road_probability that do not yet follow from the evidence in force.
 CREATE TABLE roadfix_pending (
   zoom_level INTEGER NOT NULL,
@@ -162,4 +172,5 @@ INSERT INTO gpkg_extensions VALUES
   ('roadfix_sources', NULL, 'roadfix_map', 'Ingested sources with their provenance. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_blocks', NULL, 'roadfix_map', 'Ledger of the blocks of each source. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_evidence', NULL, 'roadfix_map', 'Road probability as each source has it, 8-bit PNG tiles. See schema/map-format.md of Roadfix.', 'read-write'),
+  ('roadfix_shifts', NULL, 'roadfix_map', 'Sources that lie beside the others. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_pending', NULL, 'roadfix_map', 'Tiles that wait to be fused from the evidence. See schema/map-format.md of Roadfix.', 'read-write');

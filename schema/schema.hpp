@@ -8,9 +8,6 @@ namespace roadfix::schema {
 /// Statements that make the tables of an empty map file (schema/map.sql).
 std::string_view map_sql();
 
-/// Statements that add the table of shifts to a map file that lacks it (schema/map_shifts.sql).
-std::string_view map_shifts_sql();
-
 /// Statements that make the tables of the track store where they are not there yet (schema/tracks.sql).
 std::string_view tracks_sql();
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/e2e/ingest_fixture.hpp"
+#include "tests/support/sqlite_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -54,6 +55,15 @@ TEST_F(IngestProvenance, WhatWasToldOfAMapGoesWithItIntoOtherMapsAndThroughExpor
     EXPECT_EQ(ingest({source, "--as", "roads", "--map", target, "--replace", "--licence", "CC0"}).code, 0);
     EXPECT_THAT(run_child(ROADFIX_PROGRAM, {"info", target}, folder.path()).out, HasSubstr("CC0\n")) << copy;
   }
+}
+
+TEST_F(IngestProvenance, AMapOfAnOlderVersionIsRefusedAsASource) {
+  ASSERT_EQ(ingest({picture(600, 0.5), "--as", "roads", "--map", map("m.gpkg")}).code, 0);
+  testing::open_sqlite(map("m.gpkg")).execute("UPDATE roadfix_meta SET value = '1' WHERE key = 'schema_version'");
+  const ChildResult refused = ingest({map("m.gpkg"), "--map", map("n.gpkg")});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("[map-from-older-version]"));
+  EXPECT_FALSE(std::filesystem::exists(map("n.gpkg")));
 }
 
 TEST_F(IngestProvenance, WhatRoadfixWroteComesBackAsTheRoadsThatItIs) {

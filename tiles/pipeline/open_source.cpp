@@ -37,8 +37,9 @@ SourceSummary summary_of(const CellSource& source, const SourceFiles& files) {
   if (!files.is_map || files.kind != SourceKind::kRoadRaster) return summary;
   try {
     summary.told = provenance_of(MapReader(files.paths.front()).info());
-  } catch (const InvalidInput&) {  // another program's that is called alike, or of a newer version: its pixels are read
-    return summary;
+  } catch (const InvalidInput& error) {
+    if (error.code() == "map-from-older-version") throw;
+    return summary;  // another program's that is called alike, or of a newer version: its pixels are read
   }
   if (summary.told.registration_sigma_m > 0.0) summary.registration_sigma_m = summary.told.registration_sigma_m;
   return summary;

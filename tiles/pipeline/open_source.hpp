@@ -30,7 +30,8 @@ LatLon centre_of_source(const SourceRequest& request);
 std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,
                                         const RoadDetector* detector);
 
-/// What the source says of itself; of another map also what it was told of its own sources.
+/// What the source says of itself; of another map also what it was told of its own sources. Throws InvalidInput
+/// "map-from-older-version".
 SourceSummary summary_of(const CellSource& source, const SourceFiles& files);
 
 /// As the source itself has it, but for what `summary.told` holds. `seed` is that of the ingest, which changes the

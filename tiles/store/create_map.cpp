@@ -71,7 +71,6 @@ void write_map(const fs::path& path, const MapSettings& settings) {
   Connection map(path, Access::kCreate, map_error);
   Transaction transaction(map, Transaction::Kind::kWrite);
   map.execute(std::string(schema::map_sql()).c_str());
-  map.execute(std::string(schema::map_shifts_sql()).c_str());
   insert_settings(map, settings);
   transaction.commit();
 }

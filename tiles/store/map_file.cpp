@@ -38,7 +38,7 @@ void require_ours(Connection& map) {
     throw InvalidInput("map-not-ours",
                        fmt::format("{}: a database, but not a GeoPackage. Name a map made by roadfix", file));
   }
-  if (!has_table(map, "roadfix_meta")) {
+  if (number(map, "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'roadfix_meta'") == 0) {
     throw InvalidInput("map-not-ours", fmt::format("{}: a GeoPackage, but not a map made by roadfix. To make a map out "
                                                    "of it, name it as a source: roadfix ingest {} --map MAP.gpkg",
                                                    file, shell_word(file)));
@@ -48,6 +48,12 @@ void require_ours(Connection& map) {
     throw CorruptData("map-corrupt", fmt::format("{}: roadfix_meta names no schema version. Restore the map from a "
                                                  "copy",
                                                  file));
+  }
+  if (*version < kSchemaVersion) {
+    throw InvalidInput("map-from-older-version",
+                       fmt::format("{}: written by an older roadfix (map format {}, this program has {}). Ingest its "
+                                   "sources into a new map",
+                                   file, *version, kSchemaVersion));
   }
   if (*version > kSchemaVersion) {
     throw InvalidInput("map-from-newer-version",
@@ -137,10 +143,6 @@ bool is_there(const fs::path& path) {
   if (status.type() == fs::file_type::not_found) return false;
   if (fs::status_known(status) && !error) return true;
   throw IoFailure("map-io", fmt::format("{}: {}", path.string(), error.message()));
-}
-
-bool has_table(Connection& map, const char* name) {
-  return Statement(map, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1").with(name).step();
 }
 
 void recover_map(const fs::path& path) {

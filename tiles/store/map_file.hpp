@@ -8,7 +8,7 @@
 
 namespace roadfix {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 /// SQL for the present time as GeoPackage writes it.
 inline constexpr const char* kSqlNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
@@ -17,14 +17,12 @@ inline constexpr const char* kSqlNow = "strftime('%Y-%m-%dT%H:%M:%fZ','now')";
 bool is_there(const std::filesystem::path& path);
 
 /// Opens what create_map made. Undoes what a killed writer left half done, even for reading where that is possible.
-/// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version") or CorruptData
-/// ("map-empty-file", "map-cut-off", "map-corrupt").
+/// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version", "map-from-older-version")
+/// or CorruptData ("map-empty-file", "map-cut-off", "map-corrupt").
 sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access access);
 
 /// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to.
 void recover_map(const std::filesystem::path& path);
-
-bool has_table(sqlite::Connection& map, const char* name);
 
 MapSettings read_settings(sqlite::Connection& map);
 std::string read_version(sqlite::Connection& map);

@@ -186,7 +186,7 @@ std::optional<double> MapReader::registration_sigma_m(const GridBox& box) const 
         fmt::format(
             "SELECT {} FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE s.in_force = 1 AND "
             "e.tile_column BETWEEN ?1 AND ?2 AND e.tile_row BETWEEN ?3 AND ?4 ORDER BY 1 DESC LIMIT 1",
-            registration_in_force(*channel.map)));
+            kRegistrationInForce));
     largest.with(cols.min.col, cols.max.col, tile_row(rows.min, zoom), tile_row(rows.max, zoom));
     return largest.step() ? std::optional(largest.real(0)) : std::nullopt;
   });

@@ -16,7 +16,7 @@ class MapReader {
  public:
   /// `cache_bytes` bounds the decoded tiles that are kept in memory.
   /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
-  /// ("map-not-ours", "map-from-newer-version") or IoFailure.
+  /// ("map-not-ours", "map-from-newer-version", "map-from-older-version") or IoFailure.
   explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20);
   ~MapReader();
   MapReader(MapReader&&) noexcept;

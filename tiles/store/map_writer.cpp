@@ -86,9 +86,7 @@ struct MapWriter::State {
         tiles(map, settings),
         sources(map, tiles.finest_zoom()),
         evidence(map, tiles.finest_zoom()),
-        fusion(map, tiles) {
-    make_shift_table(map);
-  }
+        fusion(map, tiles) {}
 
   NotFound no_source(const std::string& name) const {
     return {"source-not-found",

@@ -1,8 +1,5 @@
 #include "tiles/store/shift_table.hpp"
 
-#include "schema/schema.hpp"
-#include "tiles/store/map_file.hpp"
-
 namespace roadfix {
 namespace {
 
@@ -10,16 +7,7 @@ using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
 
-constexpr const char* kTable = "roadfix_shifts";
-
 }  // namespace
-
-void make_shift_table(Connection& map) {
-  if (has_table(map, kTable)) return;
-  Transaction transaction(map, Transaction::Kind::kWrite);
-  map.execute(std::string(schema::map_shifts_sql()).c_str());
-  transaction.commit();
-}
 
 void put_shifts(Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts) {
   Transaction transaction(map, Transaction::Kind::kWrite);
@@ -40,7 +28,6 @@ void put_shifts(Connection& map, const std::map<std::string, std::optional<Sourc
 
 std::map<std::string, SourceShift> read_shifts(Connection& map) {
   std::map<std::string, SourceShift> shifts;
-  if (!has_table(map, kTable)) return shifts;
   Statement select(map,
                    "SELECT s.name, h.east_m, h.north_m, h.correlation, h.correlation_in_place, h.sigma_m FROM "
                    "roadfix_shifts h JOIN roadfix_sources s ON s.id = h.source_id WHERE s.in_force = 1");
@@ -52,11 +39,6 @@ std::map<std::string, SourceShift> read_shifts(Connection& map) {
                               .sigma_m = select.real(5)};
   }
   return shifts;
-}
-
-std::string_view registration_in_force(Connection& map) {
-  if (!has_table(map, kTable)) return "s.registration_sigma_m";
-  return "max(s.registration_sigma_m, coalesce((SELECT sigma_m FROM roadfix_shifts h WHERE h.source_id = s.id), 0))";
 }
 
 }  // namespace roadfix

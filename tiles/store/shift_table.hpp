@@ -1,5 +1,5 @@
-// Which sources of a map file lie beside the others (table roadfix_shifts, which maps of before lack). Shared by
-// reader, writer and verifier; not for other modules.
+// Which sources of a map file lie beside the others (table roadfix_shifts). Shared by reader, writer and verifier; not
+// for other modules.
 #pragma once
 
 #include <map>
@@ -12,9 +12,6 @@
 
 namespace roadfix {
 
-/// Where it is not there yet.
-void make_shift_table(sqlite::Connection& map);
-
 /// Of sources in force, by their names; nullopt for one that fits the others, or of which that cannot be told.
 void put_shifts(sqlite::Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts);
 
@@ -23,6 +20,7 @@ std::map<std::string, SourceShift> read_shifts(sqlite::Connection& map);
 
 /// SQL for the registration error that counts of a source `s`: what it states, or what its shift says where that is
 /// more.
-std::string_view registration_in_force(sqlite::Connection& map);
+inline constexpr std::string_view kRegistrationInForce =
+    "max(s.registration_sigma_m, coalesce((SELECT sigma_m FROM roadfix_shifts h WHERE h.source_id = s.id), 0))";
 
 }  // namespace roadfix

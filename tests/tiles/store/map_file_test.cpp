@@ -93,9 +93,12 @@ TEST_F(MapFile, AGeoPackageOfAnotherProgramIsNotOurs) {
   }
 }
 
-TEST_F(MapFile, OneFromANewerVersionSaysSo) {
-  execute("UPDATE roadfix_meta SET value = '2' WHERE key = 'schema_version'");
+TEST_F(MapFile, OneOfAnotherVersionSaysSo) {
+  execute("UPDATE roadfix_meta SET value = '3' WHERE key = 'schema_version'");
   EXPECT_EQ(opened(), "map-from-newer-version");
+  execute("UPDATE roadfix_meta SET value = '1' WHERE key = 'schema_version'; DROP TABLE roadfix_shifts");
+  EXPECT_EQ(opened(), "map-from-older-version");
+  EXPECT_EQ(testing::code_of([&] { MapWriter(path, settings_37n()); }), "map-from-older-version");
 }
 
 TEST_F(MapFile, DamagedSettingsAreFound) {

@@ -65,18 +65,6 @@ TEST_F(ShiftTable, ForgetsASourceThatFitsAgainAndOneThatIsRemoved) {
   EXPECT_EQ(source(1).shift, std::nullopt);
 }
 
-TEST_F(ShiftTable, IsMadeInMapsOfBefore) {
-  testing::open_sqlite(path).execute(
-      "DROP TABLE roadfix_shifts; DELETE FROM gpkg_extensions WHERE table_name = 'roadfix_shifts'");
-  EXPECT_EQ(sigmas(), (std::array{2.5, 2.5}));
-  EXPECT_EQ(source(1).shift, std::nullopt);
-  EXPECT_TRUE(verify_map(path).problems.empty());
-  writer.reset();
-  writer.emplace(path, settings_37n());
-  writer->put_shifts({{"b", kShift}});
-  EXPECT_EQ(source(1).shift, kShift);
-}
-
 TEST_F(ShiftTable, VerifyFindsErrorsThatNoShiftStandsFor) {
   for (const std::string sigma : {"0", "-10", "9e999", "'much'"}) {
     testing::open_sqlite(path).execute(("UPDATE roadfix_shifts SET sigma_m = " + sigma).c_str());

@@ -219,7 +219,7 @@ std::unique_ptr<Mosaic::Handle> Mosaic::borrow(std::size_t image, const GridBox&
     if (const auto known = by_turns_.find(image); known != by_turns_.end()) file = known->second.lock();
   }
   if (!file) file = open(images_[image], gsd_m);
-  if (file->comes_in_rows()) {
+  if (file->unpacks_from_the_top()) {
     const std::lock_guard lock(mutex_);
     std::weak_ptr<RasterFile>& known = by_turns_[image];
     if (const auto other = known.lock()) {

@@ -168,10 +168,10 @@ int RasterFile::overview_for(double reduction) const {
   return best;
 }
 
-bool RasterFile::comes_in_rows() const {
-  cv::Size block;
-  dataset_->GetRasterBand(colour_bands_.front())->GetBlockSize(&block.width, &block.height);
-  return block.width >= size().width && block.height < size().height;
+bool RasterFile::unpacks_from_the_top() const {
+  constexpr std::array kDrivers{"JPEG", "PNG", "GIF"};
+  const char* driver = dataset_->GetDriverName();
+  return std::ranges::any_of(kDrivers, [&](const char* name) { return EQUAL(driver, name); });
 }
 
 RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {

@@ -63,9 +63,9 @@ class RasterFile {
   /// knows what of it holds nothing; -1 for none.
   int overview_for(double reduction) const;
 
-  /// Whether a few rows come from the file in all their width: of a JPEG or PNG after all those above them, as long as
-  /// they are not in GDAL's cache, which another handle of the file has to fill anew.
-  bool comes_in_rows() const;
+  /// Whether rows are unpacked after all those above them (JPEG, PNG, GIF), unless they are in GDAL's cache, which each
+  /// handle of the file fills anew. Other formats unpack any of their blocks by itself.
+  bool unpacks_from_the_top() const;
 
   std::unique_lock<std::mutex> take_turn() { return std::unique_lock(turns_); }
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block".

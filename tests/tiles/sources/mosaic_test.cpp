@@ -289,7 +289,7 @@ TEST_F(MosaicTest, SharesOfRoadOfSeveralTypesAreRefused) {
   }
 }
 
-TEST_F(MosaicTest, ThreadsShareOneFileOfAnImageThatComesInRows) {
+TEST_F(MosaicTest, ThreadsShareOneFileOfAnImageThatIsUnpackedFromTheTop) {
   const std::string path = (folder / "a.jpg").string();
   {
     const DatasetPtr tile(GDALDataset::Open(square("a.tif", 0, 0, 512, 100).c_str(), GDAL_OF_RASTER));

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <sstream>
 
-#include "core/match/search.hpp"
+#include "core/search/search.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/json_file.hpp"

@@ -9,7 +9,7 @@
 
 #include "core/grid/feature_map.hpp"
 #include "core/locate/map_view.hpp"
-#include "core/match/search.hpp"
+#include "core/search/search.hpp"
 
 namespace roadfix {
 

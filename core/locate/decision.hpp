@@ -12,7 +12,7 @@
 
 #include "core/locate/calibration.hpp"
 #include "core/locate/fix.hpp"
-#include "core/match/search.hpp"
+#include "core/search/search.hpp"
 
 namespace roadfix {
 

@@ -73,7 +73,7 @@ struct Fix {
   std::chrono::duration<double, std::milli> search_time{};
 };
 
-/// Search (core/match/search.hpp), then decide (calibration.hpp says where probabilities come from).
+/// Search (core/search/search.hpp), then decide (calibration.hpp says where probabilities come from).
 /// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all,
 /// LimitExceeded and Interrupted by the options.
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options);

@@ -8,7 +8,7 @@
 
 #include "core/geodesy/utm.hpp"
 #include "core/grid/road_grid.hpp"
-#include "core/match/search_cache.hpp"
+#include "core/search/search_cache.hpp"
 
 namespace roadfix {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/grid/resample.hpp"
-#include "core/match/search.hpp"
+#include "core/search/search.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/match/search.hpp"
+#include "core/search/search.hpp"
 
 namespace roadfix {
 

@@ -1,0 +1,75 @@
+// The first half of a proof: an upper bound for every block of positions at every heading. Blocks that could hold a
+// better pose than the best known one become nodes, to be looked into.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "core/proof/heading_sectors.hpp"
+
+namespace roadfix {
+
+/// A block of positions at a heading that may hold something better.
+struct BoundNode {
+  std::int32_t col = 0;  ///< block of the map
+  std::int32_t row = 0;
+  std::int32_t heading = 0;  ///< index into the headings searched
+  float bound = 0.0F;
+  BlockSums sums;  ///< that it follows from
+};
+
+/// Blocks that are bounded together.
+struct BlockTile {
+  int col = 0;
+  int row = 0;
+  int rows = 0;
+};
+
+struct BlockScanResult {
+  std::vector<BoundNode> nodes;
+  std::int64_t eligible = 0;  ///< blocks x headings with a position that counts
+  bool complete = true;       ///< false if time was over before
+};
+
+class BlockScan {
+ public:
+  /// `best`: what a pose has to exceed; may grow while the scan runs.
+  BlockScan(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& best)
+      : problem_(problem), headings_(headings), best_(best) {}
+
+  std::vector<BlockTile> tiles() const;
+  /// Thread-safe.
+  BlockScanResult scan(const BlockTile& tile, const Deadline& deadline) const;
+
+ private:
+  template <typename T>
+  using PerBlock = std::array<T, BoundMap::kRun>;
+  struct Row {
+    SectorRun run;
+    PerBlock<double> needed{};  ///< of the cross sum, for a score above the best
+    PerBlock<bool> eligible{};
+    bool excluded = true;  ///< in every block
+  };
+
+  std::vector<Row> rows_of(const BlockTile& tile) const;
+  void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
+  /// Exact sums of a tile, and of how many blocks that were tried they excluded so far.
+  struct Ground {
+    GroundSums sums;
+    int tried = 0;
+    int excluded = 0;
+    bool is_worth_its_time() const;
+  };
+
+  GroundSums ground_below(const BlockTile& tile) const;
+  void scan_row(std::size_t heading, int col, int row, const Row& known, Ground& ground,
+                std::vector<BoundNode>& nodes) const;
+
+  const BoundProblem& problem_;
+  const HeadingSectors& headings_;
+  const std::atomic<double>& best_;
+};
+
+}  // namespace roadfix

@@ -1,0 +1,135 @@
+#include "core/proof/branch_and_bound.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "core/proof/block_scan.hpp"
+#include "core/proof/block_visit.hpp"
+#include "core/proof/heading_sectors.hpp"
+#include "core/units/parallel_for.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::size_t kBatch = std::size_t{1} << 19U;  // looked into before the best score is read again
+
+bool higher(const BoundNode& a, const BoundNode& b) { return a.bound > b.bound; }
+
+class BranchAndBound {
+ public:
+  BranchAndBound(const BoundedSearch& search, const Deadline& deadline)
+      : search_(search),
+        deadline_(deadline),
+        problem_(search),
+        headings_(problem_),
+        best_(search.known),
+        block_scan_(problem_, headings_, best_),
+        block_visit_(problem_, best_) {}
+
+  BoundedResult run() {
+    const bool scanned = headings_.turn(deadline_) && scan();
+    result_.complete = scanned && visit();
+    constexpr double kHighestScore = 1.0;
+    result_.bound = std::max(best_.load(), result_.complete ? 0.0 : scanned ? highest_left_ : kHighestScore);
+    if (!result_.complete) result_.excluded_share = excluded_share();
+    std::ranges::sort(result_.poses, std::ranges::greater{}, &LatticePose::score);
+    return std::move(result_);
+  }
+
+ private:
+  double excluded_share() const {
+    const auto blocks = [](int cells) { return std::ceil(static_cast<double>(cells) / kBlockCells); };
+    const double all =
+        blocks(search_.positions.cols) * blocks(search_.positions.rows) * static_cast<double>(search_.headings.size());
+    return std::clamp((static_cast<double>(bounded_) - static_cast<double>(nodes_.size())) / all, 0.0, 1.0);
+  }
+
+  /// False if time was over.
+  bool scan() {
+    const std::vector<BlockTile> tiles = block_scan_.tiles();
+    for (std::size_t next = 0; next < tiles.size();) {
+      const std::size_t end = std::min(next + static_cast<std::size_t>(search_.threads), tiles.size());
+      std::atomic<bool> complete{true};
+      parallel_for(static_cast<int>(end - next), search_.threads, [&](int i) {
+        const BlockScanResult found = block_scan_.scan(tiles[next + static_cast<std::size_t>(i)], deadline_);
+        if (!found.complete) complete = false;
+        add(found);
+      });
+      // What is remembered must not grow without end.
+      if (!complete || (nodes_.size() > kBatch && !visit())) return false;
+      next = end;
+    }
+    return true;
+  }
+
+  void add(const BlockScanResult& found) {
+    const std::lock_guard lock(mutex_);
+    nodes_.insert(nodes_.end(), found.nodes.begin(), found.nodes.end());
+    bounded_ += found.eligible;
+  }
+
+  /// Best first, until nothing can be better than what was found; false if time was over before.
+  bool visit() {
+    std::erase_if(nodes_, [&](const BoundNode& node) { return static_cast<double>(node.bound) <= best_; });
+    std::ranges::sort(nodes_, higher);
+    std::size_t next = 0;
+    while (next < nodes_.size() && static_cast<double>(nodes_[next].bound) > best_) {
+      highest_left_ = static_cast<double>(nodes_[next].bound);
+      if (deadline_.over()) return false;
+      const std::size_t end = std::min(next + kBatch, nodes_.size());
+      const std::vector<BoundNode> batch(nodes_.begin() + static_cast<std::ptrdiff_t>(next),
+                                         nodes_.begin() + static_cast<std::ptrdiff_t>(end));
+      if (!look_into(batch)) return false;
+      next = end;
+    }
+    nodes_.clear();
+    return true;
+  }
+
+  /// Adds the best pose of each node that has one better than what is known; false if time was over before all were
+  /// looked into.
+  bool look_into(const std::vector<BoundNode>& nodes) {
+    std::map<std::int32_t, std::vector<BoundNode>> of_heading;
+    for (const BoundNode& node : nodes) of_heading[node.heading].push_back(node);
+    const std::vector<std::pair<std::int32_t, std::vector<BoundNode>>> tasks(of_heading.begin(), of_heading.end());
+    std::atomic<bool> complete{true};
+    parallel_for(static_cast<int>(tasks.size()), search_.threads, [&](int t) {
+      if (deadline_.over()) {
+        complete = false;
+        return;
+      }
+      const auto& [heading, members] = tasks[static_cast<std::size_t>(t)];
+      const std::vector<LatticePose> poses = block_visit_.best_poses(static_cast<std::size_t>(heading), members);
+      const std::lock_guard lock(mutex_);
+      result_.poses.insert(result_.poses.end(), poses.begin(), poses.end());
+      for (const LatticePose& pose : poses) best_ = std::max(best_.load(), pose.score);
+    });
+    return complete;
+  }
+
+  const BoundedSearch& search_;
+  const Deadline& deadline_;
+  BoundProblem problem_;
+  HeadingSectors headings_;
+  std::atomic<double> best_;
+  BlockScan block_scan_;
+  BlockVisit block_visit_;
+  std::mutex mutex_;
+  std::vector<BoundNode> nodes_;
+  std::int64_t bounded_ = 0;  ///< blocks x headings
+  double highest_left_ = 0.0;
+  BoundedResult result_;
+};
+
+}  // namespace
+
+BoundedResult search_with_bound(const BoundedSearch& search, const Deadline& deadline) {
+  if (search.headings.empty() || search.positions.cols <= 0 || search.positions.rows <= 0) return {};
+  return BranchAndBound(search, deadline).run();
+}
+
+}  // namespace roadfix

@@ -1,0 +1,43 @@
+// Is there a better pose in a region than the best one known? Upper bounds for all blocks of positions at every
+// heading, then a closer look at those blocks that could hold more, until none is left: a proof, or the better pose.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/grid/feature_map.hpp"
+#include "core/match/deadline.hpp"
+#include "core/match/heading_bins.hpp"
+#include "core/match/lattice_pose.hpp"
+#include "core/match/score.hpp"
+#include "core/proof/bound_map.hpp"
+
+namespace roadfix {
+
+struct BoundedSearch {
+  /// Covers `positions` with the footprint's reach and BoundMap::kBorder on every side.
+  const BoundMap* map = nullptr;
+  const FeatureMap* features = nullptr;  ///< in cells of the map, not constant
+  HeadingBins bins{2};
+  std::vector<int> headings;                       ///< bins to search, ascending
+  GridGeometry positions;                          ///< cells of which the centres are searched
+  std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all; from several threads
+  FootprintCells cells;                            ///< of `features`
+  double known = 0.0;                              ///< score of the best pose known so far
+  int threads = 1;
+};
+
+struct BoundedResult {
+  /// Poses that score more than what was known when they were looked at, best first.
+  std::vector<LatticePose> poses;
+  /// No pose of the region scores more than this: the best score known or found if `complete`.
+  double bound = 0.0;
+  bool complete = true;         ///< false if time was over before
+  double excluded_share = 1.0;  ///< of all poses, at least; 1 if `complete`
+};
+
+/// At the deadline it stops and says what it has; throws Interrupted if asked to stop.
+BoundedResult search_with_bound(const BoundedSearch& search, const Deadline& deadline);
+
+}  // namespace roadfix

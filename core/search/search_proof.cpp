@@ -1,0 +1,68 @@
+#include "core/search/search_proof.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/proof/branch_and_bound.hpp"
+
+namespace roadfix {
+namespace {
+
+/// All but the feature map and the map.
+BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, const SearchOptions& options,
+                             const std::vector<LatticePose>& candidates) {
+  const PoseRegion& region = levels.region();
+  BoundedSearch bounded;
+  bounded.bins = level.bins;
+  bounded.headings = bins_within(level.bins, region);
+  bounded.positions = GridGeometry::covering(region.box, level.cell_m());
+  bounded.eligible = cells_within(bounded.positions, region);
+  bounded.threads = options.threads;
+  for (const LatticePose& pose : candidates) {
+    if (region.contains(level.pose_of(pose))) bounded.known = std::max(bounded.known, pose.score);
+  }
+  return bounded;
+}
+
+/// What follows the best pose to the finest cells needs the rest of the time.
+Deadline end_of_proof(const SearchOptions& options) {
+  const auto now = std::chrono::steady_clock::now();
+  auto end = now + options.proof_time;
+  if (options.deadline) end = std::min(end, now + (*options.deadline - now) / 2);
+  return {options.stop, end};
+}
+
+}  // namespace
+
+SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates) {
+  const Level& level = levels.at(levels.proof_level());
+  BoundedSearch bounded = bounded_search(levels, level, options, candidates);
+  const int largest = level.scales.reach();
+  const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);
+  // Its cells are means of the finest ones, which are not as fine in every search.
+  const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
+                                          [&] { return BoundMap(level.read(window)); });
+  bounded.map = map.get();
+  const Deadline deadline = end_of_proof(options);
+  SearchProof proof{
+      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), 0.0, 0.0, true, 0.0};
+  for (int scale = -largest; scale <= largest; ++scale) {
+    const LevelFeatures features = level.at_scale(scale);
+    bounded.features = &features.map;
+    bounded.cells = features.cells;
+    BoundedResult found = search_with_bound(bounded, deadline);
+    for (LatticePose& pose : found.poses) {
+      pose.scale = scale;
+      bounded.known = std::max(bounded.known, pose.score);
+    }
+    candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
+    proof.bound = std::max(proof.bound, found.bound);
+    proof.complete = proof.complete && found.complete;
+    proof.excluded_share += found.excluded_share;
+  }
+  proof.best_score = bounded.known;
+  proof.excluded_share /= proof.scales;
+  return proof;
+}
+
+}  // namespace roadfix

@@ -1,0 +1,14 @@
+// The step of a search that can be asked for: a proof that no pose of the region is better, or the better pose.
+#pragma once
+
+#include <vector>
+
+#include "core/search/search_levels.hpp"
+
+namespace roadfix {
+
+/// `candidates` are those of the level SearchLevels::proof_level(); poses of the region that score more than the best
+/// of them are appended. Ends after options.proof_time, or halfway to the deadline.
+SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates);
+
+}  // namespace roadfix

@@ -1,0 +1,141 @@
+#include "core/search/search_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/search/score_spread.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr std::size_t kScanMaxima = 16384;
+constexpr std::size_t kCandidatesAround = 256;  // followed from outside of the region
+constexpr double kScanTimeShare = 0.75;         // at most, if the time is limited: what it finds has to be followed
+constexpr int kRivalsWanted = 1000;             // distinct places that a background is drawn from
+constexpr double kKm2AtAllHeadings = 50.0;      // at least, as far as the region is as large
+
+// Searched around a region that has surroundings: from half a footprint on, a place inside shares few of the streets.
+constexpr double kSidesBeyond = 0.5;
+constexpr double kLeastKm2 = 4.0;
+
+}  // namespace
+
+SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
+    : levels_(levels),
+      options_(options),
+      separation_m_(std::max(2.5 * levels.coarse().cell_m(), 0.1 * levels.side_m())),
+      scanned_(enlarged()) {}
+
+/// What chance gives is told from the best places at all headings, whatever range of them is asked for: among the few
+/// within a range, poor ones count too, and next to them chance seems to explain the best.
+PoseRegion SearchScan::at_more_headings() const {
+  PoseRegion result = levels_.region();
+  const Angle told = Angle::degrees(180.0 * std::min(1.0, kKm2AtAllHeadings / result.area_km2()));
+  if (options_.surroundings) result.heading_half_width += kHeadingsBeyond;
+  result.heading_half_width = std::max(result.heading_half_width, told);
+  return result;
+}
+
+/// A small region holds too few places to tell what chance would give, and a wrong one not the true place: its
+/// surroundings are scanned as well.
+PoseRegion SearchScan::enlarged() const {
+  const PoseRegion region = at_more_headings();
+  const double turns = region.heading_half_width.degrees() / 180.0;
+  const double places_per_m2 = levels_.coarse().bins.count() / (2.0 * kDistinctBins) / (separation_m_ * separation_m_);
+  const bool beyond = options_.surroundings.has_value();
+  const double wanted_m2 = std::max(kRivalsWanted / places_per_m2, beyond ? 1e6 * kLeastKm2 : 0.0);
+  PoseRegion result = region.grown(beyond ? kSidesBeyond * levels_.side_m() : 0.0, {});
+  if (result.area_km2() * 1e6 * std::min(turns, 1.0) < wanted_m2) {
+    const GridPoint centre = region.box.centre();
+    result.box = united(result.box, grown({centre, centre}, 0.5 * std::sqrt(wanted_m2)));
+    result.circle.reset();
+    result.heading_half_width = Angle::degrees(180.0);
+  }
+  if (beyond) result.box = united(region.box, intersection(result.box, *options_.surroundings));
+  return result;
+}
+
+ScanRequest SearchScan::request() const {
+  const Level& coarse = levels_.coarse();
+  ScanRequest request;
+  request.positions = GridGeometry::covering(scanned_.box, coarse.cell_m());
+  request.bins = coarse.bins;
+  const PoseRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
+  request.headings = bins_within(request.bins, wide);
+  request.eligible = cells_within(request.positions, wide);
+  request.min_observed_share = options_.min_observed_share;
+  request.keep = kScanMaxima;
+  request.threads = options_.threads;
+  return request;
+}
+
+/// The map below footprints of any scale at these positions.
+std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positions) const {
+  const Level& coarse = levels_.coarse();
+  const int reach = coarse.reach(coarse.scales.reach());
+  const GridGeometry window = positions.padded(reach);
+  const int block = scan_block(coarse.features.map);
+  // Its cells are means of the finest ones, which are not as fine in every search.
+  return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings(levels_.coarsest())},
+                               [&] { return ScanMap(coarse.read(window), reach, block); });
+}
+
+/// Scores spread the farther the coarser the cells are: of a coarser scan the spread is told from some poses in the
+/// cells that calibrations are learned in.
+std::optional<double> SearchScan::finer_spread(const Deadline& deadline) const {
+  if (levels_.spread_level() == levels_.coarsest()) return std::nullopt;
+  return score_spread(levels_.at(levels_.spread_level()), scanned_, deadline);
+}
+
+SearchScan::Maxima SearchScan::maxima(const Deadline& deadline) const {
+  const Level& coarse = levels_.coarse();
+  const int largest = coarse.scales.reach();
+  ScanRequest asked = request();
+  const LatticeIndex origin = asked.positions.origin;
+  const std::shared_ptr<const ScanMap> map = map_below(asked.positions);
+  const Deadline end = deadline.after(kScanTimeShare);
+  Maxima all;
+  all.headings = asked.headings.size();
+  std::size_t before = 0;
+  if (options_.progress) {
+    asked.scanned = [&](std::size_t here) {
+      options_.progress(static_cast<std::int64_t>(before + here),
+                        static_cast<std::int64_t>(all.headings) * coarse.scales.count());
+    };
+  }
+  for (int scale = -largest; scale <= largest; ++scale, before += all.headings) {
+    const ScanResult found = coarse_scan(*map, coarse.at_scale(scale).map, asked, end);
+    all.share += found.share;
+    all.poses += found.poses;
+    all.score_square_sum += found.score_square_sum;
+    for (const ScanPose& pose : found.maxima) {
+      const LatticePose lattice{
+          {origin.col + pose.col, origin.row + pose.row}, pose.bin, static_cast<double>(pose.score), scale};
+      (levels_.within_region(coarse, lattice) ? all.inside : all.outside).push_back(lattice);
+    }
+  }
+  all.share /= coarse.scales.count();
+  return all;
+}
+
+Scanned SearchScan::run(const Deadline& deadline) const {
+  const Level& coarse = levels_.coarse();
+  const Maxima found = maxima(deadline);
+  Scanned scanned;
+  scanned.poses = found.poses;
+  scanned.share = found.share;
+  scanned.headings = static_cast<int>(found.headings);
+  if (found.poses > 0) {
+    const double sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
+    scanned.sd = finer_spread(deadline).value_or(sd);
+  }
+  const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
+    return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);
+  };
+  scanned.candidates = apart(found.inside, levels_.followed(levels_.coarsest()));
+  const std::vector<LatticePose> others = apart(found.outside, kCandidatesAround);
+  scanned.candidates.insert(scanned.candidates.end(), others.begin(), others.end());
+  return scanned;
+}
+
+}  // namespace roadfix

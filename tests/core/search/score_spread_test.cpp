@@ -1,0 +1,67 @@
+#include "core/search/score_spread.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/search/search_levels.hpp"
+#include "tests/support/random_pose.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+constexpr GridGeometry kTown{2.0, {150'000, -2'000'000}, 800, 700};
+const Deadline kNoDeadline({}, std::nullopt);
+
+/// A town, what was seen somewhere in it, and where that is looked for.
+struct Question {
+  RoadGrid map;
+  GridReader read = testing::reader_of(map);
+  FeatureMap seen;
+  PoseRegion region;
+
+  Question(std::uint64_t seed, int cells) : map(testing::street_map(seed, kTown)) {
+    std::mt19937_64 random(seed);
+    region.box = map.geometry.box();
+    seen = testing::observed_at(map, testing::pose_within(region.box, 300.0, random), cells, cells, 2.0, {0.2, 0.2},
+                                random);
+  }
+  SearchResult answer() const { return search(read, 2.0, seen, region, {}); }
+  SearchLevels levels() const { return {read, 2.0, seen, region, {}}; }
+};
+
+// 256 places give the root of a mean square to 1 / sqrt(2 * 256) = 4.4 % (1 sigma), if all headings of a place counted
+// as one; the means below a scanned footprint are those of a coarser grid.
+constexpr double kTolerance = 0.15;
+
+TEST(ScoreSpread, IsThatOfAllPosesOfTheRegion) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Question question(seed, 150);
+    const SearchLevels levels = question.levels();
+    ASSERT_EQ(levels.coarse().cell_m(), 8.0);
+    const double scanned = question.answer().background.sd;
+    const auto sampled = score_spread(levels.coarse(), question.region, kNoDeadline);
+    ASSERT_TRUE(sampled);
+    EXPECT_NEAR(*sampled, scanned, kTolerance * scanned) << seed;
+  }
+}
+
+TEST(ScoreSpread, IsToldInCellsOf8MetresWhereTheScanHasCoarserOnes) {
+  const Question question(4, 250);
+  const SearchLevels levels = question.levels();
+  ASSERT_EQ(levels.coarse().cell_m(), 16.0);
+  const Level& finer = levels.at(levels.spread_level());
+  EXPECT_EQ(finer.cell_m(), 8.0);
+  EXPECT_EQ(question.answer().background.sd, score_spread(finer, question.region, kNoDeadline));
+  EXPECT_LT(*score_spread(finer, question.region, kNoDeadline),
+            *score_spread(levels.coarse(), question.region, kNoDeadline));
+}
+
+TEST(ScoreSpread, IsNotToldOfAMapWithoutObservedGround) {
+  Question question(5, 150);
+  const RoadGrid empty = RoadGrid::unobserved(kTown);
+  question.read = testing::reader_of(empty);
+  EXPECT_EQ(score_spread(question.levels().coarse(), question.region, kNoDeadline), std::nullopt);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,78 @@
+#include "core/search/search_cache.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace roadfix {
+namespace {
+
+struct Piece {
+  int value = 0;
+  std::size_t size = 10;
+  std::size_t bytes() const { return size; }
+};
+
+GridGeometry window(int col) { return {2.0, {col, 0}, 10, 10}; }
+
+TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
+  SearchCache cache(1000);
+  int built = 0;
+  const auto get = [&](int col, const SearchCache::Parameters& parameters) {
+    return cache.get<Piece>(window(col), parameters, [&] { return Piece{++built}; })->value;
+  };
+  EXPECT_EQ(get(1, {5, 4}), 1);
+  EXPECT_EQ(get(1, {5, 4}), 1);
+  EXPECT_EQ(get(2, {5, 4}), 2);
+  EXPECT_EQ(get(1, {5, 3}), 3);
+  EXPECT_EQ(get(1, {5, 4, 2}), 4);
+  EXPECT_EQ(get(1, {5, 4}), 1);
+  EXPECT_EQ(cache.bytes(), 40U);
+}
+
+TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
+  SearchCache cache(25);
+  int built = 0;
+  const auto get = [&](int col) { return cache.get<Piece>(window(col), {}, [&] { return Piece{++built}; }); };
+  get(1);
+  get(2);
+  get(1);
+  get(3);  // 2 goes
+  EXPECT_EQ(cache.bytes(), 20U);
+  EXPECT_EQ(get(1)->value, 1);
+  EXPECT_EQ(get(2)->value, 4);
+  const auto large = cache.get<Piece>(window(9), {}, [] { return Piece{7, 100}; });
+  EXPECT_EQ(large->value, 7) << "what does not fit is used all the same";
+  EXPECT_LE(cache.bytes(), 25U);
+}
+
+TEST(SearchCache, WhatFailedIsBuiltAnew) {
+  SearchCache cache(100);
+  const auto fails = []() -> Piece { throw std::runtime_error("no"); };
+  EXPECT_THROW(cache.get<Piece>(window(1), {}, fails), std::runtime_error);
+  EXPECT_EQ(cache.get<Piece>(window(1), {}, [] { return Piece{8}; })->value, 8);
+}
+
+TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
+  SearchCache cache(1000);
+  std::atomic<int> built{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i) {
+      threads.emplace_back([&] {
+        for (int k = 0; k < 50; ++k) {
+          const auto piece = cache.get<Piece>(window(k), {}, [&] { return Piece{++built > 0 ? 2 * k : 0}; });
+          EXPECT_EQ(piece->value, k * 2);
+        }
+      });
+    }
+  }
+  EXPECT_EQ(built, 50);
+  EXPECT_EQ(cache.bytes(), 500U);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "core/grid/resample.hpp"
+#include "core/search/search.hpp"
+#include "tests/support/random_pose.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::all_poses_in;
+using testing::observed_at;
+using testing::pose_within;
+using testing::reader_of;
+using testing::street_map;
+
+TEST(SearchProof, IsGivenWhereItIsAskedFor) {
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 500, 450});
+  std::mt19937_64 random(15);
+  const PoseRegion region = all_poses_in(map.geometry.box());
+  const GridPose truth = pose_within(region.box, 200.0, random);
+  const FeatureMap seen = observed_at(map, truth, 150, 150, 2.0, {0.2, 0.2}, random);
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult found = search(reader_of(map), 2.0, seen, region, options);
+  ASSERT_TRUE(found.proof.has_value());
+  EXPECT_TRUE(found.proof->complete);
+  EXPECT_EQ(found.proof->cell_m, 4.0);
+  EXPECT_EQ(found.proof->bound, found.proof->best_score);
+  EXPECT_EQ(found.proof->excluded_share, 1.0);
+  EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 2.0);
+  options.proof_time = std::chrono::milliseconds(1);
+  EXPECT_FALSE(search(reader_of(map), 2.0, seen, region, options).proof->complete);
+}
+
+TEST(SearchProof, IsOverAllScalesToo) {
+  const RoadGrid map = street_map(18, {2.0, {150'000, -2'000'000}, 350, 300});
+  std::mt19937_64 random(19);
+  PoseRegion region = all_poses_in(map.geometry.box());
+  const GridPose truth = pose_within(region.box, 180.0, random);
+  FeatureMap window = cut_out(map, truth, 130, 130, 2.1);
+  window.cell_m = 2.0;
+  region.heading = truth.heading;
+  region.heading_half_width = Angle::degrees(10.0);
+  SearchOptions options;
+  options.scale_range = 0.06;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult found = search(reader_of(map), 2.0, window, region, options);
+  ASSERT_TRUE(found.proof.has_value());
+  EXPECT_TRUE(found.proof->complete);
+  EXPECT_GT(found.proof->scales, found.scales);
+  EXPECT_EQ(found.proof->bound, found.proof->best_score);
+  EXPECT_NEAR(found.modes[0].scale, 1.05, 0.01);
+}
+
+TEST(SearchProof, IsByMeansOfItsOwnFinestCellsWhateverWasKept) {
+  const RoadGrid finer = street_map(22, {1.0, {300'000, -4'000'000}, 900, 800});
+  RoadGrid map = reader_of(finer)({2.0, {150'000, -2'000'000}, 450, 400});
+  const GridPose pose{map.geometry.box().centre(), Angle::degrees(31.0)};
+  const FeatureMap window = cut_out(map, pose, 270, 270, 2.0);
+  paste(CellArray(map.geometry.cols, 60, kNoRoad), map.cells, 0, map.geometry.rows / 2);
+  PoseRegion region = all_poses_in(grown({pose.position, pose.position}, 10.0));
+  region.heading = pose.heading;
+  region.heading_half_width = Angle::degrees(20.0);
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  const SearchResult fresh = search(reader_of(map), 2.0, window, region, options);
+  ASSERT_TRUE(fresh.proof->complete);
+  options.cache = std::make_shared<SearchCache>(std::size_t{1} << 30);
+  // Too many of the finest cells across: their level is left out, and the next is the finest of both searches.
+  const SearchResult other = search(reader_of(finer), 1.0, cut_out(finer, pose, 540, 540, 1.0), region, options);
+  ASSERT_EQ(other.cell_m, fresh.cell_m);
+  const SearchResult again = search(reader_of(map), 2.0, window, region, options);
+  EXPECT_EQ(again.proof->bound, fresh.proof->bound);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -136,8 +136,8 @@ FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told) {
   return map;
 }
 
-cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels) {
-  if (!is_feature_map(bytes)) return decode_image(bytes, max_pixels);
+cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop) {
+  if (!is_feature_map(bytes)) return decode_image(bytes, max_pixels, stop);
   throw InvalidInput("frame-is-feature-map",
                      "this picture shows roads that were detected before, and no ground: give it as the feature map "
                      "that it says it is, without what describes a frame");

@@ -45,7 +45,7 @@ FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told);
 
 /// A picture of the ground, as decode_image. Throws what that does, and InvalidInput "frame-is-feature-map" for one
 /// that says of itself that it shows roads and no ground.
-cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels);
+cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop = {});
 
 /// Grey and alpha PNG that decode_feature_map turns back into exactly this. At least one cell; LimitExceeded
 /// ("too-many-cells") for more in a row or column than a PNG holds.

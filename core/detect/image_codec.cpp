@@ -57,7 +57,7 @@ std::optional<ImageHeader> read_image_header(Bytes bytes) {
   return jpeg_header(bytes);
 }
 
-cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
+cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop) {
   const auto header = read_image_header(bytes);
   if (!header) throw InvalidInput("image-format", "the bytes are neither a PNG nor a JPEG image");
   if (header->cols <= 0 || header->rows <= 0) throw InvalidInput("image-damaged", "the image has no pixels");
@@ -66,7 +66,7 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels) {
                         fmt::format("the image has {} x {} pixels; at most {} pixels are allowed: send it smaller",
                                     header->cols, header->rows, max_pixels));
   }
-  cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes);
+  cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes, stop);
   if (image.cols != header->cols || image.rows != header->rows) {
     throw InvalidInput("image-damaged", "the image is damaged: it has two sizes");
   }

@@ -5,15 +5,19 @@
 #include <array>
 #include <csetjmp>
 #include <cstdio>
+#include <cstring>
 // Needs size_t and FILE before it.
 #include <jpeglib.h>
 // Needs jpeglib.h before it.
 #include <jerror.h>
 
+#include "core/detect/road_detector.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
+
+constexpr int kMostScans = 100;  // encoders write about ten; as GDAL
 
 /// What libjpeg's callbacks need. Everything that lives across a longjmp is owned here, outside the frame that jumps.
 struct Reader {
@@ -24,9 +28,11 @@ struct Reader {
 
   jpeg_decompress_struct jpeg{};
   jpeg_error_mgr errors{};
+  jpeg_progress_mgr progress{};
   std::jmp_buf before{};
   std::array<char, JMSG_LENGTH_MAX> message{};
   cv::Mat pixels;
+  std::stop_token stop;
 };
 
 [[noreturn]] void on_error(j_common_ptr jpeg) {
@@ -41,6 +47,14 @@ void on_message(j_common_ptr jpeg, int level) {
   if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR) on_error(jpeg);
 }
 
+/// Called for every row of blocks of every scan.
+void on_progress(j_common_ptr jpeg) {
+  auto& reader = *static_cast<Reader*>(jpeg->client_data);
+  const bool many = reader.jpeg.input_scan_number > kMostScans;
+  if (many) std::strncpy(reader.message.data(), "more than 100 scans", reader.message.size() - 1);
+  if (many || reader.stop.stop_requested()) std::longjmp(reader.before, 1);
+}
+
 void print_nothing(j_common_ptr) {}
 
 void choose_colours(jpeg_decompress_struct& jpeg) {
@@ -52,6 +66,7 @@ bool read(Reader& reader, std::span<const std::uint8_t> bytes) {
   jpeg_decompress_struct& jpeg = reader.jpeg;
   if (setjmp(reader.before) != 0) return false;
   jpeg_create_decompress(&jpeg);
+  jpeg.progress = &reader.progress;
   jpeg_mem_src(&jpeg, bytes.data(), bytes.size());
   jpeg_read_header(&jpeg, TRUE);
   choose_colours(jpeg);
@@ -68,14 +83,17 @@ bool read(Reader& reader, std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes) {
+cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes, const std::stop_token& stop) {
   Reader reader;
+  reader.stop = stop;
+  reader.progress.progress_monitor = on_progress;
   reader.jpeg.err = jpeg_std_error(&reader.errors);
   reader.errors.error_exit = on_error;
   reader.errors.emit_message = on_message;
   reader.errors.output_message = print_nothing;
   reader.jpeg.client_data = &reader;
   if (!read(reader, bytes)) {
+    require_time(stop);
     throw InvalidInput("image-damaged",
                        fmt::format("the JPEG image is damaged or cut off ({})", reader.message.data()));
   }

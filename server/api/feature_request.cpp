@@ -77,11 +77,11 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   return feature_map_of(given_picture(content, limits), told);
 }
 
-Frame given_frame(const Content& content, const Limits& limits) {
+Frame given_frame(const Content& content, const Limits& limits, const std::stop_token& stop) {
   require_picture(content);
   const Fields& fields = content.fields;
   const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
-  const cv::Mat pixels = decode_frame(content.image, limits.pixels);
+  const cv::Mat pixels = decode_frame(content.image, limits.pixels, stop);
   return {pixels, parse_frame_scale(fields, content.image), border};
 }
 
@@ -171,7 +171,7 @@ Features detected(const Content& content, const Detection& detection, const Limi
   if (const auto seed = fields.optional_integer("seed", 0, std::numeric_limits<int>::max())) {
     asked.seed = static_cast<std::uint64_t>(*seed);
   }
-  const SeenFrame frame = seen_frame(given_frame(content, limits), detection.detector, limits.pixels);
+  const SeenFrame frame = seen_frame(given_frame(content, limits, detection.stop), detection.detector, limits.pixels);
   const GroundImage& ground = frame.view.image;
   require_few_pixels(ground, detection.detector, limits);
   const double cells = static_cast<double>(ground.pixels.total()) * std::pow(ground.gsd_m / asked.cell_m, 2.0);

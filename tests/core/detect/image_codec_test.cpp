@@ -1,13 +1,16 @@
 #include "core/detect/image_codec.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <stop_token>
 
 #include "core/detect/frame_image.hpp"
 #include "core/units/error.hpp"
@@ -109,6 +112,40 @@ TEST(DecodeImage, TakesAJpegOfAnUnknownVersionOfJfif) {
   ASSERT_EQ(other[kMajorVersion], 1);
   other[kMajorVersion] = 3;
   EXPECT_EQ(cv::norm(decode_image(other, kMany), decode_image(jpeg, kMany), cv::NORM_INF), 0.0);
+}
+
+/// Grey and progressive: one block of 8 x 8 pixels, in so many scans more than its first, each of which says nothing.
+std::vector<std::uint8_t> jpeg_of_scans(int more) {
+  std::vector<std::uint8_t> jpeg{0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
+  jpeg.insert(jpeg.end(), 64, 16);
+  const auto append = [&jpeg](std::initializer_list<std::uint8_t> bytes) { jpeg.insert(jpeg.end(), bytes); };
+  append({0xff, 0xc2, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0});
+  for (const std::uint8_t table :
+       std::array<std::uint8_t, 2>{0x00, 0x10}) {  // one code of one bit: no bits of a difference, an end of the block
+    append({0xff, 0xc4, 0, 20, table, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  }
+  append({0xff, 0xda, 0, 8, 1, 1, 0, 0, 0, 0, 0x7f});
+  for (int i = 0; i < more; ++i) append({0xff, 0xda, 0, 8, 1, 1, 0, 1, 63, 0, 0x7f});
+  append({0xff, 0xd9});
+  return jpeg;
+}
+
+TEST(DecodeImage, RefusesAJpegOfMoreScansThanAnyEncoderWrites) {
+  EXPECT_EQ(code_of([] { decode_image(jpeg_of_scans(99), kMany); }), "no error");
+  try {
+    decode_image(jpeg_of_scans(101), kMany);
+    ADD_FAILURE() << "was decoded";
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.code(), "image-damaged");
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("more than 100 scans"));
+  }
+}
+
+TEST(DecodeImage, EndsWhenAStopIsRequested) {
+  std::stop_source stop;
+  stop.request_stop();
+  const auto jpeg = encoded(".jpg", cv::Mat(16, 16, CV_8UC1, cv::Scalar(90)));
+  EXPECT_EQ(code_of([&] { decode_image(jpeg, kMany, stop.get_token()); }), "detection-interrupted");
 }
 
 /// A zTXt chunk (W3C PNG 11.3.3.3) of so many spaces.

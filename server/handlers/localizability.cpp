@@ -149,10 +149,12 @@ void add_localizability_routes(Routes& routes) {
              http::Load::kHeavyAnswer);
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto tiles = std::make_shared<Tiles>(routes.service().http.threads / kThreadsPerWaiting);
-  routes.add("GET", "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png", {"footprint_m", "style", "version"},
-             [tiles](const Service& service, const http::Request& request) {
-               return get_localizability_tile(service, request, *tiles);
-             });
+  routes.add(
+      "GET", "/v1/maps/{map}/localizability/tiles/{z}/{x}/{y}.png", {"footprint_m", "style", "version"},
+      [tiles](const Service& service, const http::Request& request) {
+        return get_localizability_tile(service, request, *tiles);
+      },
+      http::Load::kLong);
   routes.add("GET", "/v1/maps/{map}/localizability/tilejson.json", {"footprint_m", "style"},
              get_localizability_tilejson);
 }

@@ -215,7 +215,7 @@ void add_track_routes(Routes& routes) {
   routes.add("DELETE", "/v1/tracks/{id}", {}, delete_track);
   routes.add_prepared("POST", "/v1/tracks/{id}/steps", step_query(), post_step);
   routes.add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, get_history);
-  routes.add("GET", "/v1/tracks/{id}/events", {}, get_events);
+  routes.add("GET", "/v1/tracks/{id}/events", {}, get_events, http::Load::kLong);
 }
 
 }  // namespace roadfix::server

@@ -59,7 +59,8 @@ void add_window_route(Routes& routes) {
   const auto turns = std::make_shared<http::Admission>(http.heavy_running, http.threads / kThreadsPerWaiting);
   routes.add(
       "GET", "/v1/maps/{map}/window", api::window_fields(),
-      [turns](const Service& service, const http::Request& request) { return get_window(service, request, *turns); });
+      [turns](const Service& service, const http::Request& request) { return get_window(service, request, *turns); },
+      http::Load::kLong);
 }
 
 }  // namespace roadfix::server

@@ -15,13 +15,13 @@ constexpr std::chrono::milliseconds kLookPause{100};
 }  // namespace
 
 Admission::Ticket Admission::enter(const std::string& client, std::chrono::steady_clock::time_point deadline,
-                                   const std::function<bool()>& abandoned) {
+                                   const std::function<bool()>& abandoned, bool replace) {
   using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
   const bool at_once = running_ < max_running_ && queue_.empty();
   const auto known = of_client_.find(client);
   const Waiting mine{known == of_client_.end() ? 0 : known->second};
-  if (!at_once && std::ssize(queue_) >= max_waiting_) make_room_for(mine);
+  if (!at_once && (replace || std::ssize(queue_) >= max_waiting_)) make_room_for(mine);
   int& own = of_client_[client];
   queue_.insert(std::ranges::upper_bound(queue_, mine.rank, {}, &Waiting::rank), &mine);
   ++own;

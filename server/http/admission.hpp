@@ -32,10 +32,10 @@ class Admission {
   };
 
   /// Throws Busy when too many wait already or the deadline comes first, ClientGone when it was abandoned, which is
-  /// asked now and then. Where too many wait, the last in turn makes room for one that comes before it, and gets the
-  /// Busy.
+  /// asked now and then. Where too many wait, or where it may only `replace` another that waits, the last in turn makes
+  /// room for one that comes before it, and gets the Busy.
   Ticket enter(const std::string& client, std::chrono::steady_clock::time_point deadline,
-               const std::function<bool()>& abandoned = {});
+               const std::function<bool()>& abandoned = {}, bool replace = false);
 
   int running() const;
   int waiting() const;

@@ -10,6 +10,7 @@
 
 #include "server/http/byte_budget.hpp"
 #include "server/http/connection.hpp"
+#include "server/http/held_threads.hpp"
 #include "server/http/message.hpp"
 #include "server/http/proxies.hpp"
 #include "server/http/router.hpp"
@@ -22,6 +23,7 @@ struct Exchange {
   Connection* connection;
   Request request;
   ByteBudget::Share body_memory;
+  HeldThreads::Share thread;
   Target target;
   RouteMatch match;
   std::string content_type;

@@ -12,6 +12,7 @@ namespace roadfix::http {
 
 enum class Load {
   kLight,
+  kLong,         ///< light, but it may hold its thread for long: it waits its turn in a queue of its own, or streams
   kHeavy,        ///< a search or a detection: waits its turn, since only so many of these run at a time
   kHeavyAnswer,  ///< heavy, and for the sake of its answer alone: given up when the client hangs up
 };

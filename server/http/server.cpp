@@ -34,6 +34,7 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
       cors_(settings_.cors_origin),
       admission_(settings_.heavy_running, settings_.heavy_waiting),
       body_memory_(std::max(settings_.all_bodies_bytes, settings_.body_bytes)),
+      held_threads_(settings_.threads),
       access_log_(settings_.access_log) {
   metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
   metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",

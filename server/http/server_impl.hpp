@@ -14,6 +14,7 @@
 #include "server/http/connection.hpp"
 #include "server/http/cors.hpp"
 #include "server/http/exchange.hpp"
+#include "server/http/held_threads.hpp"
 #include "server/http/server.hpp"
 #include "server/http/worker_pool.hpp"
 
@@ -48,6 +49,7 @@ class Server::Impl : public httplib::Server {
   void identify(Exchange& exchange) const;
   HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);
   void with_body(const httplib::Request& head, httplib::Response& out, const httplib::ContentReader& reader);
+  void hold_thread(Exchange& exchange);
   Response answered(Exchange& exchange);
   Response failed(const Exchange& exchange, std::exception_ptr thrown) const;
   void complete_headers(Exchange& exchange, Response& response) const;
@@ -62,6 +64,7 @@ class Server::Impl : public httplib::Server {
   const Cors cors_;
   Admission admission_;
   ByteBudget body_memory_;
+  HeldThreads held_threads_;
   AccessLog access_log_;
   std::atomic<bool> stopping_ = false;
   std::atomic<Clock::time_point> silent_until_{};  ///< after a complaint

@@ -76,6 +76,7 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
   } catch (...) {
     end_request(exchange, std::current_exception());
   }
+  exchange.thread.give_back();
   const bool unread = exchange.must_close || !exchange.head_read;
   if (unread) connection.linger([this] { return threads_are_wanted(); });
   return written && !last && !closed_by_client && !exchange.asked_to_close && !unread;
@@ -129,6 +130,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     exchange.match = router_.find(request.method, exchange.target.segments);
     request.path_parameters = exchange.match.path_parameters;
     check_parameter_names(*exchange.match.route, request.query);
+    hold_thread(exchange);
     if (request.method == "POST") {
       check_body_headers(request, settings_.body_bytes);
       exchange.must_close = false;
@@ -154,6 +156,13 @@ void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, co
   reply(exchange, out, answered(exchange));
 }
 
+/// From before its body is read to the end of its answer.
+void Server::Impl::hold_thread(Exchange& exchange) {
+  const Load load = exchange.match.route->load;
+  if (load == Load::kLong) exchange.thread.take(held_threads_);
+  if (load == Load::kHeavy || load == Load::kHeavyAnswer) exchange.thread.take_in_advance(held_threads_);
+}
+
 Response Server::Impl::answered(Exchange& exchange) {
   const Counted in_flight(metrics_.in_flight);
   try {
@@ -162,10 +171,11 @@ Response Server::Impl::answered(Exchange& exchange) {
     const Clock::time_point whole = Clock::now();
     request.deadline = whole + settings_.request_time;
     request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
-    if (route.load == Load::kLight) return route.handler(request);
+    if (route.load == Load::kLight || route.load == Load::kLong) return route.handler(request);
     const auto prepared = route.prepare ? route.prepare(request) : nullptr;
     const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
-    const Admission::Ticket ticket = admission_.enter(request.client, whole + settings_.turn_time, given_up);
+    const Admission::Ticket ticket =
+        admission_.enter(request.client, whole + settings_.turn_time, given_up, held_threads_.too_many());
     request.deadline = Clock::now() + settings_.request_time;
     return prepared ? prepared() : route.handler(request);
   } catch (const Interrupted&) {

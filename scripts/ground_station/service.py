@@ -44,8 +44,9 @@ class Service:
             self._connection.close()
         self._connection = None
 
-    def ask(self, method, path, body=None, content_type=None):
-        """The bytes of the answer, None for 204. Sends again while the service is away or busy."""
+    def ask(self, method, path, body=None, content_type=None, answer_type="application/json"):
+        """The bytes of the answer, whose type begins with `answer_type`; None for 204. Sends again while the service is
+        away or busy."""
         give_up = time.monotonic() + self._patience_s
         pause_s = 0.05
         while True:
@@ -54,7 +55,7 @@ class Service:
                 self._connect(give_up - time.monotonic())
                 answer, content = self._send(method, path, body, content_type)
                 if answer.status not in BUSY:
-                    return self._checked(answer, content)
+                    return self._checked(answer, content, answer_type)
                 reason = str(Refused(answer.status, self._problem(content)))
                 wait_s = max(wait_s, self._retry_after_s(answer))
             except (OSError, http.client.HTTPException) as error:
@@ -85,10 +86,19 @@ class Service:
         answer = self._connection.getresponse()
         return answer, answer.read()
 
-    def _checked(self, answer, content):
+    def _checked(self, answer, content, answer_type):
+        """Whatever is in between may answer, too: what asks to log in, or to pay, is no position."""
         if answer.status >= 400:
             raise Refused(answer.status, self._problem(content))
-        return None if answer.status == 204 else content
+        if answer.status == 204:
+            return None
+        found = answer.headers.get("Content-Type", "")
+        if answer.status in (200, 201) and found.startswith(answer_type):
+            return content
+        elsewhere = answer.headers.get("Location") if 300 <= answer.status < 400 else None
+        what = f"redirected to {elsewhere}" if elsewhere else f"an answer of type '{found}'"
+        raise Refused(answer.status, {"code": "not-roadfix",
+                                      "detail": f"something other than Roadfix answered; {what}"})
 
     @staticmethod
     def _problem(content):

@@ -147,7 +147,7 @@ class Track:
         asked_before, self._asked_places = self._asked_places, len(self._travel)
         try:
             if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
-                packet = self._post({**numbered, "format": packet_format}, image)
+                packet = self._post({**numbered, "format": packet_format}, image, "application/x-")
                 if packet is not None and send:
                     send(packet)
             answer = json.loads(self._post({**numbered, "format": "json"}, image))
@@ -169,12 +169,12 @@ class Track:
             state["known"] = {"lat": pose["lat"], "lon": pose["lon"], "sigma_m": max(answer["sigma_m"]), "flown_m": 0.0}
         self._keep(state)
 
-    def _post(self, fields, image):
+    def _post(self, fields, image, answer_type="application/json"):
         path = f"/v1/tracks/{self.id}/steps"
         if image is None:
-            return self._service.ask("POST", path, json.dumps(fields).encode(), "application/json")
+            return self._service.ask("POST", path, json.dumps(fields).encode(), "application/json", answer_type)
         kind = "image/png" if image.startswith(b"\x89PNG") else "image/jpeg"
-        return self._service.ask("POST", f"{path}?{as_query(fields)}", image, kind)
+        return self._service.ask("POST", f"{path}?{as_query(fields)}", image, kind, answer_type)
 
     def _keep(self, state):
         self._state = state

@@ -31,7 +31,8 @@ def packet_of(packet_format, told_s):
 
 class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
-    taken, "still at it" where it takes the one before that it had not told of; then 200. A step takes `delay_s` when
+    taken, "pay" where something in between answers,
+    "still at it" where it takes the one before that it had not told of; then 200. A step takes `delay_s` when
     it comes first, and messages say that it took `told_s`."""
 
     def __init__(self, script=(), delay_s=0.0, told_s=None):
@@ -49,8 +50,11 @@ class FakeService:
             def log_message(self, *_):
                 pass
 
-            def answer(self, status, content):
+            def answer(self, status, content, content_type="application/json"):
                 self.send_response(status)
+                self.send_header("Content-Type", content_type)
+                if 300 <= status < 400:
+                    self.send_header("Location", "http://portal/")
                 self.send_header("Content-Length", str(len(content)))
                 if status == 503:
                     self.send_header("Retry-After", "1")
@@ -92,7 +96,10 @@ class FakeService:
                 if status == "lose":
                     self.close_connection = True
                 elif said == 200 and step.get("format", "json") != "json":
-                    self.answer(200, packet_of(step["format"], delay_s if told_s is None else told_s))
+                    self.answer(200, packet_of(step["format"], delay_s if told_s is None else told_s),
+                                "application/x-" + step["format"])
+                elif said == "pay":
+                    self.answer(200, b"<html>Please pay</html>", "text/html")
                 else:
                     self.answer(status, json.dumps({"status": "searching"} if said == 200 else answer).encode())
 

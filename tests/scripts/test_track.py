@@ -83,6 +83,18 @@ class Steps(unittest.TestCase):
             self.assertEqual(fake.steps()[-1]["sequence"], 2)
             self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 25.0)
 
+    def test_are_refused_where_something_else_answers(self):
+        for answer, words in (("pay", "200 not-roadfix: something other than Roadfix answered; .*text/html"),
+                              ((302, {}), "something other than Roadfix answered; redirected to http://portal/")):
+            with FakeService([200, answer]) as fake:
+                track, _ = self.fly(fake, 1)
+                sent = []
+                with self.assertRaisesRegex(Refused, words):
+                    track.step((10.0, 0.0, 0.0), {"time_us": 2}, packet_format="gps_input", send=sent.append)
+                self.assertEqual(sent, [])
+                track.step((25.0, 0.0, 0.0), {"time_us": 3})
+                self.assertEqual(fake.steps()[-1]["sequence"], 2)
+
     def test_begin_a_new_track_without_a_movement_where_theirs_has_ended(self):
         with FakeService([200, (410, {"code": "track-ended"})]) as fake:
             self.fly(fake, 2)

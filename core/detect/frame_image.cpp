@@ -50,7 +50,7 @@ cv::Mat in_eight_bits(const cv::Mat& pixels, const cv::Mat& observed) {
 
 }  // namespace
 
-GroundImage frame_image(const cv::Mat& decoded, double gsd_m, Border border) {
+GroundImage frame_image(cv::Mat decoded, double gsd_m, Border border) {
   const int channels = decoded.channels();
   const bool sixteen = decoded.depth() == CV_16U;
   if (decoded.empty() || (decoded.depth() != CV_8U && !sixteen) || (channels != 1 && channels != 3 && channels != 4)) {
@@ -64,8 +64,10 @@ GroundImage frame_image(const cv::Mat& decoded, double gsd_m, Border border) {
     cv::Mat alpha;
     cv::extractChannel(decoded, alpha, 3);
     image.observed = alpha > (sixteen ? 32767 : 127);
+    alpha.release();
     cv::cvtColor(decoded, image.pixels, cv::COLOR_BGRA2BGR);
   }
+  decoded.release();
   // Lossy codecs, which blur the rim, have 8 bits.
   constexpr int kDarkest = 4;
   if (border == Border::kBlackUnseen) image.observed &= seen_inside_black_border(image.pixels, sixteen ? 0 : kDarkest);

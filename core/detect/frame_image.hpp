@@ -13,6 +13,7 @@ enum class Border {
 /// `decoded` has 8 or 16 bits and 1, 3 or 4 channels (BGR order, alpha below one half = not seen). 16 bits become 8
 /// from the 0.5th to the 99.5th percentile of what was seen, and black is 0 in them (at most 4 in 8 bits, which lossy
 /// codecs blur). InvalidInput "image-shape" for anything else.
-GroundImage frame_image(const cv::Mat& decoded, double gsd_m, Border border = Border::kSeen);
+/// Moved in, it takes memory no longer than it has to.
+GroundImage frame_image(cv::Mat decoded, double gsd_m, Border border = Border::kSeen);
 
 }  // namespace roadfix

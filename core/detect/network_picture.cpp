@@ -14,7 +14,9 @@ int whole(double length) { return static_cast<int>(std::ceil(length - 1e-9)); }
 
 cv::Size scaled(cv::Size size, double factor) { return {whole(size.width * factor), whole(size.height * factor)}; }
 
+/// The image itself where it is that large.
 cv::Mat padded(const cv::Mat& image, cv::Size size, const cv::Scalar& value) {
+  if (image.rows >= size.height && image.cols >= size.width) return image;
   cv::Mat result;
   cv::copyMakeBorder(image, result, 0, std::max(0, size.height - image.rows), 0, std::max(0, size.width - image.cols),
                      cv::BORDER_CONSTANT, value);
@@ -48,10 +50,19 @@ void to_local_contrast(cv::Mat& bgr, const cv::Mat& observed, const LocalContras
   cv::Mat seen;
   observed.convertTo(seen, CV_32F);
   cv::threshold(seen, seen, 0.5, 1.0, cv::THRESH_BINARY);
-  const cv::Mat count = cv::max(window_sum(seen, local.window_px), 1.0);
-  const cv::Mat mean = window_sum(grey, local.window_px) / count;
-  cv::Mat spread = window_sum(grey.mul(grey), local.window_px) / count - mean.mul(mean);
-  cv::sqrt(cv::max(spread, 0.0), spread);
+  // In place, and each let go of when it was used: of large pictures they take more memory than all else.
+  cv::Mat count = window_sum(seen, local.window_px);
+  seen.release();
+  cv::max(count, 1.0, count);
+  cv::Mat mean = window_sum(grey, local.window_px);
+  cv::divide(mean, count, mean);
+  cv::multiply(grey, grey, grey);
+  cv::Mat spread = window_sum(grey, local.window_px);
+  cv::divide(spread, count, spread);
+  cv::multiply(mean, mean, grey);
+  cv::subtract(spread, grey, spread);
+  cv::max(spread, 0.0, spread);
+  cv::sqrt(spread, spread);
   spread += local.floor;
   for (int row = 0; row < bgr.rows; ++row) {
     for (int col = 0; col < bgr.cols; ++col) {
@@ -73,33 +84,38 @@ void check(const GroundImage& image) {
   }
 }
 
+/// BGR, with `value` where nothing was seen.
+cv::Mat without_unseen(const GroundImage& image, const cv::Scalar& value) {
+  cv::Mat bgr = image.pixels;
+  if (image.pixels.channels() == 1) cv::cvtColor(image.pixels, bgr, cv::COLOR_GRAY2BGR);
+  const cv::Mat unseen = image.observed == 0;
+  if (cv::countNonZero(unseen) == 0) return bgr;
+  if (bgr.data == image.pixels.data) bgr = bgr.clone();
+  bgr.setTo(value, unseen);
+  return bgr;
+}
+
 }  // namespace
 
 NetworkPicture network_picture(const GroundImage& image, const NetworkDescription& network) {
   check(image);
   const auto& [red, green, blue] = network.mean;
   const cv::Scalar mean(blue, green, red);
-  cv::Mat bgr;
-  if (image.pixels.channels() == 1) {
-    cv::cvtColor(image.pixels, bgr, cv::COLOR_GRAY2BGR);
-  } else {
-    bgr = image.pixels.clone();
-  }
-  bgr.setTo(mean, image.observed == 0);
   const double factor = image.gsd_m / network.gsd_m;
   NetworkPicture picture;
   picture.observed = resized(image.observed, factor, cv::Scalar::all(0));
-  const cv::Mat small = resized(bgr, factor, mean);
-  small.convertTo(picture.pixels, CV_32FC3);
+  const auto up = [&](int side) { return (side + network.multiple - 1) / network.multiple * network.multiple; };
+  const cv::Size size(up(picture.observed.cols), up(picture.observed.rows));
+  picture.observed = padded(picture.observed, size, cv::Scalar::all(0));
+  padded(resized(without_unseen(image, mean), factor, mean), size, mean).convertTo(picture.pixels, CV_32FC3);
   if (network.local_contrast) to_local_contrast(picture.pixels, picture.observed, *network.local_contrast);
   picture.pixels -= mean;
   picture.pixels /= cv::Scalar(network.std[2], network.std[1], network.std[0]);
   picture.pixels.setTo(cv::Scalar::all(0), picture.observed == 0);
-  if (network.rgb) cv::cvtColor(picture.pixels, picture.pixels, cv::COLOR_BGR2RGB);
-  const auto up = [&](int side) { return (side + network.multiple - 1) / network.multiple * network.multiple; };
-  const cv::Size size(up(small.cols), up(small.rows));
-  picture.pixels = padded(picture.pixels, size, cv::Scalar::all(0));
-  picture.observed = padded(picture.observed, size, cv::Scalar::all(0));
+  for (int i = 0; network.rgb && i < picture.pixels.rows; ++i) {  // of the whole, it would take a copy
+    cv::Mat row = picture.pixels.row(i);
+    cv::cvtColor(row, row, cv::COLOR_BGR2RGB);
+  }
   return picture;
 }
 

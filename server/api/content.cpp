@@ -31,7 +31,7 @@ std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin()
 
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {
   content.fields.add(parse_json(text, json_limits(limits)), known);
-  if (content.fields.has("image")) add_picture(content, bytes_of_base64("image", content.fields.text("image")));
+  if (content.fields.has("image")) add_picture(content, bytes_of_base64("image", content.fields.take_text("image")));
 }
 
 void add_part(Content& content, const Part& part, const std::vector<std::string>& known, const Limits& limits) {

@@ -6,9 +6,9 @@
 
 namespace roadfix::api {
 
-SeenFrame seen_frame(const Frame& frame, const RoadDetector& detector, std::int64_t max_pixels) {
+SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels) {
   const FrameScale& scale = frame.scale;
-  return {ground_seen(frame_image(frame.pixels, scale.gsd_m, frame.border), scale.camera, detector,
+  return {ground_seen(frame_image(std::move(frame.pixels), scale.gsd_m, frame.border), scale.camera, detector,
                       static_cast<double>(max_pixels)),
           scale.in_file ? scale.camera : std::nullopt};
 }

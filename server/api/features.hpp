@@ -36,7 +36,7 @@ struct SeenFrame {
 };
 
 /// Throws what frame_image() and ground_seen() do.
-SeenFrame seen_frame(const Frame& frame, const RoadDetector& detector, std::int64_t max_pixels);
+SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels);
 
 /// By what roads are looked for in a frame.
 struct Detection {

@@ -156,6 +156,11 @@ std::string Fields::text(const std::string& name) const {
   return value->json.get<std::string>();
 }
 
+std::string Fields::take_text(const std::string& name) {
+  if (const Value* value = find(name); value == nullptr || !value->json.is_string()) return text(name);
+  return std::move(values_.extract(name).mapped().json.get_ref<std::string&>());
+}
+
 std::string Fields::word(const std::string& name, std::span<const std::string_view> words) const {
   if (!has(name)) return std::string(words.front());
   std::string value = text(name);

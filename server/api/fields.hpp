@@ -54,6 +54,8 @@ class Fields {
   std::int64_t large_integer(const std::string& name, int min) const;
   std::optional<std::int64_t> optional_large_integer(const std::string& name, int min) const;
   std::string text(const std::string& name) const;
+  /// The same, and the field is absent from then on.
+  std::string take_text(const std::string& name);
   /// One of the words; the first where the field is absent.
   std::string word(const std::string& name, std::span<const std::string_view> words) const;
   /// JSON's true and false, or text of that; false where the field is absent.

@@ -12,10 +12,9 @@ void Routes::add(const char* method, const char* path, std::vector<std::string> 
                }});
 }
 
-void Routes::add_prepared(const char* method, const char* path, std::vector<std::string> parameters,
-                          Handler<std::function<http::Response()>> prepare) {
+void Routes::add_prepared(const char* method, const char* path, std::vector<std::string> parameters, Prepare prepare) {
   http::Route route{method, path, std::move(parameters), http::Load::kHeavy, {}};
-  route.prepare = [&service = service_, prepare = std::move(prepare)](const http::Request& request) {
+  route.prepare = [&service = service_, prepare = std::move(prepare)](http::Request& request) {
     return prepare(service, request);
   };
   router_.add(std::move(route));

@@ -137,9 +137,10 @@ http::Response take_step(const Service& service, const http::Request& request, P
   return step_response(service, step, service.steps.take(track.id, input, digest, limits, request.received));
 }
 
-/// Reads the step and gives those that it overtook the time to be taken first.
-std::function<http::Response()> post_step(const Service& service, const http::Request& request) {
+/// Reads the step and gives those that it overtook the time to be taken first, while it is held in memory once.
+std::function<http::Response()> post_step(const Service& service, http::Request& request) {
   PostedStep step = read_step(service, request);
+  std::string().swap(request.body);
   service.steps.await_predecessor(step.track.id, step.input.sequence);
   return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };
 }

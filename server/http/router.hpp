@@ -24,8 +24,9 @@ struct Route {
   Load load = Load::kLight;
   std::function<Response(const Request&)> handler;
   /// Instead of a handler, where a heavy request depends on others: reads the request and waits for those before it
-  /// takes a turn, which they may need. What it returns is called once in that turn; the request lives until then.
-  std::function<std::function<Response()>(const Request&)> prepare = {};
+  /// takes a turn, which they may need. What it returns is called once in that turn; the request lives until then, and
+  /// its body need not.
+  std::function<std::function<Response()>(Request&)> prepare = {};
 };
 
 struct RouteMatch {

@@ -1,6 +1,7 @@
 #include "core/detect/neural_detector.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/detect/network_picture.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -63,6 +65,25 @@ GroundImage random_image(int cols, int rows, double gsd_m = 1.0) {
   GroundImage image{cv::Mat(rows, cols, CV_8UC3), cv::Mat(rows, cols, CV_8UC1, cv::Scalar(255)), gsd_m};
   cv::RNG(7).fill(image.pixels, cv::RNG::UNIFORM, 0, 256);
   return image;
+}
+
+long max_memory_kib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST(NetworkPicture, TakesNoMoreMemoryThanItsPixelsAndFourPlanes) {
+  NetworkDescription network;
+  network.local_contrast = LocalContrast{129, 8.0};
+  network.rgb = true;
+  network.multiple = 32;
+  const GroundImage image = random_image(3000, 2010, network.gsd_m);
+  const long before = max_memory_kib();
+  const NetworkPicture picture = network_picture(image, network);
+  EXPECT_EQ(picture.pixels.size(), cv::Size(3008, 2016));
+  constexpr long kBytes = 3 * 4 + 4 * 4 + 5;  // per pixel; 5: masks
+  EXPECT_LT(max_memory_kib() - before, kBytes * 3008 * 2016 / 1024);
 }
 
 /// What make_networks.py wrote into tiny.onnx, computed directly.

@@ -70,6 +70,16 @@ TEST(Fields, SayHowSeveralNumbersAreGiven) {
   EXPECT_THAT(complaint(body), ::testing::HasSubstr("4 numbers in a list"));
 }
 
+TEST(Fields, GiveALongTextAwayOnce) {
+  Fields fields;
+  fields.add({{"image", "abc"}, {"cell_m", 2}}, std::vector<std::string>{"image", "cell_m"});
+  EXPECT_EQ(fields.take_text("image"), "abc");
+  EXPECT_FALSE(fields.has("image"));
+  EXPECT_THROW(fields.take_text("image"), http::InvalidField);
+  EXPECT_THROW(fields.take_text("cell_m"), http::InvalidField);
+  EXPECT_TRUE(fields.has("cell_m"));
+}
+
 TEST(Fields, ReadWholeNumbersAsLargeAsJsonHoldsExactly) {
   const Fields fields(http::Parameters{{"after", "4294967297"}, {"least", "-1"}, {"odd", "0.5"}, {"most", "1e16"}});
   EXPECT_EQ(fields.large_integer("after", -1), 4294967297);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <exception>
 #include <mutex>
 #include <string_view>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
@@ -78,6 +80,13 @@ bool is_of_another_program(sqlite::Connection& connection, std::int64_t version)
                         "'request', 'map', 'map_version', 'touched_us')") != 6;
 }
 
+/// What tells a file from another one of its name; nullopt where there is none.
+std::optional<std::pair<dev_t, ino_t>> identity_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return std::pair{status.st_dev, status.st_ino};
+}
+
 const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
 
 std::optional<TrackEnd> end_of(std::string_view column) {
@@ -128,6 +137,13 @@ class TrackStore::Impl {
       connection_->execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());  // and sees that it can write
       transaction.commit();
     });
+    identity_ = identity_of(path_);
+  }
+
+  /// Of work that is to write: SQLite goes on with a file that was deleted, and what it writes there is lost at the end
+  /// of the process. Throws IoFailure "track-store-unavailable".
+  void require_file() const {
+    if (const auto problem = missing_file()) throw IoFailure("track-store-unavailable", *problem);
   }
 
   /// Runs work on the connection, one caller at a time.
@@ -146,13 +162,21 @@ class TrackStore::Impl {
   void has_written() { problem_.reset(); }
   std::optional<std::string> problem() const {
     const std::lock_guard lock(mutex_);
-    return problem_;
+    const auto missing = missing_file();
+    return missing ? missing : problem_;
   }
 
  private:
+  std::optional<std::string> missing_file() const {
+    if (identity_ && identity_of(path_) == identity_) return std::nullopt;
+    return fmt::format("{}: the file of the tracks was deleted or replaced: restart the service to begin a new one",
+                       path_.string());
+  }
+
   std::filesystem::path path_;
   mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;
+  std::optional<std::pair<dev_t, ino_t>> identity_;  ///< of the file when it was opened
   std::optional<std::string> problem_;
 };
 
@@ -165,6 +189,7 @@ std::optional<std::string> TrackStore::problem() const { return impl_->problem()
 
 void TrackStore::add(const StoredTrack& t) {
   impl_->with([&] {
+    impl_->require_file();
     sqlite::Statement(impl_->connection(),
                       fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
         .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
@@ -204,6 +229,7 @@ std::vector<StoredTrack> TrackStore::flying() const {
 bool TrackStore::add_step(const std::string& id, std::int64_t now_us, std::span<const std::byte> state,
                           const StoredStep& step) {
   return impl_->with([&] {
+    impl_->require_file();
     sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
     sqlite::Statement update(impl_->connection(),
                              "UPDATE tracks SET touched_us = ?2, state = ?3 WHERE id = ?1 AND ended = '' RETURNING 1");

@@ -120,6 +120,24 @@ TEST(TrackStore, IsHeldByOneServiceAtATime) {
   EXPECT_EQ(code_of(open), "no error");
 }
 
+TEST(TrackStore, SaysThatItsFileWasDeletedOrReplacedAndTakesNoStepThatWouldBeLost) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder / "tracks.sqlite";
+  TrackStore store(path, kPlenty);
+  store.add(track("a"));
+  ASSERT_FALSE(store.problem());
+  const auto add_step = [&] { (void)store.add_step("a", 2, state(100), {0, 0, "answer"}); };
+  std::filesystem::rename(path, folder / "kept");
+  EXPECT_THAT(store.problem().value_or(""), HasSubstr("deleted"));
+  EXPECT_EQ(code_of(add_step), "track-store-unavailable");
+  EXPECT_EQ(code_of([&] { store.add(track("b")); }), "track-store-unavailable");
+  std::ofstream(path) << "another";
+  EXPECT_EQ(code_of(add_step), "track-store-unavailable");
+  std::filesystem::rename(folder / "kept", path);
+  EXPECT_EQ(code_of(add_step), "no error");
+  EXPECT_FALSE(store.problem());
+}
+
 /// Byte 18 of the header is the version that a writer must know: SQLite reads newer ones and writes none.
 /// https://www.sqlite.org/fileformat2.html#file_format_version_numbers
 TEST(TrackStore, SaysThatItMayNotBeWrittenTo) {

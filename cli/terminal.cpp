@@ -18,6 +18,9 @@ std::stop_token stop_on_signals() {
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
+    struct sigaction hangup {};
+    sigaction(SIGHUP, nullptr, &hangup);
+    if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);  // nohup ignores it
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     std::thread([set] {
       int signal = 0;

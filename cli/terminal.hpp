@@ -11,7 +11,8 @@
 
 namespace roadfix::cli {
 
-/// Requested by the first SIGINT or SIGTERM; a second one ends the process at once.
+/// Requested by the first SIGINT, SIGTERM or, unless it is ignored (nohup), SIGHUP; a second one ends the process at
+/// once.
 std::stop_token stop_on_signals();
 
 /// Share done, rate and time left of one long task.

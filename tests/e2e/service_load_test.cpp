@@ -34,8 +34,9 @@ TEST(ServiceLoad, AnswersARequestInFlightWhenItIsAskedToStop) {
   testing::ServiceProcess service(folder.path());
   const std::string body = town.seen();
   testing::RawConnection connection(service.port());
-  connection.send("POST /v1/maps/town/fix?cell_m=2 HTTP/1.1\r\nHost: x\r\nContent-Type: image/png\r\nContent-Length: " +
-                  std::to_string(body.size()) + "\r\n\r\n" + body.substr(0, 100));
+  connection.send(
+      "POST /v1/maps/town/fix?cell_m=2 HTTP/1.1\r\nHost: localhost\r\nContent-Type: image/png\r\nContent-Length: " +
+      std::to_string(body.size()) + "\r\n\r\n" + body.substr(0, 100));
   httplib::Client client = testing::client_of(service);
   const auto has_a_thread = [&] {
     return client.Get("/metrics")->body.find("roadfix_connections 2\n") != std::string::npos;
@@ -51,17 +52,21 @@ TEST(ServiceLoad, AnswersARequestInFlightWhenItIsAskedToStop) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
-TEST(ServiceLoad, StopsAtOnceWhenNothingIsInFlight) {
+class ServiceStop : public ::testing::TestWithParam<int> {};
+
+TEST_P(ServiceStop, IsAtOnceWhenNothingIsInFlight) {
   const testing::TemporaryFolder folder;
   testing::ServiceProcess service(folder.path());
   testing::RawConnection idle(service.port());
   httplib::Client client = testing::client_of(service);
   client.Get("/healthz");
   const auto start = std::chrono::steady_clock::now();
-  service.send_signal(SIGINT);
+  service.send_signal(GetParam());
   EXPECT_EQ(service.wait(), 0);
   EXPECT_LT(std::chrono::steady_clock::now() - start, 10s) << "idle connections, kept for 15 s, do not hold it up";
 }
+
+INSTANTIATE_TEST_SUITE_P(Signals, ServiceStop, ::testing::Values(SIGINT, SIGHUP));
 
 TEST(ServiceLoad, SendsSearchesAwayWhenTooManyWait) {
   const testing::TemporaryFolder folder;
@@ -137,7 +142,7 @@ TEST(ServiceLoad, EndsASearchWhoseClientHungUp) {
   {
     testing::RawConnection connection(service.port());
     connection.send(
-        "POST /v1/maps/town/fix?cell_m=2&scale_range=0.3&proof_s=600 HTTP/1.1\r\nHost: x\r\nContent-Type: "
+        "POST /v1/maps/town/fix?cell_m=2&scale_range=0.3&proof_s=600 HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
         "image/png\r\nContent-Length: " +
         std::to_string(body.size()) + "\r\n\r\n" + body);
     EXPECT_TRUE(eventually([&] { return told("roadfix_heavy_running 1\n"); }));

@@ -37,12 +37,14 @@ struct ServeOptions {
   std::string log_level = "info";
   std::string calibration;
   std::vector<std::string> proxies;
+  std::vector<std::string> names;
 };
 
 server::Configuration configuration(const ServeOptions& options) {
   server::Configuration result = options.service;
   if (!options.calibration.empty()) result.calibration = read_calibration(options.calibration);
   result.http.proxies = http::Proxies(options.proxies);
+  result.http.names = http::ServedNames(result.http.host, options.names);
   result.http.turn_time = options.turn_time.value_or(result.http.request_time);
   // Each takes a thread for as long as it is open.
   result.track_limits.streams = std::min(result.track_limits.streams, result.http.threads / 2);
@@ -204,6 +206,11 @@ void add_serve_command(CLI::App& app) {
       ->add_option(
           "--proxy", o.proxies,
           "Address or network of a proxy (127.0.0.1, 10.0.0.0/8) whose X-Forwarded-For names the client; repeatable")
+      ->delimiter(',');
+  command
+      ->add_option("--server-name", o.names,
+                   "Name by which requests may call a service that listens on this machine alone, beside localhost; "
+                   "repeatable")
       ->delimiter(',');
   command->add_option("--access-log", o.service.http.access_log,
                       "Write a JSON line per request to this file, or to - for standard error");

@@ -21,6 +21,7 @@ constexpr std::chrono::seconds kRetryAfter{5};
 
 const std::map<std::string, int, std::less<>>& statuses() {
   static const std::map<std::string, int, std::less<>> kByCode{
+      {"cross-site-request", 403},
       {"method-not-allowed", 405},
       {"not-acceptable", 406},
       {"request-timeout", 408},
@@ -38,6 +39,7 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"url-too-long", 414},
       {"unsupported-media-type", 415},
       {"unsupported-content-encoding", 415},
+      {"host-not-served", 421},
       {"too-many-tracks", 429},
       {"head-too-large", 431},
       {"client-gone", 499},  // nginx's number for it
@@ -63,6 +65,8 @@ const char* title_of(int status) {
   switch (status) {
     case 400:
       return "Bad request";
+    case 403:
+      return "Forbidden";
     case 404:
       return "Not found";
     case 405:
@@ -83,6 +87,8 @@ const char* title_of(int status) {
       return "URI too long";
     case 415:
       return "Unsupported media type";
+    case 421:
+      return "Misdirected request";
     case 422:
       return "Unprocessable content";
     case 429:

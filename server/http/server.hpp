@@ -10,6 +10,7 @@
 #include "server/http/admission.hpp"
 #include "server/http/message.hpp"
 #include "server/http/metrics.hpp"
+#include "server/http/origins.hpp"
 #include "server/http/proxies.hpp"
 #include "server/http/router.hpp"
 
@@ -37,6 +38,7 @@ struct ServerSettings {
   int heavy_running = 2;
   int heavy_waiting = 32;
   std::string cors_origin = {};  ///< see Cors
+  ServedNames names = {};        ///< of all but what comes through proxies
   Proxies proxies = {};          ///< whose X-Forwarded-For says who asks
   std::string access_log = {};   ///< see AccessLog
 };

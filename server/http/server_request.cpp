@@ -121,6 +121,8 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     request.path = exchange.target.path;
     request.query = exchange.target.query;
     if (!exchange.target.authority.empty()) request.headers["host"] = exchange.target.authority;
+    if (!settings_.proxies.contains(head.remote_addr)) settings_.names.require(request);
+    require_same_site(request, settings_.cors_origin);
     if (request.method == "OPTIONS") {
       const std::string allowed = router_.allowed_methods(exchange.target.segments);
       if (allowed.empty()) router_.find(request.method, exchange.target.segments);

@@ -25,6 +25,18 @@ TEST(ServeCommand, TakesOptionsFromTheEnvironmentAndAFile) {
   EXPECT_EQ(limits["cells"], 555);
 }
 
+TEST(ServeCommand, AnswersOnItsOwnMachineToItsOwnNamesAlone) {
+  const testing::TemporaryFolder folder;
+  const testing::ServiceProcess service(folder.path(), {"--server-name", "maps.example.org,roadfix.lan"});
+  httplib::Client client = testing::client_of(service);
+  const auto status = [&](const char* host) {
+    return client.Get("/v1/tracks", httplib::Headers{{"Host", host}})->status;
+  };
+  EXPECT_EQ(status("localhost:8080"), 200);
+  EXPECT_EQ(status("roadfix.lan"), 200);
+  EXPECT_EQ(status("evil.example"), 421);
+}
+
 TEST(ServeCommand, SaysWhichSettingCannotBeUsed) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder / "roadfix.conf") << "cors_origin = \"*\"\n";

@@ -88,12 +88,14 @@ void Connection::begin_head() {
   in_head_ = true;
   head_bytes_ = 0;
   failure_ = Failure::kNone;
+  chunks_.reset();
   has_written_ = false;
   begin(limits_.head);
 }
 
-void Connection::begin_body() {
+void Connection::begin_body(bool chunked) {
   in_head_ = false;
+  if (chunked) chunks_.emplace();
   begin(limits_.body);
 }
 
@@ -148,6 +150,10 @@ ssize_t Connection::read(char* data, std::size_t size) {
   const std::size_t n = std::min(size, end_ - begin_);
   if (in_head_ && (head_bytes_ += n) > limits_.head_bytes) {
     failure_ = Failure::kHeadTooLarge;
+    return -1;
+  }
+  if (chunks_ && !chunks_->follow({buffer_.data() + begin_, n})) {
+    failure_ = Failure::kBadChunks;
     return -1;
   }
   std::memcpy(data, buffer_.data() + begin_, n);

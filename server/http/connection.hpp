@@ -7,7 +7,10 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
+
+#include "server/http/chunk_check.hpp"
 
 namespace roadfix::http {
 
@@ -25,7 +28,7 @@ struct ConnectionLimits {
 class Connection : public httplib::Stream {
  public:
   /// kLetGo: slow while others waited.
-  enum class Failure { kNone, kTimeout, kLetGo, kHeadTooLarge, kCutOff };
+  enum class Failure { kNone, kTimeout, kLetGo, kHeadTooLarge, kCutOff, kBadChunks };
 
   Connection(int socket, const ConnectionLimits& limits);
   ~Connection() override;
@@ -39,7 +42,7 @@ class Connection : public httplib::Stream {
   bool peer_has_left() const;
 
   void begin_head();
-  void begin_body();
+  void begin_body(bool chunked);
   Failure failure() const { return failure_; }
   /// Since begin_head().
   bool has_written() const { return has_written_; }
@@ -73,6 +76,7 @@ class Connection : public httplib::Stream {
   bool at_end_ = false;
   bool in_head_ = true;
   std::size_t head_bytes_ = 0;
+  std::optional<ChunkCheck> chunks_;        ///< of a chunked body
   Clock::time_point begun_ = Clock::now();  ///< of the head or body that is being read
   std::size_t received_ = 0;                ///< since then
   Clock::time_point deadline_ = Clock::time_point::max();

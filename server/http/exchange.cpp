@@ -89,7 +89,7 @@ std::string new_id() {
 
 void take_over(httplib::Request& head, Exchange& exchange) {
   exchange.head_read = true;
-  exchange.connection->begin_body();
+  exchange.connection->begin_body(lower_case(head.get_header_value("Transfer-Encoding")) == "chunked");
   head.ranges.clear();
   exchange.content_type = head.get_header_value("Content-Type");
   head.headers.erase("Content-Type");
@@ -138,8 +138,9 @@ void check_headers(const httplib::Request& head) {
 }
 
 bool announces_body(const Request& request) {
-  const std::string& length = request.header("content-length");
-  return !request.header("transfer-encoding").empty() || (!length.empty() && length != "0");
+  const auto length = request.headers.find("content-length");
+  const bool told = length != request.headers.end();
+  return !request.header("transfer-encoding").empty() || (told ? length->second != "0" : request.method == "POST");
 }
 
 void check_body_headers(const Request& request, std::size_t max_bytes) {

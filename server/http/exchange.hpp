@@ -49,6 +49,7 @@ void check_body_headers(const Request& request, std::size_t max_bytes);
 /// otherwise, and for other than one Host (RFC 9112 3.2).
 void check_headers(const httplib::Request& head);
 
+/// Also a POST without a length: the library leaves out one that is empty, and nobody knows what comes next.
 bool announces_body(const Request& request);
 
 struct BodyLimits {

@@ -1,0 +1,72 @@
+#include "server/http/chunk_check.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace roadfix::http {
+namespace {
+
+constexpr int kMostDigits = 15;
+
+int hex_value(char byte) {
+  if (byte >= '0' && byte <= '9') return byte - '0';
+  if (byte >= 'a' && byte <= 'f') return byte - 'a' + 10;
+  if (byte >= 'A' && byte <= 'F') return byte - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+bool ChunkCheck::follow(std::string_view bytes) {
+  while (!bytes.empty() && part_ != Part::kRest) {
+    if (part_ == Part::kData) {
+      const std::size_t skipped = std::min(left_, bytes.size());
+      left_ -= skipped;
+      bytes.remove_prefix(skipped);
+      if (left_ == 0) part_ = Part::kDataEnd;
+      continue;
+    }
+    if (!follow_byte(bytes.front())) return false;
+    bytes.remove_prefix(1);
+  }
+  return true;
+}
+
+bool ChunkCheck::follow_byte(char byte) {
+  switch (part_) {
+    case Part::kSize:
+      return in_size(byte);
+    case Part::kExtension:
+      if (byte == '\r') part_ = Part::kSizeEnd;
+      return byte != '\n';
+    case Part::kSizeEnd:
+      part_ = left_ == 0 ? Part::kRest : Part::kData;
+      return byte == '\n';
+    case Part::kDataEnd:
+      part_ = Part::kDataLineFeed;
+      return byte == '\r';
+    case Part::kDataLineFeed:
+      part_ = Part::kSize;
+      return byte == '\n';
+    case Part::kData:
+    case Part::kRest:
+      break;
+  }
+  return true;
+}
+
+bool ChunkCheck::in_size(char byte) {
+  if (const int value = hex_value(byte); value >= 0) {
+    left_ = left_ << 4U | static_cast<std::size_t>(value);
+    return ++digits_ <= kMostDigits;
+  }
+  const bool any = std::exchange(digits_, 0) > 0;
+  if (byte == '\r') {
+    part_ = Part::kSizeEnd;
+  } else {
+    part_ = Part::kExtension;
+  }
+  return any && (byte == '\r' || byte == ';' || byte == ' ' || byte == '\t');
+}
+
+}  // namespace roadfix::http

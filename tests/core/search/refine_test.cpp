@@ -14,18 +14,18 @@
 namespace roadfix {
 namespace {
 
-constexpr GridGeometry kTown{2.0, {150'000, -2'000'000}, 600, 500};
-const Deadline kNoDeadline({}, std::nullopt);
+constexpr GridGeometry kRefinedTown{2.0, {150'000, -2'000'000}, 600, 500};
+const Deadline kUnlimited({}, std::nullopt);
 
 /// A town, what was seen somewhere in it, and poses anywhere in it.
-struct Question {
+struct SeenTown {
   RoadGrid map;
   GridReader read = testing::reader_of(map);
   FeatureMap seen;
   PoseRegion region;
   std::mt19937_64 random;
 
-  explicit Question(std::uint64_t seed) : map(testing::street_map(seed, kTown)), random(seed) {
+  explicit SeenTown(std::uint64_t seed) : map(testing::street_map(seed, kRefinedTown)), random(seed) {
     region.box = map.geometry.box();
     seen = testing::observed_at(map, testing::pose_within(region.box, 200.0, random), 90, 80, 2.0, {0.2, 0.2}, random);
   }
@@ -41,7 +41,7 @@ struct Question {
 };
 
 /// The best of all poses within +- 2 cells and bins.
-double brute_force(const Level& level, const LatticePose& pose) {
+double best_within_reach(const Level& level, const LatticePose& pose) {
   const MapPlane plane(level.read(window_around(level, pose, 2)).cells);
   const std::vector<PlaneCell> places = places_around({plane.cols() / 2, plane.rows() / 2}, 2);
   std::vector<MatchSums> sums(places.size());
@@ -60,19 +60,19 @@ TEST(Refine, FindsTheBestOfAllPosesWithinReachOfOneNextToAPeak) {
   int poses = 0;
   int missed = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    Question question(seed);
-    const SearchLevels levels = question.levels();
+    SeenTown town(seed);
+    const SearchLevels levels = town.levels();
     const Level& level = levels.finest();
-    std::vector<LatticePose> begin = question.poses(level, 60);
-    for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kNoDeadline, begin));
-    const auto shift = [&] { return static_cast<int>(question.random() % 3) - 1; };
+    std::vector<LatticePose> begin = town.poses(level, 60);
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kUnlimited, begin));
+    const auto shift = [&] { return static_cast<int>(town.random() % 3) - 1; };
     for (LatticePose& pose : begin) {
       pose = {{pose.cell.col + shift(), pose.cell.row + shift()}, level.bins.wrapped(pose.bin + shift())};
     }
     std::vector<LatticePose> found = begin;
-    ASSERT_TRUE(refine(level, 2, 2, kNoDeadline, found));
+    ASSERT_TRUE(refine(level, 2, 2, kUnlimited, found));
     for (std::size_t i = 0; i < begin.size(); ++i) {
-      const double best = brute_force(level, begin[i]);
+      const double best = best_within_reach(level, begin[i]);
       EXPECT_LE(found[i].score, best + kRounding);
       EXPECT_LE(std::abs(found[i].cell.col - begin[i].cell.col), 2);
       EXPECT_LE(std::abs(found[i].cell.row - begin[i].cell.row), 2);
@@ -85,27 +85,27 @@ TEST(Refine, FindsTheBestOfAllPosesWithinReachOfOneNextToAPeak) {
 }
 
 TEST(Refine, ReachesAPeakTwoCellsAndBinsAway) {
-  Question question(4);
-  const SearchLevels levels = question.levels();
+  SeenTown town(4);
+  const SearchLevels levels = town.levels();
   const Level& level = levels.finest();
-  std::vector<LatticePose> peak = question.poses(level, 40);
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kNoDeadline, peak));
+  std::vector<LatticePose> peak = town.poses(level, 40);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kUnlimited, peak));
   const auto top = std::ranges::max_element(peak, {}, &LatticePose::score);
   std::vector<LatticePose> beside{{{top->cell.col + 2, top->cell.row - 2}, level.bins.wrapped(top->bin + 2)}};
-  ASSERT_TRUE(refine(level, 2, 2, kNoDeadline, beside));
+  ASSERT_TRUE(refine(level, 2, 2, kUnlimited, beside));
   EXPECT_EQ(beside.front().cell, top->cell);
   EXPECT_EQ(beside.front().bin, top->bin);
   EXPECT_EQ(beside.front().score, top->score);
 }
 
 TEST(GroundAround, GivesTheSameSumsForAFootprintThatHeadingsAQuarterTurnApartShare) {
-  Question question(5);
-  const SearchLevels levels = question.levels();
+  SeenTown town(5);
+  const SearchLevels levels = town.levels();
   const Level& level = levels.finest();
   ASSERT_EQ(level.bins.count() % 4, 0);
-  const std::vector<LatticePose> poses = question.poses(level, 50);
-  const GroundAround as_it_is(level, 0, 0, kNoDeadline, poses);
-  const GroundAround rotated(level, 0, level.bins.count(), kNoDeadline, poses);
+  const std::vector<LatticePose> poses = town.poses(level, 50);
+  const GroundAround as_it_is(level, 0, 0, kUnlimited, poses);
+  const GroundAround rotated(level, 0, level.bins.count(), kUnlimited, poses);
   ASSERT_FALSE(as_it_is.rotated());
   ASSERT_TRUE(rotated.rotated());
   std::vector<std::size_t> each(poses.size());

@@ -63,6 +63,11 @@ void explain(Decision& decision, const char* reason, std::string explanation) {
   decision.explanation = std::move(explanation);
 }
 
+/// Whatever it has, it is no fix.
+void explain_time_limit(Decision& decision, const SearchResult& found) {
+  explain(decision, "search-time-limit", time_was_over(found));
+}
+
 std::string below_confidence(double probability, const Calibration& calibration, double confidence) {
   constexpr double kNearly = 0.95;
   if (confidence > calibration.highest && probability >= kNearly * calibration.highest) {
@@ -135,7 +140,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
     return decision;
   }
   if (found.modes.empty()) {
-    explain(decision, kTimeLimitReason, time_was_over(found));
+    explain_time_limit(decision, found);
     return decision;
   }
   const SearchFigures figures = figures_of(found);
@@ -146,13 +151,13 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   decision.probability = share * within;
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
-    explain(decision, kTimeLimitReason, time_was_over(found));
+    explain_time_limit(decision, found);
   } else if (figures.roads_across < kMinRoadsAcross) {
     explain(decision, kNotAboveChanceReason, shares_one_road(figures));
   } else if (decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
   } else if (within >= confidence || (within > kLikely && share < 0.5)) {
-    explain(decision, kBetterOutsideReason, fits_outside(found));
+    explain(decision, "better-outside-prior", fits_outside(found));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, posterior, calibration, confidence);
   } else if (decision.probability > kLikely) {

@@ -27,14 +27,8 @@ struct Decision {
   std::vector<double> weights;
 };
 
-/// Of a search that its time limit ended: whatever it has, it is no fix.
-inline constexpr const char* kTimeLimitReason = "search-time-limit";
-
 /// Chance explains the best place: the UAV is not over the map, or what it sees looks like everywhere.
 inline constexpr const char* kNotAboveChanceReason = "not-above-chance";
-
-/// A place just outside of the prior fits as well or better.
-inline constexpr const char* kBetterOutsideReason = "better-outside-prior";
 
 inline constexpr double kModeShare = 0.01;
 

@@ -50,7 +50,7 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMo
 constexpr double kMostProbable = 0.5;
 
 bool claims_a_place(const Fix& fix) {
-  const bool likely = fix.probability > kMostProbable && fix.reason != kTimeLimitReason;
+  const bool likely = fix.probability > kMostProbable && fix.complete;
   return fix.status == FixStatus::kFix || likely;
 }
 
@@ -106,7 +106,7 @@ Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decisi
   fix.probability = decision.probability;
   fix.figures = decision.figures;
   fix.searched_share = found.scanned_share;
-  fix.complete = decision.reason != kTimeLimitReason;
+  fix.complete = found.complete();
   fix.headings = found.headings;
   fix.scales = found.scales;
   fix.proof = found.proof;

@@ -56,6 +56,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
       static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());
   const bool found = !fix.modes.empty() && is_at(fix.modes.front(), place, map.zone, cell_m);
   result.reason = fix.reason;
+  result.complete = fix.complete;
   result.explanation = fix.explanation;
   if (found) {
     result.status = fix.status;

@@ -19,6 +19,7 @@ struct Localizability {
   FixStatus status = FixStatus::kNoFix;  ///< what the frame would give; `fix` only at the place itself
   std::string reason;                    ///< as of a Fix, or "wrong-place" where the best place is another one
   std::string explanation;               ///< the reason as a sentence for an operator
+  bool complete = true;         ///< false where the time limit ended the search: whatever it found, it is no fix
   double probability = 0.0;     ///< that the frame would be placed rightly; 0 where the best place is another one
   double road_share = 0.0;      ///< how much of the observed part of the footprint is road, 0 to 1
   double observed_share = 0.0;  ///< how much of the footprint the map has observed, 0 to 1

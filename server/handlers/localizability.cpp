@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "core/locate/decision.hpp"
 #include "core/units/error.hpp"
 #include "core/units/lru_cache.hpp"
 #include "server/api/fields.hpp"
@@ -79,7 +78,7 @@ std::optional<api::PlaceAnswer> searched(const Service& service, const http::Req
   query.footprint_m = layer.footprint_m;
   query.fix = fix_options(service, request);
   const Localizability found = localizability(layer.map->view, query);
-  if (found.reason == kTimeLimitReason) {
+  if (!found.complete) {
     throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
   }
   if (found.observed_share < kMinObservedShare) return std::nullopt;

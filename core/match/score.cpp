@@ -5,9 +5,10 @@
 
 namespace roadfix {
 
-FootprintCells footprint_cells(const FeatureMap& features, double min_share) {
+FootprintCells footprint_cells(const FeatureMap& features) {
+  constexpr double kMinShare = 0.5;
   const auto full = static_cast<std::int64_t>(features.cells.observed_count());
-  return {full, std::max(1.0, min_share * static_cast<double>(full))};
+  return {full, std::max(1.0, kMinShare * static_cast<double>(full))};
 }
 
 double score_of(const MatchSums& s, const FootprintCells& cells) {

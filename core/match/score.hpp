@@ -18,8 +18,8 @@ struct FootprintCells {
   double min = 1.0;       ///< observed in both, below which a pose has no score
 };
 
-/// At least one cell and this share of those observed have to be observed in both.
-FootprintCells footprint_cells(const FeatureMap& features, double min_share);
+/// At least one cell and half of those observed have to be observed in both.
+FootprintCells footprint_cells(const FeatureMap& features);
 
 /// r * sqrt(n / cells.full); 0 where less than cells.min were observed in both or one of them holds too little road.
 double score_of(const MatchSums& sums, const FootprintCells& cells);

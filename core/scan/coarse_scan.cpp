@@ -35,7 +35,7 @@ class Scan {
         request_(request),
         deadline_(deadline),
         map_(map),
-        cells_(footprint_cells(features, request.min_observed_share)),
+        cells_(footprint_cells(features)),
         feature_mean_(moments_of(features.cells).mean()),
         tile_scan_(map, request) {
     assert(footprint_reach(features) <= map.reach());

@@ -26,8 +26,7 @@ struct ScanRequest {
   HeadingBins bins{2};
   std::vector<int> headings;                       ///< bins to scan, ascending
   std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all
-  double min_observed_share = 0.5;
-  std::size_t keep = 4096;  ///< best local maxima (within a heading) to return
+  std::size_t keep = 4096;                         ///< best local maxima (within a heading) to return
   int threads = 1;
   std::function<void(std::size_t headings)> scanned;  ///< so far; from any of the threads, one at a time
 };

@@ -10,12 +10,12 @@ namespace roadfix {
 
 GridPose Level::pose_of(const LatticePose& pose) const { return grid_pose_of(pose, cell_m(), bins); }
 
-LevelFeatures::LevelFeatures(FeatureMap features, double min_share)
-    : map(std::move(features)), rotator(map), cells(footprint_cells(map, min_share)) {}
+LevelFeatures::LevelFeatures(FeatureMap features)
+    : map(std::move(features)), rotator(map), cells(footprint_cells(map)) {}
 
 LevelFeatures Level::at_scale(int index) const {
   if (index == 0) return features;
-  return {resampled(source, cell_m(), scales.factor(index)), min_share};
+  return LevelFeatures(resampled(source, cell_m(), scales.factor(index)));
 }
 
 int Level::reach(int scale) const {

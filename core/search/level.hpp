@@ -16,14 +16,13 @@ struct LevelFeatures {
   FeatureRotator rotator;
   FootprintCells cells;
 
-  LevelFeatures(FeatureMap features, double min_share);
+  explicit LevelFeatures(FeatureMap features);
 };
 
 struct Level {
   const GridReader& read;
   const FeatureMap& source;  ///< what the search was given
   LevelFeatures features;    ///< in the cells of this level, as large as it was given
-  double min_share = 0.5;
   HeadingBins bins{2};
   Scales scales;
   int threads = 1;

@@ -39,7 +39,6 @@ struct SearchOptions {
   int max_modes = kRankedModes;  ///< more of them follow those that are compared
   /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMaxScaleRange].
   double scale_range = 0.0;
-  double min_observed_share = 0.5;  ///< of the feature map's observed cells that the map must have observed too
   int threads = 1;
   /// Of the map: within it the ground around the region is searched as well, half a footprint beyond and 4 km^2 in all
   /// at least, and headings a little beside, to tell what chance gives and whether another place fits better. nullopt =

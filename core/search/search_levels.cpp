@@ -82,9 +82,9 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   finest_ = finest_level(finest_cell_m, seen_m_, coarsest);
   for (int k = finest_; k <= coarsest; ++k) {
     const double cell_m = std::ldexp(finest_cell_m, k);
-    levels_.push_back({read, features, LevelFeatures(resampled(features, cell_m), options.min_observed_share),
-                       options.min_observed_share, HeadingBins(bins.count() << (coarsest - k)),
-                       scales.finer(1 << (coarsest - k)), options.threads});
+    levels_.push_back({read, features, LevelFeatures(resampled(features, cell_m)),
+                       HeadingBins(bins.count() << (coarsest - k)), scales.finer(1 << (coarsest - k)),
+                       options.threads});
   }
 }
 

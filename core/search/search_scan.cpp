@@ -63,7 +63,6 @@ ScanRequest SearchScan::request() const {
   const PoseRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
   request.headings = bins_within(request.bins, wide);
   request.eligible = cells_within(request.positions, wide);
-  request.min_observed_share = options_.min_observed_share;
   request.keep = kScanMaxima;
   request.threads = options_.threads;
   return request;

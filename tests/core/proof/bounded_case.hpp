@@ -51,7 +51,7 @@ class BoundedCase {
     search.positions = positions_;
     const bool part = seed % 5 == 0;
     search.eligible = [part](int col, int row) { return !part || (col + 2 * row) % 7 < 4; };
-    search.cells = footprint_cells(features_, 0.5);
+    search.cells = footprint_cells(features_);
   }
   BoundedCase(const BoundedCase&) = delete;
   BoundedCase& operator=(const BoundedCase&) = delete;

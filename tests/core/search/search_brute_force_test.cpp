@@ -22,7 +22,7 @@ using testing::pose_within;
 using testing::reader_of;
 
 /// Best score over every cell and heading bin of the map.
-double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins, double min_share) {
+double brute_force(const RoadGrid& map, const FeatureMap& features, const HeadingBins& bins) {
   double best = 0.0;
   const int margin = 2 * footprint_reach(features);
   const MapPlane plane(padded(map.cells, margin));
@@ -35,7 +35,7 @@ double brute_force(const RoadGrid& map, const FeatureMap& features, const Headin
     const PackedFootprint footprint = footprint_at(features, bins.heading(bin));
     match_sums(plane, footprint, places, sums);
     for (const MatchSums& s : sums) {
-      best = std::max(best, score_of(s, footprint_cells(features, min_share)));
+      best = std::max(best, score_of(s, footprint_cells(features)));
     }
   }
   return best;
@@ -62,8 +62,7 @@ TEST(Search, FindsTheBestPoseOfBruteForceOnSmallMaps) {
     };
     const FeatureMap features = unrelated ? FeatureMap::centred(testing::smooth_cells(random, 15, 13), 2.0) : seen();
     const double extent_m = 2.0 * std::max(features.cells.cols(), features.cells.rows());
-    const double best =
-        brute_force(map, features, HeadingBins::for_footprint(0.5 * extent_m, 2.0), SearchOptions{}.min_observed_share);
+    const double best = brute_force(map, features, HeadingBins::for_footprint(0.5 * extent_m, 2.0));
     const SearchResult found = search(reader_of(map), 2.0, features, region, {});
     if (best == 0.0) continue;
     if (found.modes.empty() || found.modes[0].score < best - 1e-9) ++missed;

@@ -271,6 +271,7 @@ TEST_F(RoadLines, TablesWithoutGeometriesBesideTheRoadsAreNoConcern) {
 }
 
 TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) {
+  require_gdal();
   const auto another = [&](const std::string& name, const std::string& geometry) {
     std::ofstream(folder / name) << R"({"type":"Feature","properties":{},"geometry":)" + geometry + "}";
     return std::string(folder / name);
@@ -294,6 +295,7 @@ TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) 
 }
 
 TEST_F(RoadLines, TheCentreIsWhereTheyAreWhateverAGeoPackageStates) {
+  require_gdal();
   const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
   const std::string path = (folder / "roads.gpkg").string();
   {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBinM = 20.0;
 constexpr std::int64_t kTurnBins = 24;
 
-using Bin = std::array<std::int64_t, 3>;
+using CoarseBin = std::array<std::int64_t, 3>;
 
 class UnionFind {
  public:
@@ -32,12 +32,12 @@ class UnionFind {
 };
 
 struct Binning {
-  std::vector<Bin> bins;            ///< sorted, distinct
+  std::vector<CoarseBin> bins;      ///< sorted, distinct
   std::vector<std::size_t> bin_of;  ///< for each of the particles with weight
 };
 
 Binning binned(const Particles& particles, const std::vector<std::size_t>& members) {
-  std::vector<Bin> of_member;
+  std::vector<CoarseBin> of_member;
   for (const std::size_t i : members) {
     const double turned = Angle::radians(particles.heading_rad[i]).compass_degrees() / 360.0;
     of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / kBinM)),
@@ -47,19 +47,19 @@ Binning binned(const Particles& particles, const std::vector<std::size_t>& membe
   Binning result{of_member, {}};
   std::ranges::sort(result.bins);
   result.bins.erase(std::unique(result.bins.begin(), result.bins.end()), result.bins.end());
-  for (const Bin& bin : of_member) {
+  for (const CoarseBin& bin : of_member) {
     result.bin_of.push_back(static_cast<std::size_t>(std::ranges::lower_bound(result.bins, bin) - result.bins.begin()));
   }
   return result;
 }
 
 /// Joins each bin with those of its 26 neighbours that hold particles; headings go round.
-UnionFind joined(const std::vector<Bin>& bins) {
+UnionFind joined(const std::vector<CoarseBin>& bins) {
   UnionFind groups(bins.size());
   for (std::size_t i = 0; i < bins.size(); ++i) {
     for (int k = 0; k < 27; ++k) {
-      const Bin near{bins[i][0] + k % 3 - 1, bins[i][1] + k / 3 % 3 - 1,
-                     (bins[i][2] + k / 9 - 1 + kTurnBins) % kTurnBins};
+      const CoarseBin near{bins[i][0] + k % 3 - 1, bins[i][1] + k / 3 % 3 - 1,
+                           (bins[i][2] + k / 9 - 1 + kTurnBins) % kTurnBins};
       const auto found = std::ranges::lower_bound(bins, near);
       if (found != bins.end() && *found == near) groups.join(i, static_cast<std::size_t>(found - bins.begin()));
     }

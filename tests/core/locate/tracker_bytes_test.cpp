@@ -117,7 +117,8 @@ TEST(TrackerBytes, AreRefusedWhereAWordIsDamagedThatMayNotBeAnything) {
 TEST(TrackerBytes, WithCountsBeyondTheirEndAreRefusedBeforeAnyMemoryIsReserved) {
   const std::vector<std::byte> bytes = to_bytes(blind());
   const std::size_t words = bytes.size() / kWordBytes;
-  const std::size_t particles = words - 1 - 7 * 2 - 1;  // before their seven columns and the count of frames
+  const std::size_t columns = 7;
+  const std::size_t particles = words - 1 - 2 * columns - 1;  // before the columns of both and the count of frames
   EXPECT_EQ(refusal_of(with_word(bytes, particles, 2)), "no error");
   EXPECT_EQ(refusal_of(with_word(bytes, particles, 0)), "track-store-corrupt") << "a filter without particles";
   for (const std::uint64_t count : {1ULL, 3ULL, 1ULL << 40U, (1ULL << 61U) + 2, ~0ULL}) {

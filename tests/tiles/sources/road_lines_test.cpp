@@ -323,7 +323,7 @@ TEST_F(RoadLines, OfOpenStreetMapBeyondMemoryAskForRoomAndAreNotCalledDamaged) {
   require_gdal();
   const auto read = [&](const std::string& temporary) {
     keep_temporary_files_beside(temporary + "/m.gpkg");
-    const std::string code = code_of([&] { read_road_network({path}, {}, RoadRules(), kZone); });
+    std::string code = code_of([&] { read_road_network({path}, {}, RoadRules(), kZone); });
     CPLSetConfigOption("CPL_TMPDIR", nullptr);
     return code;
   };

@@ -6,9 +6,7 @@ namespace roadfix::cli {
 
 void add_bbox_option(CLI::App& command, const std::string& what, std::optional<GeoBox>& box) {
   const auto take = [&box](const std::vector<double>& bounds) {
-    constexpr double kTurn = 360.0;
-    const double east = bounds[2] + (bounds[0] - bounds[2] > kTurn / 2.0 ? kTurn : 0.0);  // across the antimeridian
-    box = GeoBox{{bounds[1], bounds[0]}, {bounds[3], east}};
+    box = GeoBox{{bounds[1], bounds[0]}, {bounds[3], eastern_side_deg(bounds[0], bounds[2])}};
     if (box->empty()) throw CLI::ValidationError("--bbox", "west must lie below east, and south below north");
   };
   command

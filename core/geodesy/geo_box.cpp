@@ -46,6 +46,11 @@ GridBox on_plane(const UtmZone& zone, const NearBox& part) {
 
 }  // namespace
 
+double eastern_side_deg(double west_deg, double east_deg) {
+  constexpr double kTurn = 360.0;
+  return west_deg - east_deg > kTurn / 2.0 ? east_deg + kTurn : east_deg;
+}
+
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
   // Along a side the extreme lies between samples by less than its curvature over one step: centimetres for a city.
   constexpr int kSteps = 16;

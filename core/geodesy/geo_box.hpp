@@ -17,6 +17,10 @@ struct GeoBox {
   }
 };
 
+/// The eastern side of a box, as people write it: beyond 180 degrees where west lies more than half a turn above it,
+/// since the box crosses the antimeridian then.
+double eastern_side_deg(double west_deg, double east_deg);
+
 /// The smallest one around a box of the plane, which is not empty, to centimetres for a city.
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box);
 

@@ -39,7 +39,7 @@ double StepMotion::speed_m_s() const {
 
 double StepMotion::way_m() const {
   if (!told_.odometry) return speed_m_s() * told_.seconds;
-  return std::hypot(told_.odometry->forward_m, told_.odometry->right_m) * static_cast<double>(1 + told_.lost_steps);
+  return distance_m(*told_.odometry) * static_cast<double>(1 + told_.lost_steps);
 }
 
 Wind StepMotion::wind() const {

@@ -4,20 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "server/http/url.hpp"
 
 namespace roadfix::http {
 namespace {
 
-/// "localhost:8080", "[::1]:8080": what stands before the port.
-std::string name_of(const std::string& host) {
-  const std::string name = lower_case(host);
-  if (name.starts_with('[')) return name.substr(1, std::min(name.find(']'), name.size()) - 1);
-  return std::ranges::count(name, ':') == 1 ? name.substr(0, name.find(':')) : name;
-}
+std::string name_of(const std::string& host) { return lower_case(without_port(host)); }
 
 bool is_this_machine(const std::string& name) {
   if (name == "localhost") return true;

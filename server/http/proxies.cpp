@@ -8,6 +8,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "server/http/url.hpp"
 
 namespace roadfix::http {
 namespace {
@@ -29,12 +30,6 @@ std::optional<ParsedAddress> parsed_address(std::string_view text) {
   result.bits = kV4Bits;
   if (inet_pton(AF_INET, terminated.c_str(), result.address.data() + 12) == 1) return result;
   return std::nullopt;
-}
-
-/// Some proxies add the port: "192.0.2.1:4711", "[2001:db8::1]:4711".
-std::string_view without_port(std::string_view text) {
-  if (text.starts_with('[')) return text.substr(1, std::min(text.find(']'), text.size()) - 1);
-  return std::ranges::count(text, ':') == 1 ? text.substr(0, text.find(':')) : text;
 }
 
 bool same_bits(const AddressBytes& a, const AddressBytes& b, int bits) {

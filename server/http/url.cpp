@@ -93,4 +93,9 @@ Target parse_target(std::string_view target) {
   return parsed;
 }
 
+std::string_view without_port(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(1, std::min(host.find(']'), host.size()) - 1);
+  return std::ranges::count(host, ':') == 1 ? host.substr(0, host.find(':')) : host;
+}
+
 }  // namespace roadfix::http

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
+#include "tiles/store/file_identity.hpp"
 #include "tiles/store/sqlite.hpp"
 
 namespace roadfix::server {
@@ -78,13 +78,6 @@ bool is_of_another_program(sqlite::Connection& connection, std::int64_t version)
          sqlite::number(connection,
                         "SELECT count(*) FROM pragma_table_info('tracks') WHERE name IN ('id', 'client', "
                         "'request', 'map', 'map_version', 'touched_us')") != 6;
-}
-
-/// What tells a file from another one of its name; nullopt where there is none.
-std::optional<std::pair<dev_t, ino_t>> identity_of(const std::filesystem::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  return std::pair{status.st_dev, status.st_ino};
 }
 
 const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
@@ -176,7 +169,7 @@ class TrackStore::Impl {
   std::filesystem::path path_;
   mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;
-  std::optional<std::pair<dev_t, ino_t>> identity_;  ///< of the file when it was opened
+  std::optional<FileIdentity> identity_;  ///< of the file when it was opened
   std::optional<std::string> problem_;
 };
 

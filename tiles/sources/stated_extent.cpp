@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/line_on_plane.hpp"
 #include "tiles/sources/poly_file.hpp"
@@ -64,8 +65,7 @@ std::optional<OGREnvelope> box_in_degrees(const std::string& extent) {
       static_cast<std::size_t>(used) != extent.size()) {
     return std::nullopt;
   }
-  constexpr double kTurn = 360.0;
-  if (box.MinX - box.MaxX > kTurn / 2.0) box.MaxX += kTurn;  // across the antimeridian
+  box.MaxX = eastern_side_deg(box.MinX, box.MaxX);
   if (!(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
     throw InvalidInput(
         "extent-unreadable",

@@ -1,7 +1,6 @@
 #include "tiles/store/map_reader.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cassert>
@@ -11,6 +10,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "tiles/store/file_identity.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/shift_table.hpp"
@@ -24,12 +24,6 @@ namespace {
 using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
-
-/// Which file has the name now.
-std::pair<dev_t, ino_t> file_named(const std::filesystem::path& path) {
-  struct stat file {};
-  return stat(path.c_str(), &file) == 0 ? std::pair(file.st_dev, file.st_ino) : std::pair<dev_t, ino_t>();
-}
 
 /// A connection with its prepared query serves one thread at a time.
 struct Channel {
@@ -59,7 +53,7 @@ TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
 
 struct MapReader::State {
   State(const std::filesystem::path& name, std::size_t cache_bytes)
-      : path(name), file(file_named(name)), cache(cache_bytes) {
+      : path(name), file(identity_of(name)), cache(cache_bytes) {
     Channel first(open_map(path, Access::kRead));
     info = read_info(*first.map);
     idle.push_back(std::move(first));
@@ -85,7 +79,7 @@ struct MapReader::State {
       }
     }
     Channel channel(open_map(path, Access::kRead));
-    if (file_named(path) == file) return channel;
+    if (identity_of(path) == file) return channel;
     throw Interrupted("map-renewed",
                       fmt::format("{}: another file took its place while it was read. Try again", path.string()));
   }
@@ -111,7 +105,7 @@ struct MapReader::State {
   }
 
   std::filesystem::path path;
-  std::pair<dev_t, ino_t> file;  ///< that all channels read, whatever has the name by now
+  std::optional<FileIdentity> file;  ///< that all channels read, whatever has the name by now
   std::optional<MapInfo> info;
   TileCache cache;
   std::mutex mutex;

@@ -3,23 +3,21 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "core/units/error.hpp"
+#include "tiles/store/file_identity.hpp"
 
 namespace roadfix {
 namespace {
 
 /// The last holder may have removed the file between our open and our lock.
 bool still_there(int descriptor, const std::filesystem::path& path) {
-  struct stat held {};
-  struct stat named {};
-  return fstat(descriptor, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
-         held.st_dev == named.st_dev;
+  const std::optional<FileIdentity> held = identity_of(descriptor);
+  return held && held == identity_of(path);
 }
 
 }  // namespace

@@ -7,29 +7,17 @@
 
 #include "core/match/footprint.hpp"
 #include "core/search/ground_around.hpp"
-#include "core/search/search_levels.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/street_map.hpp"
+#include "tests/core/search/seen_town.hpp"
 
 namespace roadfix {
 namespace {
 
-constexpr GridGeometry kRefinedTown{2.0, {150'000, -2'000'000}, 600, 500};
 const Deadline kUnlimited({}, std::nullopt);
 
-/// A town, what was seen somewhere in it, and poses anywhere in it.
-struct SeenTown {
-  RoadGrid map;
-  GridReader read = testing::reader_of(map);
-  FeatureMap seen;
-  PoseRegion region;
-  std::mt19937_64 random;
+struct RefinedTown : testing::SeenTown {
+  explicit RefinedTown(std::uint64_t seed) : SeenTown(seed, 600, 500, 200.0, 90, 80) {}
 
-  explicit SeenTown(std::uint64_t seed) : map(testing::street_map(seed, kRefinedTown)), random(seed) {
-    region.box = map.geometry.box();
-    seen = testing::observed_at(map, testing::pose_within(region.box, 200.0, random), 90, 80, 2.0, {0.2, 0.2}, random);
-  }
-  SearchLevels levels() const { return {read, 2.0, seen, region, {}}; }
+  /// Anywhere in it.
   std::vector<LatticePose> poses(const Level& level, int count) {
     std::vector<LatticePose> result;
     for (int i = 0; i < count; ++i) {
@@ -60,7 +48,7 @@ TEST(Refine, FindsTheBestOfAllPosesWithinReachOfOneNextToAPeak) {
   int poses = 0;
   int missed = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    SeenTown town(seed);
+    RefinedTown town(seed);
     const SearchLevels levels = town.levels();
     const Level& level = levels.finest();
     std::vector<LatticePose> begin = town.poses(level, 60);
@@ -85,7 +73,7 @@ TEST(Refine, FindsTheBestOfAllPosesWithinReachOfOneNextToAPeak) {
 }
 
 TEST(Refine, ReachesAPeakTwoCellsAndBinsAway) {
-  SeenTown town(4);
+  RefinedTown town(4);
   const SearchLevels levels = town.levels();
   const Level& level = levels.finest();
   std::vector<LatticePose> peak = town.poses(level, 40);
@@ -99,7 +87,7 @@ TEST(Refine, ReachesAPeakTwoCellsAndBinsAway) {
 }
 
 TEST(GroundAround, GivesTheSameSumsForAFootprintThatHeadingsAQuarterTurnApartShare) {
-  SeenTown town(5);
+  RefinedTown town(5);
   const SearchLevels levels = town.levels();
   const Level& level = levels.finest();
   ASSERT_EQ(level.bins.count() % 4, 0);

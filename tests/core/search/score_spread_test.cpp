@@ -2,31 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include "core/search/search_levels.hpp"
-#include "tests/support/random_pose.hpp"
-#include "tests/support/street_map.hpp"
+#include "tests/core/search/seen_town.hpp"
 
 namespace roadfix {
 namespace {
 
-constexpr GridGeometry kTown{2.0, {150'000, -2'000'000}, 800, 700};
 const Deadline kNoDeadline({}, std::nullopt);
 
-/// A town, what was seen somewhere in it, and where that is looked for.
-struct Question {
-  RoadGrid map;
-  GridReader read = testing::reader_of(map);
-  FeatureMap seen;
-  PoseRegion region;
+struct Question : testing::SeenTown {
+  Question(std::uint64_t seed, int cells) : SeenTown(seed, 800, 700, 300.0, cells, cells) {}
 
-  Question(std::uint64_t seed, int cells) : map(testing::street_map(seed, kTown)) {
-    std::mt19937_64 random(seed);
-    region.box = map.geometry.box();
-    seen = testing::observed_at(map, testing::pose_within(region.box, 300.0, random), cells, cells, 2.0, {0.2, 0.2},
-                                random);
-  }
   SearchResult answer() const { return search(read, 2.0, seen, region, {}); }
-  SearchLevels levels() const { return {read, 2.0, seen, region, {}}; }
 };
 
 // 256 places give the root of a mean square to 1 / sqrt(2 * 256) = 4.4 % (1 sigma), if all headings of a place counted
@@ -58,7 +44,7 @@ TEST(ScoreSpread, IsToldInCellsOf8MetresWhereTheScanHasCoarserOnes) {
 
 TEST(ScoreSpread, IsNotToldOfAMapWithoutObservedGround) {
   Question question(5, 150);
-  const RoadGrid empty = RoadGrid::unobserved(kTown);
+  const RoadGrid empty = RoadGrid::unobserved(question.map.geometry);
   question.read = testing::reader_of(empty);
   EXPECT_EQ(score_spread(question.levels().coarse(), question.region, kNoDeadline), std::nullopt);
 }

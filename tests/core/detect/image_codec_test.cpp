@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/encoded.hpp"
+#include "tests/support/peak_memory.hpp"
 
 namespace roadfix {
 namespace {
@@ -166,12 +166,6 @@ std::vector<std::uint8_t> text_chunk(std::size_t characters) {
   return chunk;
 }
 
-long max_memory_kib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
-}
-
 TEST(DecodeImage, TextsBesideThePixelsOfAPngCostNoMemory) {
   const auto png = encoded(".png", cv::Mat(16, 16, CV_8UC1, cv::Scalar(90)));
   const auto text = text_chunk(7'000'000);
@@ -179,9 +173,9 @@ TEST(DecodeImage, TextsBesideThePixelsOfAPngCostNoMemory) {
   constexpr std::ptrdiff_t kHeaderEnd = 33;
   auto padded = png;
   for (int i = 0; i < kTexts; ++i) padded.insert(padded.begin() + kHeaderEnd, text.begin(), text.end());
-  const long before = max_memory_kib();
+  const long before = testing::peak_memory_kib();
   EXPECT_EQ(cv::norm(decode_image(padded, kMany), decode_image(png, kMany), cv::NORM_INF), 0.0);
-  EXPECT_LT(max_memory_kib() - before, 50'000);
+  EXPECT_LT(testing::peak_memory_kib() - before, 50'000);
 }
 
 TEST(DecodeImage, PrintsNothingWhateverItIsGiven) {

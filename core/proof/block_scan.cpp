@@ -66,10 +66,14 @@ BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline)
       }
     }
   }
-  for (const Row& row : rows) {
-    result.eligible += std::ranges::count(row.eligible, true) * std::ssize(problem_.search.headings);
-  }
+  result.eligible = eligible(rows);
   return result;
+}
+
+std::int64_t BlockScan::eligible(const std::vector<Row>& rows) const {
+  std::int64_t blocks = 0;
+  for (const Row& row : rows) blocks += std::ranges::count(row.eligible, true);
+  return blocks * std::ssize(problem_.search.headings);
 }
 
 std::vector<BlockScan::Row> BlockScan::rows_of(const BlockTile& tile) const {

@@ -40,6 +40,8 @@ class BlockScan {
       : problem_(problem), headings_(headings), best_(best) {}
 
   std::vector<BlockTile> tiles() const;
+  /// As in BlockScanResult.
+  std::int64_t eligible(const BlockTile& tile) const { return eligible(rows_of(tile)); }
   /// Thread-safe.
   BlockScanResult scan(const BlockTile& tile, const Deadline& deadline) const;
 
@@ -54,6 +56,7 @@ class BlockScan {
   };
 
   std::vector<Row> rows_of(const BlockTile& tile) const;
+  std::int64_t eligible(const std::vector<Row>& rows) const;
   void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
   /// Exact sums of a tile, and of how many blocks that were tried they excluded so far.
   struct Ground {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -42,10 +41,9 @@ class BranchAndBound {
 
  private:
   double excluded_share() const {
-    const auto blocks = [](int cells) { return std::ceil(static_cast<double>(cells) / kBlockCells); };
-    const double all =
-        blocks(search_.positions.cols) * blocks(search_.positions.rows) * static_cast<double>(search_.headings.size());
-    return std::clamp((static_cast<double>(bounded_) - static_cast<double>(nodes_.size())) / all, 0.0, 1.0);
+    std::int64_t all = 0;
+    for (const BlockTile& tile : block_scan_.tiles()) all += block_scan_.eligible(tile);
+    return all > 0 ? static_cast<double>(bounded_ - std::ssize(nodes_)) / static_cast<double>(all) : 1.0;
   }
 
   /// False if time was over.

@@ -20,7 +20,6 @@ using nlohmann::json;
 
 constexpr std::size_t kFigures = kCountedFigures.size();
 constexpr int kFewest = 50;
-constexpr double kChiSquare95OfHeading = 3.841;  // with one degree of freedom
 // What parse_calibration() takes. Errors far below what the peak tells are those of simulated frames without a shift.
 constexpr double kSmallestScale = 0.1;
 constexpr double kLargestScale = 100.0;
@@ -48,12 +47,12 @@ Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force)
   for (const Outcome& outcome : outcomes) {
     if (!outcome.position_nees || !outcome.error_m || *outcome.error_m > kFalseFixM) continue;
     position.push_back(*outcome.position_nees);
-    heading.push_back(std::pow(*outcome.heading_error_deg / outcome.answer.mode->heading_sigma.degrees(), 2));
+    heading.push_back(*outcome.heading_nees);
   }
   if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
   const auto bounded = [](double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); };
   return {bounded(in_force.position_sigma_scale * scale_of(position, 2.0, evaluation::kChiSquare95)),
-          bounded(in_force.heading_sigma_scale * scale_of(heading, 1.0, kChiSquare95OfHeading))};
+          bounded(in_force.heading_sigma_scale * scale_of(heading, 1.0, evaluation::kChiSquare95OfHeading))};
 }
 
 /// Bias first.

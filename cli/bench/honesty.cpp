@@ -48,7 +48,30 @@ AtConfidence at_confidence(std::span<const Outcome> outcomes, double confidence)
   return at;
 }
 
+void count(double nees, double chi_square_95, Consistency& consistency) {
+  ++consistency.n;
+  consistency.mean_nees += (nees - consistency.mean_nees) / consistency.n;
+  consistency.within_95 += nees <= chi_square_95 ? 1 : 0;
+}
+
 json interval_json(const Interval& interval) { return {interval.low, interval.high}; }
+
+json consistency_json(const Consistency& consistency) {
+  json result = {{"n", consistency.n}};
+  if (consistency.n == 0) return result;
+  result["mean"] = consistency.mean_nees;
+  result["band_95"] = interval_json(chi_square_mean_band(consistency.n, consistency.dimensions));
+  result["within_95"] = consistency.within_95;
+  result["within_95_share_95"] = interval_json(clopper_pearson(consistency.within_95, consistency.n));
+  return result;
+}
+
+std::string consistency_text(const char* of, const Consistency& consistency) {
+  if (consistency.n == 0) return {};
+  const Interval band = chi_square_mean_band(consistency.n, consistency.dimensions);
+  return fmt::format("  {} NEES {:.2f} (consistent: {:.2f} to {:.2f}), {} of {} within their 95 %\n", of,
+                     consistency.mean_nees, band.low, band.high, consistency.within_95, consistency.n);
+}
 
 }  // namespace
 
@@ -63,11 +86,9 @@ Honesty honesty_of(std::span<const Outcome> outcomes) {
   honesty.at = {at_confidence(outcomes, 0.9), at_confidence(outcomes, 0.99), at_confidence(outcomes, 0.999)};
   for (const Outcome& outcome : outcomes) {
     if (!outcome.position_nees || outcome.answer.probability < kConfident || false_fix(outcome)) continue;
-    ++honesty.nees_n;
-    honesty.mean_nees += *outcome.position_nees;
-    honesty.within_95 += *outcome.position_nees <= evaluation::kChiSquare95 ? 1 : 0;
+    count(*outcome.position_nees, evaluation::kChiSquare95, honesty.position);
+    if (outcome.heading_nees) count(*outcome.heading_nees, evaluation::kChiSquare95OfHeading, honesty.heading);
   }
-  if (honesty.nees_n > 0) honesty.mean_nees /= honesty.nees_n;
   return honesty;
 }
 
@@ -87,18 +108,12 @@ json to_json(const Honesty& honesty) {
                   {"false_fixes", a.false_fixes},
                   {"false_fix_rate_95", interval_json(clopper_pearson(a.false_fixes, a.answered))}});
   }
-  json nees = {{"n", honesty.nees_n}};
-  if (honesty.nees_n > 0) {
-    nees["mean"] = honesty.mean_nees;
-    nees["band_95"] = interval_json(chi_square_mean_band(honesty.nees_n, 2));
-    nees["within_95_ellipse"] = honesty.within_95;
-    nees["within_95_ellipse_95"] = interval_json(clopper_pearson(honesty.within_95, honesty.nees_n));
-  }
   return {{"n", honesty.n},
           {"reliability", bins},
           {"expected_calibration_error", honesty.expected_calibration_error},
           {"at_confidence", at},
-          {"position_nees", nees}};
+          {"position_nees", consistency_json(honesty.position)},
+          {"heading_nees", consistency_json(honesty.heading)}};
 }
 
 std::string to_text(const Honesty& honesty) {
@@ -115,10 +130,7 @@ std::string to_text(const Honesty& honesty) {
     text += fmt::format("  at confidence {}: {} fixes, {} false (95 %: {:.4f} to {:.4f}), {} outside their ellipse\n",
                         a.confidence, a.answered, a.false_fixes, rate.low, rate.high, a.outside);
   }
-  if (honesty.nees_n == 0) return text;
-  const Interval band = chi_square_mean_band(honesty.nees_n, 2);
-  return text + fmt::format("  position NEES {:.2f} (consistent: {:.2f} to {:.2f}), {} of {} in the 95 % ellipse\n",
-                            honesty.mean_nees, band.low, band.high, honesty.within_95, honesty.nees_n);
+  return text + consistency_text("position", honesty.position) + consistency_text("heading", honesty.heading);
 }
 
 }  // namespace roadfix::bench

@@ -28,15 +28,22 @@ struct AtConfidence {
   int false_fixes = 0;  ///< of those, further off than kFalseFixM
 };
 
+/// Errors against stated standard deviations, of answers of probability 0.9 or more that are no false fixes.
+struct Consistency {
+  int dimensions = 0;
+  int n = 0;
+  double mean_nees = 0.0;  ///< as many as dimensions if the standard deviations are right
+  int within_95 = 0;       ///< of those answers, the truth lay within what is to hold 95 %
+};
+
 struct Honesty {
   int n = 0;                         ///< queries of which the answer has a probability
   std::vector<ReliabilityBin> bins;  ///< by rising probability, empty ones left out
   /// Mean distance between probability and share of right answers over the bins, weighed by their answers.
   double expected_calibration_error = 0.0;
   std::array<AtConfidence, 3> at;  ///< 0.9, 0.99, 0.999
-  int nees_n = 0;                  ///< answers of probability 0.9 or more that are no false fixes
-  double mean_nees = 0.0;          ///< of their position: 2 if the ellipse is right
-  int within_95 = 0;               ///< of those answers, the truth lay within the 95 % ellipse
+  Consistency position{2};
+  Consistency heading{1};
 };
 
 /// Outcomes without a mode (keypoint methods, nothing to search for) have no say.

@@ -59,6 +59,7 @@ json outcome_json(const Outcome& outcome) {
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},
           {"position_nees", number_or_null(outcome.position_nees)},
+          {"heading_nees", number_or_null(outcome.heading_nees)},
           {"keypoints", keypoints_json(answer.keypoints)},
           {"rho_at_truth", number_or_null(answer.rho_at_truth)},
           {"time_ms", answer.time_ms}};
@@ -82,7 +83,7 @@ std::string at_truth(const Summary& s) {
 }  // namespace
 
 Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answer answer, const UtmZone& zone) {
-  Outcome outcome{id, truth, std::move(answer), {}, {}, {}};
+  Outcome outcome{id, truth, std::move(answer), {}, {}, {}, {}};
   const auto& best = outcome.answer.best;
   if (best && !truth) {
     outcome.error_m = kNowhere;
@@ -92,6 +93,7 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
   }
   if (const auto& mode = outcome.answer.mode) {
     outcome.position_nees = truth ? nees(ellipse_of(*mode, zone), zone.project(truth->position)) : kNowhere;
+    if (truth) outcome.heading_nees = evaluation::heading_nees(mode->pose.heading, mode->heading_sigma, truth->heading);
   }
   return outcome;
 }

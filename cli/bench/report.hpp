@@ -21,6 +21,7 @@ struct Outcome {
   /// Squared error of the position in units of the stated ellipse, infinite where the truth is elsewhere; nullopt
   /// where no ellipse was stated.
   std::optional<double> position_nees;
+  std::optional<double> heading_nees;  ///< likewise; nullopt also where the truth is elsewhere
 };
 
 /// Errors of an answer, in the plane of the zone.

@@ -1,5 +1,5 @@
-// Is a position as uncertain as its ellipse says? The normalised estimation error squared (NEES), which is distributed
-// as chi^2 with two degrees of freedom where it is.
+// Is a pose as uncertain as it says? The normalised estimation error squared (NEES) is distributed as chi^2 where it
+// is, of a position with two degrees of freedom, of a heading with one.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,8 @@ namespace roadfix::evaluation {
 
 /// 95 % of chi^2 with two degrees of freedom lie below.
 inline constexpr double kChiSquare95 = 5.991;
+/// The same with one degree of freedom.
+inline constexpr double kChiSquare95OfHeading = 3.841;
 
 struct GridEllipse {
   GridPoint centre;
@@ -27,6 +29,12 @@ inline double nees(const GridEllipse& ellipse, GridPoint truth) {
   const double along = (east * s + north * c) / std::max(ellipse.sigma_m[0], kMinSigmaM);
   const double across = (east * c - north * s) / std::max(ellipse.sigma_m[1], kMinSigmaM);
   return along * along + across * across;
+}
+
+inline double heading_nees(Angle heading, Angle sigma, Angle truth) {
+  constexpr double kMinSigmaRad = 1e-6;
+  const double off = angular_distance(heading, truth).radians() / std::max(sigma.radians(), kMinSigmaRad);
+  return off * off;
 }
 
 }  // namespace roadfix::evaluation

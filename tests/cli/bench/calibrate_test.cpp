@@ -27,7 +27,7 @@ std::vector<Outcome> drawn(int n, std::uint64_t seed) {
     const double nees = -8.0 * std::log(1.0 - uniform(random, 0.0, 1.0));
     outcome.truth = GeoPose{};
     outcome.error_m = right ? 2.0 : 500.0;
-    outcome.heading_error_deg = 0.5;
+    outcome.heading_nees = 0.25;
     outcome.position_nees = right ? nees : 1e6;
     outcomes.push_back(outcome);
   }
@@ -79,7 +79,7 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
   std::vector<Outcome> exact = drawn(1000, 6);
   for (Outcome& outcome : exact) {
     outcome.position_nees = *outcome.position_nees < 1e6 ? 1e-6 * *outcome.position_nees : 1e6;
-    outcome.heading_error_deg = 1e-3;
+    outcome.heading_nees = 1e-6;
   }
   const CalibrationReport report = learn_calibration(exact, default_calibration());
   EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);

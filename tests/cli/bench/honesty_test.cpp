@@ -15,6 +15,7 @@ Outcome answered(double probability, double nees, double error_m) {
   outcome.answer.mode = FixMode{};
   outcome.error_m = error_m;
   outcome.position_nees = nees;
+  outcome.heading_nees = 0.5 * nees;
   return outcome;
 }
 
@@ -43,9 +44,11 @@ TEST(Honesty, CountsWhatAConfidenceWouldHaveGiven) {
   EXPECT_EQ(honesty.at[1].answered, 2);
   EXPECT_EQ(honesty.at[2].answered, 1);
   EXPECT_EQ(honesty.at[2].false_fixes, 1);
-  EXPECT_EQ(honesty.nees_n, 2);
-  EXPECT_NEAR(honesty.mean_nees, 10.5, 1e-12);
-  EXPECT_EQ(honesty.within_95, 1);
+  EXPECT_EQ(honesty.position.n, 2);
+  EXPECT_NEAR(honesty.position.mean_nees, 10.5, 1e-12);
+  EXPECT_EQ(honesty.position.within_95, 1);
+  EXPECT_NEAR(honesty.heading.mean_nees, 5.25, 1e-12);
+  EXPECT_EQ(honesty.heading.within_95, 1);
   EXPECT_EQ(to_json(honesty)["at_confidence"][2]["false_fixes"], 1);
 }
 

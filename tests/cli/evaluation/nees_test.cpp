@@ -20,5 +20,11 @@ TEST(Nees, OfAnEllipseWithoutAnAreaIsFinite) {
   EXPECT_NEAR(nees({{0.0, 0.0}, Angle(), {0.0, 0.0}}, {0.0, 1.0}), 1e6, 1e-3);
 }
 
+TEST(Nees, OfAHeadingCountsTheShorterWayRound) {
+  const Angle sigma = Angle::degrees(2.0);
+  EXPECT_NEAR(heading_nees(Angle::degrees(359.0), sigma, Angle::degrees(3.0)), 4.0, 1e-9);
+  EXPECT_NEAR(heading_nees(Angle::degrees(3.0), sigma, Angle::degrees(359.0)), 4.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace roadfix::evaluation

@@ -80,8 +80,10 @@ bool is_same_view(const FeatureMap& a, const FeatureMap& b) {
 }
 
 void LastView::move(const std::optional<Odometry>& odometry, bool tells_ground) {
-  moved_m += odometry ? distance_m(*odometry) : kMovedM;
-  turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
+  for (SeenView& view : seen) {
+    view.moved_m += odometry ? distance_m(*odometry) : kMovedM;
+    view.turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
+  }
   if (stands_still) return;
   if (odometry && tells_ground) {
     earlier.move(*odometry, {});
@@ -91,15 +93,20 @@ void LastView::move(const std::optional<Odometry>& odometry, bool tells_ground) 
 }
 
 View LastView::look(const FeatureMap& features) {
-  const std::uint64_t seen = shows_road(features) ? digest_of(features) : 0;
-  const bool is_same = seen != 0 && seen == digest;
-  if (!is_same) {
-    digest = seen;
-    moved_m = turned_rad = 0.0;
+  if (!shows_road(features)) {
+    earlier.clear();
+    stands_still = false;
+    return View::kNew;
   }
-  if (is_same && has_moved(moved_m, turned_rad)) return View::kRepeated;
-  if (seen == 0) earlier.clear();
-  stands_still = seen != 0 && lies_as_earlier(coarser(features));
+  const std::uint64_t digest = digest_of(features);
+  const auto same = std::ranges::find(seen, digest, &SeenView::digest);
+  if (same == seen.end()) {
+    seen.insert(seen.begin(), {digest});
+    if (seen.size() > kRemembered) seen.pop_back();
+  } else if (has_moved(same->moved_m, same->turned_rad)) {
+    return View::kRepeated;
+  }
+  stands_still = lies_as_earlier(coarser(features));
   return stands_still ? View::kStandsStill : View::kNew;
 }
 

@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3130'5354'4652ULL;  // "RFTS01"
+constexpr std::uint64_t kMagic = 0x3230'5354'4652ULL;  // "RFTS02"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -36,7 +36,7 @@ void pass_members(auto& io, auto& state) {
   io(searched, sequence, time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
   io(motion.velocity, motion.drifts, motion.coasts);
-  io(last_view.digest, last_view.moved_m, last_view.turned_rad, last_view.stands_still, last_view.earlier);
+  io(last_view.seen, last_view.stands_still, last_view.earlier);
   io(filter.seed, filter.step, filter.resets, filter.slow_support, filter.fast_support, filter.particles);
   io(recent);
 }
@@ -46,6 +46,8 @@ void pass_frame(auto& io, auto& frame) {
   io(features.cells, features.cell_m, features.nadir.col, features.nadir.row, features.nadir_sigma_m);
   io(offset.forward_m, offset.right_m, offset.turn, frame.position_m2, frame.turn_rad2);
 }
+
+void pass_view(auto& io, auto& view) { io(view.digest, view.moved_m, view.turned_rad); }
 
 auto columns_of(auto& p) {
   return std::array{&p.east_m,          &p.north_m, &p.heading_rad, &p.drift_east_m_s,
@@ -72,6 +74,10 @@ class Writer {
   }
   void put(const CellArray& cells) {
     (*this)(std::int64_t{cells.cols()}, std::int64_t{cells.rows()}, std::as_bytes(cells.cells()));
+  }
+  void put(const std::vector<SeenView>& seen) {
+    put(std::uint64_t{seen.size()});
+    for (const SeenView& view : seen) pass_view(*this, view);
   }
   void put(const RecentFrames& recent) {
     put(std::uint64_t{recent.frames().size()});
@@ -128,6 +134,12 @@ class Reader {
     cells = CellArray(static_cast<int>(cols), static_cast<int>(rows));
     std::ranges::copy(stored, std::as_writable_bytes(cells.cells()).begin());
   }
+  void take(std::vector<SeenView>& seen) {
+    const auto count = taken<std::uint64_t>();
+    if (count > LastView::kRemembered) refuse("has seen more views than any track remembers");
+    seen.resize(count);
+    for (SeenView& view : seen) pass_view(*this, view);
+  }
   void take(RecentFrames& recent) {
     const auto count = taken<std::uint64_t>();
     if (count > RecentFrames::kMaxFrames) refuse("has more frames than any track");
@@ -178,7 +190,8 @@ bool can_be(const RecentFrames& recent) {
 bool can_be(const TrackClaim& claim) { return claim.supported <= TrackClaim::kMaxSupport && claim.log_odds >= 0.0; }
 
 bool can_be(const LastView& view) {
-  return view.moved_m >= 0.0 && view.turned_rad >= 0.0 && view.earlier.frames().size() <= 1 && can_be(view.earlier);
+  const auto has_come = [](const SeenView& seen) { return seen.moved_m >= 0.0 && seen.turned_rad >= 0.0; };
+  return std::ranges::all_of(view.seen, has_come) && view.earlier.frames().size() <= 1 && can_be(view.earlier);
 }
 
 bool can_be(const TrackerState& state) {

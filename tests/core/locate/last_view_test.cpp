@@ -55,6 +55,26 @@ TEST(LastView, IsSeenAgainOnceTheVehicleHasMoved) {
   EXPECT_EQ(view.look(street_at(4)), View::kRepeated);
 }
 
+TEST(LastView, IsSeenAgainWhereALinkGoesRoundInItsLastPictures) {
+  LastView view;
+  for (int i = 0; i < 60; ++i) {
+    const int col = i < 4 ? 16 : i % 3;
+    EXPECT_EQ(view.look(street_at(col)), i == 0 || (i >= 4 && i < 7) ? View::kNew : View::kRepeated) << i;
+    view.move(forward(1.0), false);
+  }
+  EXPECT_EQ(view.look(street_at(17)), View::kNew);
+}
+
+TEST(LastView, RemembersTheLastPicturesOnly) {
+  LastView view;
+  for (int col = 0; col < 20; ++col) {
+    EXPECT_EQ(view.look(street_at(col)), View::kNew);
+    view.move(forward(1.0), false);
+  }
+  EXPECT_EQ(view.look(street_at(4)), View::kRepeated);
+  EXPECT_EQ(view.look(street_at(3)), View::kNew);
+}
+
 TEST(LastView, IsSeenAgainWhereNoOdometryTellsThatTheVehicleHovers) {
   LastView view;
   EXPECT_EQ(view.look(street_at(3)), View::kNew);

@@ -107,25 +107,20 @@ std::string shares_one_road(const SearchFigures& figures) {
       figures.roads_across * across_m, kMinRoadsAcross * across_m);
 }
 
-bool is_another_place(const SearchMode& a, const SearchMode& b) {
-  return distance_m(a.pose.position, b.pose.position) >
-         kRegionSigmas * std::sqrt(a.covariance[0][0] + a.covariance[1][1]);
-}
-
-/// Share of the best mode beside the best place around the region, as if that lay in it.
+/// Share of the best mode beside the places around the region, as if those lay in it.
 double share_beside_outside(const SearchResult& found) {
-  const SearchMode& best = found.modes.front();
-  if (!found.outside || !is_another_place(best, *found.outside)) return 1.0;
   const ScoreBackground& background = found.background;
-  const double ahead = background.log_likelihood(best.score) - background.log_likelihood(found.outside->score);
-  return 1.0 / (1.0 + std::exp(-ahead));
+  const double best = background.log_likelihood(found.modes.front().score);
+  double others = 0.0;
+  for (const SearchMode& mode : found.outside) others += std::exp(background.log_likelihood(mode.score) - best);
+  return 1.0 / (1.0 + others);
 }
 
 std::string fits_outside(const SearchResult& found) {
   return fmt::format(
       "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
       "prior and its headings, or give a wider one",
-      distance_m(found.modes.front().pose.position, found.outside->pose.position));
+      distance_m(found.modes.front().pose.position, found.outside.front().pose.position));
 }
 
 }  // namespace

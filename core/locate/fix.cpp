@@ -12,7 +12,7 @@
 #include "core/locate/ellipse.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/locate/match_poses.hpp"
-#include "core/locate/nearby_place.hpp"
+#include "core/locate/other_places.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/units/error.hpp"
 
@@ -137,7 +137,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
                               search_options_of(options, map, started));
-  count_nearby_place(map, calibration, cells.nadir_sigma_m, found);
+  sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
   const Decision decision = decide(found, calibration, options.confidence);
   Fix fix = fix_of(map, found, decision);
   const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.max_modes)));

@@ -13,7 +13,7 @@ namespace roadfix {
 
 /// MeasurementModel::log_likelihood() of each particle, from the sums that match_particles() gave for `features`.
 /// nullopt where they speak neither for nor against the belief: they show no ground, or it lies where the map shows
-/// next to nothing.
+/// next to nothing, or neither they nor the map have roads there (a lake).
 std::optional<std::vector<double>> log_likelihoods_of(const Particles& particles, const ParticleMatches& matches,
                                                       const FeatureMap& features, const MeasurementModel& model);
 

@@ -32,6 +32,11 @@ void TrackClaim::confirm(double probability) {
   looked_time_us.reset();
 }
 
+void TrackClaim::reopen() {
+  confirmed = false;
+  looked_time_us.reset();
+}
+
 void TrackClaim::bear_out(std::int64_t time_us) {
   looked_time_us = time_us;
   flown_m = 0.0;

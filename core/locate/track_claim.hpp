@@ -44,6 +44,9 @@ struct TrackClaim {
   /// whether the odometry carries the place on rightly.
   void confirm(double probability);
 
+  /// The belief took other places in, or went over to one: it is to be told from them anew.
+  void reopen();
+
   /// A search around the place found it there.
   void bear_out(std::int64_t time_us);
   void fly(double way_m);

@@ -18,12 +18,6 @@ std::optional<Prior> prior_within(const MapView& map, const GridCircle& circle) 
 
 }  // namespace
 
-bool is_same_place(const GridPose& a, const GridPose& b) {
-  constexpr double kNearM = 25.0;
-  const Angle near = Angle::degrees(15.0);
-  return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
-}
-
 std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
   GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -11,9 +11,6 @@
 
 namespace roadfix {
 
-/// Whether two poses are so near that a search and the particles mean one place.
-bool is_same_place(const GridPose& a, const GridPose& b);
-
 /// A circle around all places that the particles hold for possible; nullopt where it lies beyond the map.
 std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 

@@ -25,7 +25,7 @@ double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zo
 }
 
 Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
-  constexpr double kMinProbability = 0.5;
+  constexpr double kMinProbability = 0.5;  // what chance explains has no more
   constexpr double kMaxShareBeside = 0.2;  // of the best place's probability
   constexpr double kNearM = 15.0;
   constexpr double kMaxNearM = 30.0;  // however wide the belief: all that was searched lies near it then
@@ -33,8 +33,8 @@ Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& z
   using Outcome = Look::Outcome;
   if (!fix.complete) return Outcome::kOpen;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
-  if (probability_near(fix, belief, zone, std::min(near_m, kMaxNearM)) >= kMinProbability) return Outcome::kBorneOut;
-  const bool found = fix.status != FixStatus::kNoFix && fix.probability >= kMinProbability;
+  if (probability_near(fix, belief, zone, std::min(near_m, kMaxNearM)) > kMinProbability) return Outcome::kBorneOut;
+  const bool found = fix.status != FixStatus::kNoFix && fix.probability > kMinProbability;
   const bool beside = found && probability_near(fix, belief, zone, near_m) < kMaxShareBeside * fix.probability;
   return beside ? Outcome::kBeside : Outcome::kOpen;
 }

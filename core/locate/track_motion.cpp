@@ -22,6 +22,7 @@ constexpr double kLeastManoeuvreMS = 1.0;
 // of the speed, and at least so many m/s.
 constexpr double kFoundWindShare = 0.3;
 constexpr double kLeastFoundWindMS = 5.0;
+constexpr double kShortestS = 0.01;  // of a shorter step the times are not known well enough to tell a velocity
 constexpr double kTriedShare = 0.1;  // of the particles, before it is found wrong
 
 }  // namespace
@@ -74,7 +75,9 @@ bool StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
   const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk);
-  learned_.velocity = {odometry.forward_m / told_.seconds, odometry.right_m / told_.seconds};
+  if (told_.seconds >= kShortestS) {
+    learned_.velocity = {odometry.forward_m / told_.seconds, odometry.right_m / told_.seconds};
+  }
   if (!coasted) return predict(filter, motion);
   return predict(filter, [&motion, region = region()](ParticleState& state, RandomStream& random) {
     draw_drift(region, state, random);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/locate/track_geometry.hpp"
+#include "core/locate/other_places.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/locate/other_places.hpp"
 #include "core/locate/track_geometry.hpp"
 #include "core/locate/tracker_step.hpp"
 #include "core/units/error.hpp"
@@ -102,6 +103,7 @@ void Tracker::Step::recover() {
     state_.claim.confirmed = search_.holds_at_other_scales(*fix, seen, prior);
   } else if (fix->status != FixStatus::kFix || !search_.holds_at_other_scales(*fix, seen, prior)) {
     filter_.inject(proposals_of(map_, *fix, *features_), kInjectedShare);
+    state_.claim.reopen();
   } else {
     filter_.start_from(proposals_of(map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
     outcome_.measurement = Measurement::kSearched;

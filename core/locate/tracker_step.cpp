@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/locate/other_places.hpp"
 #include "core/locate/particle_likelihoods.hpp"
 #include "core/locate/particle_matches.hpp"
 #include "core/locate/prepare.hpp"
@@ -50,7 +51,7 @@ StepResult Tracker::Step::run() {
   state_.motion = motion_.learned();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, outcome_);
   // Particles that part and gather again bring no claim back that ended unseen.
-  if (!features_ && !estimate.converged) state_.claim.looked_time_us.reset();
+  if (saw_nothing() && !estimate.converged) state_.claim.looked_time_us.reset();
   if (estimate.converged) state_.recent.clear();
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};
@@ -113,6 +114,7 @@ void Tracker::Step::measure() {
 }
 
 void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
+  const GridPose believed = clusters_of(filter_.particles()).front().mean;
   const Correction correction = filter_.correct(log_likelihoods);
   outcome_.mean_likelihood = correction.mean_likelihood;
   if (!correction.usable) {
@@ -129,6 +131,13 @@ void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
     if (settings_.recovers) filter_.widen(kWidenedM);
   }
   state_.claim.weigh(std::log(correction.mean_likelihood));
+  if (!is_same_place(clusters_of(filter_.particles()).front().mean, believed)) state_.claim.reopen();
+}
+
+/// No frame, none that says anything of the place, or none that is new.
+bool Tracker::Step::saw_nothing() const {
+  return outcome_.measurement == Measurement::kNone || outcome_.measurement == Measurement::kUseless ||
+         outcome_.measurement == Measurement::kRepeated;
 }
 
 void Tracker::Step::forget_support() {

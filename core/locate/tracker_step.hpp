@@ -29,6 +29,7 @@ class Tracker::Step {
   void see();
   void measure();
   void weigh(std::span<const double> log_likelihoods);
+  bool saw_nothing() const;
   void forget_support();
 
   // tracker_searches.cpp; `seen` is the last feature map, with the frames before it laid around

@@ -5,6 +5,16 @@
 
 namespace roadfix {
 
+bool has_contrast_of_map(const MatchSums& s) {
+  const auto n = static_cast<double>(s.n);
+  return s.n > 0 && s.mm - s.m * s.m / n >= kMinVariance * n;
+}
+
+bool has_contrast_of_features(const MatchSums& s) {
+  const auto n = static_cast<double>(s.n);
+  return s.n > 0 && s.ll - s.l * s.l / n >= kMinVariance * n;
+}
+
 FootprintCells footprint_cells(const FeatureMap& features) {
   constexpr double kMinShare = 0.5;
   const auto full = static_cast<std::int64_t>(features.cells.observed_count());
@@ -13,9 +23,7 @@ FootprintCells footprint_cells(const FeatureMap& features) {
 
 double score_of(const MatchSums& s, const FootprintCells& cells) {
   const auto n = static_cast<double>(s.n);
-  if (s.n == 0 || n < cells.min) return 0.0;
-  const double min_squares = kMinVariance * n;
-  if (s.mm - s.m * s.m / n < min_squares || s.ll - s.l * s.l / n < min_squares) return 0.0;
+  if (n < cells.min || !has_contrast_of_map(s) || !has_contrast_of_features(s)) return 0.0;
   return pearson(s).value_or(0.0) * std::sqrt(n / static_cast<double>(cells.full));
 }
 

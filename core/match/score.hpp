@@ -12,6 +12,10 @@ namespace roadfix {
 /// cell of certain road in ten thousand, or probabilities that differ by 1 %.
 inline constexpr double kMinVariance = 1e-4;
 
+/// Whether the cells observed in both show it on either side.
+bool has_contrast_of_map(const MatchSums& sums);
+bool has_contrast_of_features(const MatchSums& sums);
+
 /// What the cells observed in both, at a pose, are measured by.
 struct FootprintCells {
   std::int64_t full = 0;  ///< observed in the feature map

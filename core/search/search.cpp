@@ -62,7 +62,7 @@ SearchResult search(const GridReader& read, double finest_cell_m, const FeatureM
   FoundModes found = find_modes(levels, scan, options, deadline, poses, result.background);
   result.modes = std::move(found.modes);
   result.nearby = found.nearby;
-  result.outside = found.outside;
+  result.outside = std::move(found.outside);
   result.refined = result.refined && found.complete;
   return result;
 }

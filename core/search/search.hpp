@@ -102,8 +102,9 @@ struct SearchResult {
   /// Another peak within the region, so close to the best mode that the two are no distinct places, at its heading and
   /// scale: no higher than the mode. What the map knows of its own accuracy tells whether it is another place.
   std::optional<SearchMode> nearby;
-  /// The best place around the region, or beside its headings (by 5 degrees, or far likelier), with surroundings given.
-  std::optional<SearchMode> outside;
+  /// The best places around the region, or beside its headings (by 5 degrees, or far likelier), with surroundings
+  /// given; best first.
+  std::vector<SearchMode> outside;
   ScoreBackground background;
   double cell_m = 0.0;               ///< finest cell
   double coarse_cell_m = 0.0;        ///< of the exhaustive scan

@@ -14,7 +14,7 @@
 namespace roadfix {
 namespace {
 
-constexpr std::size_t kOutside = 4;  // modes around the region, to tell the best of
+constexpr std::size_t kOutside = 4;  // modes around the region
 
 // A place at a heading beside those that were told is no rival, unless it is ten times as likely as the best one: of a
 // thousand headings that are told one is wrong (a camera mounted the other way round).
@@ -70,14 +70,14 @@ std::vector<LatticePose> worth_a_look(const SearchLevels& levels, std::vector<La
   return around;
 }
 
-/// The first of the modes that is around the region, and not the best one in it seen from across the border.
-std::optional<SearchMode> best_outside(const SearchLevels& levels, const PoseRegion& scanned, const ModeFinder& finder,
-                                       const std::vector<SearchMode>& modes, const SearchMode& best) {
-  const auto found = std::ranges::find_if(modes, [&](const SearchMode& mode) {
-    return scanned.contains(mode.pose.position) && !levels.region().contains(mode.pose) &&
-           !finder.on_one_peak(mode, best);
+/// Those of the modes that are around the region, and not the best one in it seen from across the border.
+std::vector<SearchMode> modes_outside(const SearchLevels& levels, const PoseRegion& scanned, const ModeFinder& finder,
+                                      std::vector<SearchMode> modes, const SearchMode& best) {
+  std::erase_if(modes, [&](const SearchMode& mode) {
+    return !scanned.contains(mode.pose.position) || levels.region().contains(mode.pose) ||
+           finder.on_one_peak(mode, best);
   });
-  return found == modes.end() ? std::nullopt : std::optional(*found);
+  return modes;
 }
 
 std::vector<double> scores_of(std::span<const LatticePose> poses) {
@@ -124,9 +124,8 @@ FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const 
   if (found.nearby && found.nearby->score > best.score) std::swap(*found.nearby, best);
   best.shared_road_m2 = shared_road_m2(levels.finest(), best);
   if (options.surroundings) {
-    const std::vector<SearchMode> others =
-        finder.first_of(worth_a_look(levels, poses.around, best, background), kOutside);
-    found.outside = best_outside(levels, scan.scanned(), finder, others, best);
+    std::vector<SearchMode> others = finder.first_of(worth_a_look(levels, poses.around, best, background), kOutside);
+    found.outside = modes_outside(levels, scan.scanned(), finder, std::move(others), best);
   }
   found.complete = looks_nearby && finder.in_time();
   return found;

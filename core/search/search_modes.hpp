@@ -26,7 +26,7 @@ void set_rivals(const SearchLevels& levels, const SearchScan& scan, const Search
 struct FoundModes {
   std::vector<SearchMode> modes;
   std::optional<SearchMode> nearby;
-  std::optional<SearchMode> outside;
+  std::vector<SearchMode> outside;
   bool complete = true;  ///< false where the deadline ended it after the first mode
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace roadfix {
 namespace {
@@ -94,20 +95,22 @@ TEST(Decision, APlaceThatRestsOnNoMoreThanOneStraightRoadIsExplainedByChanceHowe
   EXPECT_EQ(decide(result, default_calibration(), 0.99).status, FixStatus::kFix);
 }
 
-class DecisionBesideAnotherPlaceOutside : public ::testing::Test {
+class DecisionBesideOtherPlacesOutside : public ::testing::Test {
  protected:
-  Decision beside(double score, double east_m) {
+  /// Places 60 m, 120 m, ... away.
+  Decision beside(const std::vector<double>& scores) {
     SearchResult result = found(0.8, 0.35, 0.2);
-    result.modes[0].covariance[0][0] = result.modes[0].covariance[1][1] = 4.0;
-    result.outside = result.modes[0];
-    result.outside->score = score;
-    result.outside->pose.position.east_m += east_m;
+    for (const double score : scores) {
+      result.outside.push_back(result.modes[0]);
+      result.outside.back().score = score;
+      result.outside.back().pose.position.east_m += 60.0 * static_cast<double>(result.outside.size());
+    }
     return decide(result, default_calibration(), 0.99);
   }
 };
 
-TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsBetterLeavesNoFix) {
-  const Decision decision = beside(0.85, 60.0);
+TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsBetterLeavesNoFix) {
+  const Decision decision = beside({0.85});
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "better-outside-prior");
   EXPECT_NE(decision.explanation.find("60 m"), std::string::npos) << decision.explanation;
@@ -115,21 +118,22 @@ TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsBetterLeavesNoFix) {
   EXPECT_EQ(decision.weights.front(), decision.probability);
 }
 
-TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsNearlyAsWellLeavesNoFixEither) {
-  const Decision decision = beside(0.799, 60.0);
+TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsNearlyAsWellLeavesNoFixEither) {
+  const Decision decision = beside({0.799});
   EXPECT_EQ(decision.reason, "better-outside-prior");
   EXPECT_GT(decision.probability, 0.5);
   EXPECT_LT(decision.probability, 0.6);
 }
 
-TEST_F(DecisionBesideAnotherPlaceOutside, OneThatFitsFarLessChangesNothing) {
-  EXPECT_EQ(beside(0.7, 60.0).status, FixStatus::kFix);
-  EXPECT_NEAR(beside(0.7, 60.0).probability, decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99).probability,
-              1e-4);
+TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsFarLessChangesNothing) {
+  EXPECT_EQ(beside({0.7}).status, FixStatus::kFix);
+  EXPECT_NEAR(beside({0.7}).probability, decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99).probability, 1e-4);
 }
 
-TEST_F(DecisionBesideAnotherPlaceOutside, TheSamePlaceSeenFromOutsideChangesNothing) {
-  EXPECT_EQ(beside(0.81, 10.0).status, FixStatus::kFix);
+TEST_F(DecisionBesideOtherPlacesOutside, EachThatFitsAsWellTakesItsShare) {
+  const double alone = beside({}).probability;
+  EXPECT_NEAR(beside({0.8}).probability, alone / 2.0, 1e-9);
+  EXPECT_NEAR(beside({0.8, 0.8, 0.8}).probability, alone / 4.0, 1e-9);
 }
 
 TEST(Decision, WeightsAreSharedByTheModes) {

@@ -52,6 +52,17 @@ TEST(MeasurementModel, OfDetectionRatesIsTheSumOverTheCells) {
   EXPECT_NEAR(model.log_likelihood(s, s.n, 2.0), expected * 4.0 / 400.0, 1e-9);
 }
 
+TEST(MeasurementModel, TakesNoPatternFromGreyLevelsThatHardlyDiffer) {
+  MatchSums alike;
+  MatchSums unlike;
+  for (int i = 0; i < 2000; ++i) {
+    alike.add(i % 5 == 0 ? 1.0 : 0.0, i % 5 == 0 ? 1.0 / 254 : 0.0);
+    unlike.add(i % 5 == 0 ? 1.0 : 0.0, i % 5 == 0 ? 0.0 : 1.0 / 254);
+  }
+  const MeasurementModel model;
+  EXPECT_EQ(model.log_likelihood(alike, alike.n, 2.0), model.log_likelihood(unlike, unlike.n, 2.0));
+}
+
 TEST(MeasurementModel, IsForTheTruePlaceAndAgainstOthers) {
   std::mt19937_64 random(2);
   for (const LikelihoodKind kind : {LikelihoodKind::kCorrelation, LikelihoodKind::kDetectionRates}) {

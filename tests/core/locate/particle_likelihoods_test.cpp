@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace roadfix {
 namespace {
 
@@ -15,6 +17,12 @@ class ParticleLikelihoods : public ::testing::Test {
   static ParticleMatches matches(std::int64_t cells, std::vector<double> scales) {
     const MatchSums sums{cells, 30.0, 25.0, 28.0, 24.0, 20.0};
     return {{sums, sums}, std::move(scales)};
+  }
+
+  static FeatureMap frame_with_a_road() {
+    CellArray cells(20, 10, kNoRoad);
+    for (int col = 0; col < cells.cols(); ++col) cells.at(col, 4) = kRoad;
+    return FeatureMap::centred(std::move(cells), 2.0);
   }
 
   Particles particles_;
@@ -37,6 +45,11 @@ TEST_F(ParticleLikelihoods, AreNoneWhereTheFrameShowsNoGroundOrTheMapNextToNone)
   EXPECT_FALSE(log_likelihoods_of(particles_, on_map, blind, model_));
   const ParticleMatches beside = matches(49, {1.0, 1.0});
   EXPECT_FALSE(log_likelihoods_of(particles_, beside, frame_, model_));
+  const FeatureMap lake = FeatureMap::centred(CellArray(20, 10, kNoRoad), 2.0);
+  EXPECT_TRUE(log_likelihoods_of(particles_, on_map, lake, model_)) << "the map has roads there";
+  const MatchSums no_road{200, 0.0, 0.0, 0.0, 0.0, 0.0};
+  EXPECT_FALSE(log_likelihoods_of(particles_, {{no_road, no_road}, {1.0, 1.0}}, lake, model_));
+  EXPECT_TRUE(log_likelihoods_of(particles_, {{no_road, no_road}, {1.0, 1.0}}, frame_with_a_road(), model_));
   MeasurementModel paper;
   paper.kind = LikelihoodKind::kEquation7;
   EXPECT_TRUE(log_likelihoods_of(particles_, beside, frame_, paper)) << "equation (7) is as it stands";

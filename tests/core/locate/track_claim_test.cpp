@@ -38,6 +38,16 @@ TEST(TrackClaim, WaitsForAnotherSearchWhereItWasTakenBack) {
   EXPECT_FALSE(claim.confirmed);
 }
 
+TEST(TrackClaim, WaitsForAnotherSearchAndALookWhereOtherPlacesWereTakenIn) {
+  TrackClaim claim = supported_by(3);
+  claim.confirmed = true;
+  claim.bear_out(1);
+  claim.reopen();
+  EXPECT_TRUE(claim.is_supported());
+  EXPECT_FALSE(claim.confirmed);
+  EXPECT_FALSE(claim.looked_time_us);
+}
+
 TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
   TrackClaim claim;
   claim.weigh(kHundredToOne - 0.01);

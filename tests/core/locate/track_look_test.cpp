@@ -50,6 +50,24 @@ TEST_F(TrackLook, FindsTheVehicleBesideAndFartherAwayTheFartherItFlew) {
   EXPECT_LT(distance_m(flown_far.places.at(0).mean.position, truth_.position), 5.0);
 }
 
+TEST_F(TrackLook, IsOpenAlongASingleStraightRoad) {
+  RoadGrid road = map_;
+  for (int row = 0; row < road.cells.rows(); ++row) {
+    for (int col = 0; col < road.cells.cols(); ++col) {
+      road.cells.at(col, row) = std::abs(row - 320) < 2 ? kRoad : kNoRoad;
+    }
+  }
+  const MapView view = testing::view_of(road);
+  const TrackSearch search(view, settings_, limits_);
+  Cluster belief;
+  belief.mean = {{600'700.0, road.geometry.cell_center(0, 320).north_m}, Angle::degrees(60.0)};
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
+    std::mt19937_64 random(seed);
+    const FeatureMap frame = testing::observed_at(road, belief.mean, 128, 128, 2.0, {0.2, 0.1}, random);
+    EXPECT_EQ(look_around(search, view, frame, belief, 0.0).outcome, Look::Outcome::kOpen) << "seed " << seed;
+  }
+}
+
 TEST_F(TrackLook, IsOpenBeyondTheMap) { EXPECT_EQ(look_from(beside(5000.0)).outcome, Look::Outcome::kOpen); }
 
 TEST(LookAge, CountsTimeAndWay) {

@@ -39,6 +39,14 @@ TEST(StepMotion, FollowsOdometryAndRemembersTheVelocity) {
   EXPECT_FALSE(motion.learned().coasts);
 }
 
+TEST(StepMotion, TakesNoVelocityFromAStepTooShortToTellOne) {
+  const VehicleNoise vehicle;
+  StepMotion motion(vehicle, kFlight, {Odometry{15.0, 0.0, {}}, {}, 0.001}, kFlewAt20MS);
+  Filter filter = filter_at(motion, {{500.0, 500.0}, Angle()});
+  motion.move(filter);
+  EXPECT_EQ(motion.learned().velocity, kFlewAt20MS.velocity);
+}
+
 TEST(StepMotion, CountsLostStepsAsLikeThisOne) {
   const VehicleNoise vehicle;
   StepMotion motion(vehicle, kFlight, {Odometry{10.0, 0.0, {}}, {}, 3.0, 2}, {});

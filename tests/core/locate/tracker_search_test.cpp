@@ -201,18 +201,40 @@ TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
 
 TEST_F(Track, ClaimsNoPlaceAgainThatItLostSightOfBeforeASearchFindsItThere) {
   const Tracker tracker(view_, settings());
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    Flight flight(map_, start_, seed);
-    state_ = {};
-    ASSERT_TRUE(fly(tracker, flight, 12).converged);
-    bool lost = false;
-    for (int i = 0; i < 45; ++i) {
-      const TrackEstimate estimate = advance(tracker, flight.step(false));
-      EXPECT_FALSE(lost && estimate.converged) << "seed " << seed << ", step " << i;
-      lost = lost || !estimate.converged;
+  std::mt19937_64 random(1);
+  const FeatureMap stopped = testing::observed_at(map_, start_, 128, 128, 2.0, {}, random);
+  const FeatureMap fog = FeatureMap::centred(CellArray(128, 128), 2.0);
+  for (const std::optional<FeatureMap>& seen :
+       {std::optional<FeatureMap>(), std::optional(stopped), std::optional(fog)}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      Flight flight(map_, start_, seed);
+      state_ = {};
+      ASSERT_TRUE(fly(tracker, flight, 12).converged);
+      bool lost = false;
+      for (int i = 0; i < 45; ++i) {
+        StepInput step = flight.step(false);
+        step.features = seen;
+        const TrackEstimate estimate = advance(tracker, step);
+        EXPECT_FALSE(lost && estimate.converged) << "seed " << seed << ", step " << i;
+        lost = lost || !estimate.converged;
+      }
+      EXPECT_TRUE(lost);
     }
-    EXPECT_TRUE(lost);
   }
+}
+
+TEST_F(Track, ClaimsNoOtherPlaceThatItsBeliefGoesOverToBeforeASearchFindsItThere) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 1);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  std::vector<double>& east_m = state_.filter.particles.east_m;
+  for (std::size_t i = 0; i < east_m.size(); ++i) {
+    if (i % 5 < 3) east_m[i] -= 300.0;
+  }
+  const TrackEstimate estimate = advance(tracker, flight.step());
+  EXPECT_LT(error_m(estimate, flight.pose()), 15.0);
+  EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
+  EXPECT_FALSE(estimate.converged);
 }
 
 TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
@@ -334,6 +356,22 @@ TEST_F(TrackBeyondTheMap, SearchesAnewWhereNothingWasAcceptedForAMinute) {
   TrackEstimate last;
   for (int i = 0; i < 14; ++i, pose.position.east_m += 20.0) last = fly_to(tracker, pose, 10.0);
   EXPECT_LT(error_m(last, {{pose.position.east_m - 20.0, pose.position.north_m}, pose.heading}), 20.0);
+}
+
+TEST_F(TrackBeyondTheMap, ClaimsNoPlaceOnTheMapForGroundFarBesideIt) {
+  const RoadGrid elsewhere = testing::street_map(77, {2.0, {300'000, -3'200'000}, 2500, 700});
+  const Tracker tracker(part_, settings());
+  fly_out(tracker);
+  GridPose pose{{600'650.0 + 20.0 * 28, 6'399'400.0}, Angle::degrees(90.0)};
+  for (int i = 0; i < 150; ++i, pose.position.east_m += 20.0) {
+    StepInput step;
+    step.sequence = state_.sequence + 1;
+    step.time_us = state_.time_us + 2'000'000;
+    step.odometry = Odometry{20.0, 0.0, Angle()};
+    step.features = testing::observed_at(elsewhere, pose, 128, 128, 2.0, {0.1, 0.1}, random_);
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_FALSE(estimate.converged && error_m(estimate, pose) > 25.0) << "step " << i;
+  }
 }
 
 }  // namespace

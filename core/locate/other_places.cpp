@@ -1,4 +1,4 @@
-#include "core/locate/nearby_place.hpp"
+#include "core/locate/other_places.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -9,8 +9,6 @@
 namespace roadfix {
 namespace {
 
-constexpr double kOnePlaceM = 25.0;  // places farther apart are two, however badly either is known
-
 /// Of the position of a mode as a fix tells it.
 PositionCovariance told_covariance(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                                    const SearchMode& mode) {
@@ -20,20 +18,33 @@ PositionCovariance told_covariance(const MapView& map, const Calibration& calibr
   return {scale2 * matched.east_east + nadir2, scale2 * matched.east_north, scale2 * matched.north_north + nadir2};
 }
 
-}  // namespace
-
-void count_nearby_place(const MapView& map, const Calibration& calibration, double nadir_sigma_m, SearchResult& found) {
-  if (!found.nearby) return;
+void count_nearby(SearchResult& found) {
   const SearchMode& nearby = *found.nearby;
-  const SearchMode& best = found.modes.front();
-  const double mahalanobis2 = squared_mahalanobis(best.pose.position, nearby.pose.position,
-                                                  told_covariance(map, calibration, nadir_sigma_m, best));
-  const bool is_near = distance_m(best.pose.position, nearby.pose.position) <= kOnePlaceM;
-  if (is_near && !(mahalanobis2 > kRegionSigmas * kRegionSigmas)) return;
   const auto lower = [&](const SearchMode& mode) { return mode.score < nearby.score; };
   found.modes.insert(std::find_if(found.modes.begin() + 1, found.modes.end(), lower), nearby);
   std::vector<double>& rivals = found.background.rivals_within;
   rivals.insert(std::ranges::upper_bound(rivals, nearby.score, std::ranges::greater{}), nearby.score);
+}
+
+}  // namespace
+
+bool is_same_place(const GridPose& a, const GridPose& b) {
+  constexpr double kNearM = 25.0;
+  const Angle near = Angle::degrees(15.0);
+  return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
+}
+
+void sort_out_other_places(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
+                           SearchResult& found) {
+  if (found.modes.empty()) return;
+  const GridPose best = found.modes.front().pose;
+  const PositionCovariance covariance = told_covariance(map, calibration, nadir_sigma_m, found.modes.front());
+  const auto is_best = [&](const SearchMode& mode) {
+    return is_same_place(mode.pose, best) &&
+           squared_mahalanobis(best.position, mode.pose.position, covariance) <= kRegionSigmas * kRegionSigmas;
+  };
+  if (found.nearby && !is_best(*found.nearby)) count_nearby(found);
+  std::erase_if(found.outside, is_best);
 }
 
 }  // namespace roadfix

@@ -1,0 +1,69 @@
+#include "core/locate/other_places.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/map_view.hpp"
+
+namespace roadfix {
+namespace {
+
+/// A search with a best place known to 1 m (1 sigma per axis), on a map that is registered to so many metres.
+class OtherPlaces : public ::testing::Test {
+ protected:
+  static SearchMode mode(double east_m, double score, double heading_deg = 0.0) {
+    SearchMode mode;
+    mode.pose = {{300'000.0 + east_m, 6'399'400.0}, Angle::degrees(heading_deg)};
+    mode.score = score;
+    mode.covariance[0][0] = mode.covariance[1][1] = 1.0;
+    return mode;
+  }
+  static SearchResult found() {
+    SearchResult result;
+    result.modes = {mode(0.0, 0.8), mode(500.0, 0.4)};
+    result.background.rivals_within = {0.4, 0.3};
+    return result;
+  }
+  void sort_out(SearchResult& found, double registration_m) const {
+    MapView view = testing::view_of(map_);
+    view.registration_sigma_m = [=](GridPoint) { return registration_m; };
+    Calibration calibration;
+    calibration.position_sigma_scale = 1.0;
+    sort_out_other_places(view, calibration, 0.0, found);
+  }
+  bool counts_nearby(double east_m, double registration_m) const {
+    SearchResult result = found();
+    result.nearby = mode(east_m, 0.6);
+    sort_out(result, registration_m);
+    const bool counts = result.modes.size() == 3;
+    EXPECT_EQ(result.modes.at(1).score, counts ? 0.6 : 0.4);
+    EXPECT_EQ(result.background.rivals_within.front(), counts ? 0.6 : 0.4);
+    return counts;
+  }
+
+  const RoadGrid map_{{2.0, {300'000, -3'200'000}, 8, 8}, CellArray(8, 8)};
+};
+
+TEST_F(OtherPlaces, LieBeyondFourStandardDeviationsOrFartherThanOnePlaceIsWide) {
+  EXPECT_FALSE(counts_nearby(3.9, 0.0));
+  EXPECT_TRUE(counts_nearby(4.1, 0.0));
+  EXPECT_FALSE(counts_nearby(24.0, 10.0));
+  EXPECT_TRUE(counts_nearby(26.0, 10.0));
+}
+
+TEST_F(OtherPlaces, OfThoseOutsideTheRegionOnlyTheBestOneItselfIsLeftOut) {
+  SearchResult result = found();
+  result.outside = {mode(9.0, 0.85), mode(60.0, 0.7), mode(0.0, 0.6, 180.0)};
+  sort_out(result, 2.5);
+  ASSERT_EQ(result.outside.size(), 2U);
+  EXPECT_EQ(result.outside[0].score, 0.7);
+  EXPECT_EQ(result.outside[1].score, 0.6) << "at another heading";
+}
+
+TEST_F(OtherPlaces, OfASearchThatFoundNoneAreNone) {
+  SearchResult result;
+  sort_out(result, 2.5);
+  EXPECT_TRUE(result.modes.empty());
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -4,12 +4,11 @@ import { attempt, drawModes, LastQuestion, moveTo, request, reveal, showFix, sho
 import { upload } from './upload.js';
 
 /// A browser gives no bytes of a file that was written anew since it was chosen.
-async function bytesOf(picture) {
-  try {
-    return await picture.arrayBuffer();
-  } catch {
-    throw { title: 'The picture cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
-  }
+async function bytesOf(picture, signal) {
+  const bytes = await picture.arrayBuffer().catch(() => null);
+  signal.throwIfAborted();
+  if (bytes) return bytes;
+  throw { title: 'The picture cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
 }
 
 /// How far the question is.
@@ -33,7 +32,7 @@ export class Answer {
     const signal = this.#questions.next();
     showStatus(this.output, 'reading the picture …', []);
     await attempt(this.output, async () => {
-      const body = await bytesOf(picture);
+      const body = await bytesOf(picture, signal);
       const progress = (sent) => showSent(this.output, sent, body.byteLength);
       progress(0);
       this.#fix = await request(url, { method: 'POST', body, headers: { 'Content-Type': picture.type }, signal, progress }, upload);

@@ -72,6 +72,17 @@ await run({
     uploads.last.upload.onprogress({ loaded: 2_100_000 });
     assert.equal(output.textContent, '');
   },
+  async 'a picture that is still read when the question is another one is neither sent nor said to be unreadable'() {
+    for (const reading of [() => new ArrayBuffer(1), () => { throw new DOMException('gone', 'NotReadableError'); }]) {
+      let read;
+      const slow = { name: 'a.png', type: 'image/png', arrayBuffer: () => new Promise((later) => { read = later; }).then(reading) };
+      const asked = answer.ask('/fix', slow);
+      answer.questionChanged();
+      read();
+      await asked;
+      assert.equal(output.textContent, '');
+    }
+  },
   async 'a service that cannot be reached while a picture is sent is said to be so'() {
     service.answers = {};
     await answer.ask('/fix', picture('a.png'));

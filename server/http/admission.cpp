@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "server/http/errors.hpp"
 
@@ -17,14 +18,15 @@ constexpr std::chrono::milliseconds kLookPause{100};
 Admission::Ticket Admission::enter(const std::string& client, std::chrono::steady_clock::time_point deadline,
                                    const std::function<bool()>& abandoned, bool replace) {
   using Clock = std::chrono::steady_clock;
+  std::string name = client;  // before anything is counted: memory may run out
   std::unique_lock lock(mutex_);
   const bool at_once = running_ < max_running_ && queue_.empty();
-  const auto known = of_client_.find(client);
+  const auto known = of_client_.find(name);
   const Waiting mine{known == of_client_.end() ? 0 : known->second};
   if (!at_once && (replace || std::ssize(queue_) >= max_waiting_)) make_room_for(mine);
-  int& own = of_client_[client];
+  queue_.reserve(queue_.size() + 1);
+  ++of_client_[name];
   queue_.insert(std::ranges::upper_bound(queue_, mine.rank, {}, &Waiting::rank), &mine);
-  ++own;
   const auto is_over = [&] { return !waits(mine) || (running_ < max_running_ && queue_.front() == &mine); };
   bool over = at_once;
   bool gone = false;
@@ -36,9 +38,9 @@ Admission::Ticket Admission::enter(const std::string& client, std::chrono::stead
   turn_.notify_all();
   if (over && !sent_away && !gone) {
     ++running_;
-    return {*this, client};
+    return {*this, std::move(name)};
   }
-  forget(client);
+  forget(name);
   if (gone) throw ClientGone();
   if (sent_away) throw Busy("others wait, with fewer requests than this client; try again", kRetryAfter);
   throw Busy("its turn did not come in the time that a request may wait; try again", kRetryAfter);

@@ -21,7 +21,7 @@ class Admission {
 
   class Ticket {
    public:
-    Ticket(Admission& admission, std::string client) : admission_(&admission), client_(std::move(client)) {}
+    Ticket(Admission& admission, std::string client) noexcept : admission_(&admission), client_(std::move(client)) {}
     ~Ticket() { admission_->leave(client_); }
     Ticket(const Ticket&) = delete;
     Ticket& operator=(const Ticket&) = delete;

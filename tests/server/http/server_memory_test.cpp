@@ -68,10 +68,13 @@ class HttpServerMemory : public testing::HttpServerTest, public ::testing::WithP
 
 TEST_P(HttpServerMemory, EndsOneConnectionWhereverItRunsOutAndGoesOn) {
   settings_.threads = 1;
+  settings_.heavy_running = 1;
+  settings_.proxies = Proxies({"127.0.0.1"});
   const auto server = started();
   for (const auto& [request, status] : {
            Sent{get("/echo?text=" + std::string(100, 'x')), "HTTP/1.1 200"},
-           Sent{"POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 50\r\nConnection: close\r\n\r\n" +
+           Sent{"POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 50\r\nConnection: close\r\n"
+                "X-Forwarded-For: 2001:db8:0:1:2:3:4:5\r\n\r\n" +  // longer than a string keeps in itself
                     std::string(50, 'x'),
                 "HTTP/1.1 200"},
            Sent{get("/stream"), "HTTP/1.1 200"},

@@ -95,9 +95,14 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
   }
   const std::int64_t now = now_us();
   StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, {}};
-  store().add(track);
+  times_.begin(track.id);  // before others see it in the store, or it would have been silent since the service started
+  try {
+    store().add(track);
+  } catch (...) {
+    times_.forget(track.id);
+    throw;
+  }
   live_[track.id] = std::move(fresh);
-  times_.begin(track.id);
   return track;
 }
 
@@ -193,17 +198,22 @@ void TrackRegistry::announce_step(const std::string& id, std::int64_t sequence, 
 }
 
 void TrackRegistry::end(const std::string& id, TrackEnd how) {
-  const std::lock_guard lock(mutex_);
   events_.end(id, [&](const auto& after) { return store().end(id, how, after); });
   live_.erase(id);
   times_.forget(id);
 }
 
-void TrackRegistry::finish(const std::string& id) { end(find(id).id, TrackEnd::kFinished); }
+void TrackRegistry::finish(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  end(find(id).id, TrackEnd::kFinished);
+}
 
 void TrackRegistry::expire() {
   for (const StoredTrack& track : store().flying()) {
-    if (const auto how = ended(track)) end(track.id, *how);
+    const std::lock_guard lock(mutex_);  // a step that is taken meanwhile keeps the track
+    const auto live = live_.find(track.id);
+    const bool takes_a_step = live != live_.end() && live->second.use_count() > 1;
+    if (const auto how = ended(track); how && !takes_a_step) end(track.id, *how);
   }
 }
 

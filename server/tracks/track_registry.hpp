@@ -81,6 +81,7 @@ class TrackRegistry {
   TrackSettings calibrated(TrackSettings settings) const;
   std::optional<TrackEnd> ended(const StoredTrack& track) const;
   TrackEvents::News news(const std::string& id, std::int64_t after, int count) const;
+  /// Holding `mutex_`.
   void end(const std::string& id, TrackEnd how);
   void expire();
 

@@ -278,7 +278,7 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
       while (rows.step()) last.push_back(step_of(rows));
       std::ranges::reverse(last);
     }
-    sqlite::Statement(impl_->connection(), "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1")
+    sqlite::Statement(impl_->connection(), "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1 AND ended = ''")
         .with(id, end_column(how))
         .run();
     sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();

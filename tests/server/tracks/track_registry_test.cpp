@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "tests/server/tracks/track_registry_fixture.hpp"
 #include "tests/support/code_of.hpp"
@@ -87,6 +89,42 @@ TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
   EXPECT_EQ(code_of([&] { take(*tracks, id, 0); }), "track-ended");
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "track-ended");
   EXPECT_TRUE(tracks->of_client("::1").empty());
+}
+
+TEST_F(TrackRegistryTest, EndsNoTrackThatHasJustBegunInAnOldService) {
+  TrackLimits limits;
+  limits.idle = std::chrono::seconds(2);
+  const auto tracks = registry(limits);
+  std::this_thread::sleep_for(limits.idle);
+  std::atomic<int> lost = 0;
+  std::vector<std::jthread> clients;
+  for (int client = 0; client < 4; ++client) {
+    clients.emplace_back([&, name = std::to_string(client)] {
+      for (int i = 0; i < 100; ++i) {
+        const auto began = std::chrono::steady_clock::now();
+        const std::string id = begin(*tracks, name);
+        const std::string code = code_of([&] { tracks->finish(id); });
+        if (code != "no error" && std::chrono::steady_clock::now() - began < limits.idle) ++lost;
+      }
+    });
+  }
+  clients.clear();
+  EXPECT_EQ(lost, 0);
+}
+
+TEST_F(TrackRegistryTest, DoesNotEndATrackWhileItTakesAStep) {
+  TrackLimits limits;
+  limits.idle = std::chrono::seconds(1);
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  auto step = tracks->live(id);
+  const TrackerState state = step->tracker().advance({}, step_of(0)).state;
+  std::this_thread::sleep_for(limits.idle + std::chrono::milliseconds(100));
+  begin(*tracks);
+  EXPECT_EQ(code_of([&] { tracks->store_step(id, {0, 0, "{}"}, state); }), "no error");
+  step.reset();
+  begin(*tracks);
+  EXPECT_EQ(code_of([&] { tracks->store_step(id, {1, 0, "{}"}, state); }), "track-ended");
 }
 
 }  // namespace

@@ -76,6 +76,15 @@ TEST(TrackStore, TakesNoStepOfATrackThatEnded) {
   EXPECT_EQ(store.find("a")->ended, TrackEnd::kFinished);
 }
 
+TEST(TrackStore, KeepsHowATrackEndedFirst) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  store.add(track("a"));
+  store.end("a", TrackEnd::kFinished);
+  store.end("a", TrackEnd::kExpired);
+  EXPECT_EQ(store.find("a")->ended, TrackEnd::kFinished);
+}
+
 TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);

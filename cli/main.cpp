@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "core/units/memory.hpp"
 
@@ -35,6 +36,7 @@ int failed(const roadfix::Error& error) {
 
 int main(int argc, char** argv) {
   roadfix::keep_freed_memory();
+  roadfix::cli::watch_signals();
   // What OpenCV has to say comes as an exception, and is said once.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   CLI::App app(

@@ -4,35 +4,71 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <thread>
 #include <utility>
 
 namespace roadfix::cli {
 
-std::stop_token stop_on_signals() {
-  // A thread of its own waits for the signals: nothing but async-signal-safe code may run in a handler.
-  static std::stop_source source;
-  static const bool started = [] {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    struct sigaction hangup {};
-    sigaction(SIGHUP, nullptr, &hangup);
-    if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);  // nohup ignores it
-    pthread_sigmask(SIG_BLOCK, &set, nullptr);
-    std::thread([set] {
-      int signal = 0;
-      sigwait(&set, &signal);
-      source.request_stop();
-      sigwait(&set, &signal);
+namespace {
+
+struct Stop {
+  std::stop_source source;
+  std::atomic<bool> is_awaited = false;  ///< by a command that stops in good order
+};
+
+/// Never destroyed: a signal may come while the process ends.
+Stop& stop() {
+  static Stop& instance = *new Stop;
+  return instance;
+}
+
+sigset_t watched_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);  // nohup ignores it
+  return set;
+}
+
+/// As if nobody had waited for it: whoever started the process sees what ended it. Returns where it is ignored.
+void end_by(int signal) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  raise(signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+[[noreturn]] void wait_for(const sigset_t& signals) {
+  for (;;) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    if (!stop().is_awaited) {
+      end_by(signal);
+    } else if (!stop().source.request_stop()) {
       _exit(128 + signal);
-    }).detach();
-    return true;
-  }();
-  (void)started;
-  return source.get_token();
+    }
+  }
+}
+
+}  // namespace
+
+void watch_signals() {
+  const sigset_t signals = watched_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  // A thread of its own waits for them: nothing but async-signal-safe code may run in a handler.
+  std::thread([signals] { wait_for(signals); }).detach();
+}
+
+std::stop_token stop_on_signals() {
+  stop().is_awaited = true;
+  return stop().source.get_token();
 }
 
 Progress::Progress(std::string task, std::string unit, double units_per_item)

@@ -11,8 +11,12 @@
 
 namespace roadfix::cli {
 
-/// Requested by the first SIGINT, SIGTERM or, unless it is ignored (nohup), SIGHUP; a second one ends the process at
-/// once.
+/// Called first in main: a signal goes to any thread that does not block it, and those that libraries start block what
+/// the one does that starts them. SIGINT, SIGTERM and SIGHUP still end the process.
+void watch_signals();
+
+/// Requested by the first SIGINT, SIGTERM or, unless it is ignored (nohup), SIGHUP from now on; a second one ends the
+/// process at once. After watch_signals().
 std::stop_token stop_on_signals();
 
 /// Share done, rate and time left of one long task.

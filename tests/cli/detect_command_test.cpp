@@ -1,6 +1,8 @@
 // roadfix detect as a script meets it.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -192,6 +194,16 @@ TEST_F(DetectCommand, SaysWhatIsMissing) {
   EXPECT_EQ(detect("--fov 90 --agl 100 --distortion 0,0,0,0").code, 2);
   EXPECT_EQ(detect("--fov 90 --agl 100 --gsd 1").code, 2);
   EXPECT_THAT(detect("--fov 190 --agl 100").err, HasSubstr("[frame-camera]"));
+}
+
+TEST_F(DetectCommand, EndsAtASignalAsCommandsDoThatHaveNothingToStop) {
+  const std::string pipe = (folder / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // from which nothing comes
+  const std::string command = "timeout --preserve-status --kill-after 60 1 " ROADFIX_PROGRAM
+                              " detect --detector tree " +
+                              pipe + " " + (folder / "roads.png").string() + " --gsd 1";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
 }
 
 }  // namespace

@@ -82,6 +82,17 @@ TEST_F(FlyCommand, ReplaysARecordedFlight) {
   EXPECT_THAT(roadfix(replay + " --course survey").err, HasSubstr("recorded-course"));
 }
 
+/// Its detector has started threads by the time that it is ready to stop, and a signal goes to any that takes it.
+TEST_F(FlyCommand, StopsInGoodOrderAtASignal) {
+  const std::string flight = ROADFIX_PROGRAM " fly " + map() + " --over " + after() +
+                             " --detector tree --tree-roots 500 --footprint-m 300 --runs 1000 --particles 500";
+  const std::string err = file("err");
+  const std::string script = flight + " >" + file("out") + " 2>" + err + " & flight=$!; while kill -0 $flight && " +
+                             "! grep -q flying " + err + "; do sleep 0.05; done; kill -TERM $flight; wait $flight";
+  const int status = std::system(script.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1) << text_of(err);
+}
+
 TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {
   const std::string flight =
       "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --registration 3 --csv ";

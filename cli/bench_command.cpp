@@ -193,7 +193,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
   command->add_option("--confidence", a->options.fix.confidence, "Minimum probability of a fix")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   add_threads_option(*command, "--jobs", a->options.jobs,
                      "Blocks or queries in progress at a time; 1 to measure times");
   command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");

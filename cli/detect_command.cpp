@@ -167,7 +167,7 @@ void add_detect_command(CLI::App& app) {
   add_frame_options(*command, options->frame);
   command->add_option("--cell", options->cell_m, "Cell size in metres")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 100.0));
+      ->check(between(0.1, 100.0));
   command->add_option("--seed", options->seed, "Seed of detectors that use random numbers")
       ->capture_default_str()
       ->check(seed());

@@ -84,7 +84,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
           ->type_name("COL,ROW")
           ->delimiter(',')
           ->expected(2)
-          ->check(CLI::Range(-1e6, 1e6));
+          ->check(between(-1e6, 1e6));
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell)->excludes(nadir);
   command.add_option("--seed", o.seed, "Seed of detectors that use random numbers")
       ->capture_default_str()

@@ -127,14 +127,14 @@ void add_fix_command(CLI::App& app) {
   command
       ->add_option("--heading-range", o->heading_range_deg,
                    "Prior: the heading lies within this many degrees of --heading")
-      ->check(CLI::Range(0.0, 180.0))
+      ->check(between(0.0, 180.0))
       ->needs(heading);
   heading->needs("--heading-range");
   command
       ->add_option("--confidence", o->fix.confidence,
                    "Minimum probability of a fix; the shipped calibration vouches for about 0.995 at most")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 0.999999));
+      ->check(between(0.5, 0.999999));
   add_calibration_option(*command, o->calibration);
   command->add_option("--modes", o->fix.max_modes, "Maximum number of places to report")
       ->capture_default_str()
@@ -145,7 +145,7 @@ void add_fix_command(CLI::App& app) {
           "The ground may be smaller or larger by this share: roughly known altitude, or a lens that --exif knows "
           "from FocalLengthIn35mmFilm alone (0.1)")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, kMaxScaleRange));
+      ->check(between(0.0, kMaxScaleRange));
   command
       ->add_option(
           "--nadir-sigma", o->input.nadir_sigma_m,

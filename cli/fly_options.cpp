@@ -51,17 +51,17 @@ void add_belief_options(CLI::App& command, FlyOptions& o) {
                   "The altitude: the ground seen may be smaller by this share, or larger by as much, for long")
       ->capture_default_str()
       ->group(kGroup)
-      ->check(CLI::Range(0.0, kMaxScaleRange));
+      ->check(between(0.0, kMaxScaleRange));
   command
       .add_option("--wind-sigma", o.wind_sigma_m_s,
                   "The wind at first, where odometry is relative to the air: 1 sigma in metres per second and axis")
       ->group(kGroup)
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(between(0.0, 100.0));
   command
       .add_option("--wind-walk", o.wind_walk,
                   "Its changes: growth of the sigma in m/s per square root of a second; default: a fiftieth of it")
       ->group(kGroup)
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(between(0.0, 10.0));
 }
 
 void add_flight_options(CLI::App& command, FlyOptions& o) {
@@ -91,7 +91,7 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
       ->expected(1, 2)
       ->check(positive());
   add("--frame-every", o.plan.frame_every, "A frame in every k-th step")->check(positive());
-  add("--missing", o.plan.missing_share, "Share of frames that are lost, at random")->check(CLI::Range(0.0, 1.0));
+  add("--missing", o.plan.missing_share, "Share of frames that are lost, at random")->check(between(0.0, 1.0));
   add("--outage", o.outage, "No frames from step FIRST to before step END")
       ->delimiter(',')
       ->expected(2)

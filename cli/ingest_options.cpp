@@ -48,7 +48,7 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
                      "Attribute with the road class; default: highway, fclass, type, class or road_class");
   command.add_option("--width-attribute", a.width_attribute,
                      "Attribute that holds the width in metres; NAME:ft if in feet");
-  command.add_option("--width", a.width_m, "Width of all roads in metres")->check(CLI::Range(0.5, 100.0));
+  command.add_option("--width", a.width_m, "Width of all roads in metres")->check(between(0.5, 100.0));
 }
 
 /// Whose empty text is one, too.

@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
@@ -113,7 +114,7 @@ void add_match_command(CLI::App& app) {
   command->add_option("--poses", o->poses_file, "CSV file with one such pose per line");
   add_degrees_option(*command, "--heading-step", o->match.heading_step,
                      "Round headings to this many degrees and positions to cells: faster for many poses")
-      ->check(CLI::Range(0.0, 90.0));
+      ->check(between(0.0, 90.0));
   add_threads_option(*command, "--threads", o->match.threads, "Threads");
   command->add_flag("--json", o->as_json, "Answer as JSON");
   command->callback([o] { run_match(*o); });

@@ -6,21 +6,22 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/units/text.hpp"
 
 namespace roadfix::cli {
 namespace {
 
-CLI::Validator number_within(double min, bool is_open, double max, const char* name) {
+CLI::Validator number_within(double min, bool is_open, double max, std::string name) {
   return {[=](std::string& text) -> std::string {
             double value = 0.0;
             const bool is_number = CLI::detail::lexical_cast(text, value);
             if (is_number && value <= max && (is_open ? value > min : value >= min)) return {};
-            return fmt::format("must be a number {} {:.0f} and at most {:.0f}, not {}",
-                               is_open ? "above" : "of at least", min, max, text);
+            return fmt::format("must be a number {} {} and at most {}, not {}", is_open ? "above" : "of at least", min,
+                               max, text);
           },
-          name};
+          std::move(name)};
 }
 
 }  // namespace
@@ -28,6 +29,10 @@ CLI::Validator number_within(double min, bool is_open, double max, const char* n
 CLI::Validator positive(double max) { return number_within(0.0, true, max, "POSITIVE"); }
 
 CLI::Validator not_negative(double max) { return number_within(0.0, false, max, "NONNEGATIVE"); }
+
+CLI::Validator between(double min, double max) {
+  return number_within(min, false, max, fmt::format("in [{} - {}]", min, max));
+}
 
 CLI::Validator seed() {
   return {[](std::string& text) -> std::string {

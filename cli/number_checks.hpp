@@ -15,6 +15,9 @@ CLI::Validator positive(double max = kMaxNumber);
 /// 0 or positive(max).
 CLI::Validator not_negative(double max = kMaxNumber);
 
+/// From `min` to `max`. CLI::Range takes NaN for one.
+CLI::Validator between(double min, double max);
+
 /// A whole number from 0 to 2^31 - 1, as the service takes it. CLI11 alone wraps what is negative.
 CLI::Validator seed();
 

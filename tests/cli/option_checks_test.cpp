@@ -36,6 +36,14 @@ TEST(Seed, IsAWholeNumberThatTheServiceTakesToo) {
   EXPECT_EQ(complaint(seed(), "-1"), "must be a whole number from 0 to 2147483647, not -1");
 }
 
+TEST(Between, HoldsItsEndsAndTellsThemAsTheyAre) {
+  const CLI::Validator share = between(0.5, 0.999999);
+  for (const char* number : {"0.5", "0.7", "0.999999"}) EXPECT_EQ(complaint(share, number), "") << number;
+  for (const char* number : {"0.4999", "1", "nan", "-inf", "", "half"}) EXPECT_NE(complaint(share, number), "");
+  EXPECT_EQ(complaint(share, "nan"), "must be a number of at least 0.5 and at most 0.999999, not nan");
+  EXPECT_EQ(complaint(positive(), "0"), "must be a number above 0 and at most 2000000000, not 0");
+}
+
 TEST(Milliseconds, AreNoneForNoTimeAlone) {
   EXPECT_EQ(milliseconds(0.0).count(), 0);
   EXPECT_EQ(milliseconds(1e-9).count(), 1) << "0 would be no limit";

@@ -1,12 +1,13 @@
 #include "cli/bbox_option.hpp"
 
+#include <span>
 #include <vector>
 
 namespace roadfix::cli {
 
 void add_bbox_option(CLI::App& command, const std::string& what, std::optional<GeoBox>& box) {
   const auto take = [&box](const std::vector<double>& bounds) {
-    box = GeoBox{{bounds[1], bounds[0]}, {bounds[3], eastern_side_deg(bounds[0], bounds[2])}};
+    box = geo_box_of(std::span<const double, 4>(bounds));
     if (box->empty()) throw CLI::ValidationError("--bbox", "west must lie below east, and south below north");
   };
   command

@@ -51,6 +51,10 @@ double eastern_side_deg(double west_deg, double east_deg) {
   return west_deg - east_deg > kTurn / 2.0 ? east_deg + kTurn : east_deg;
 }
 
+GeoBox geo_box_of(std::span<const double, 4> sides_deg) {
+  return {{sides_deg[1], sides_deg[0]}, {sides_deg[3], eastern_side_deg(sides_deg[0], sides_deg[2])}};
+}
+
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
   // Along a side the extreme lies between samples by less than its curvature over one step: centimetres for a city.
   constexpr int kSteps = 16;

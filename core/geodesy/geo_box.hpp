@@ -2,6 +2,8 @@
 // other.
 #pragma once
 
+#include <span>
+
 #include "core/geodesy/utm.hpp"
 
 namespace roadfix {
@@ -20,6 +22,9 @@ struct GeoBox {
 /// The eastern side of a box, as people write it: beyond 180 degrees where west lies more than half a turn above it,
 /// since the box crosses the antimeridian then.
 double eastern_side_deg(double west_deg, double east_deg);
+
+/// Of west, south, east and north in degrees, as people write them; empty where they are no box.
+GeoBox geo_box_of(std::span<const double, 4> sides_deg);
 
 /// The smallest one around a box of the plane, which is not empty, to centimetres for a city.
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/units/error.hpp"
 #include "server/api/feature_request.hpp"
@@ -60,13 +61,13 @@ Prior parse_prior(const Fields& fields) {
                              fields.number("radius_m", {0.0, 2e7, true})};
   }
   if (const auto box = fields.optional_numbers("bbox", 4)) {
-    const GeoBox geo{{(*box)[1], (*box)[0]}, {(*box)[3], (*box)[2]}};
+    const GeoBox geo = geo_box_of(std::span<const double, 4>(*box));
     // Beyond 180 degrees: across the antimeridian, as GET /v1/maps gives the boxes of such maps.
     const auto on_earth = [](LatLon p) { return std::abs(p.lat_deg) <= 90.0 && std::abs(p.lon_deg) <= 360.0; };
-    if (!on_earth(geo.south_west) || !on_earth(geo.north_east) || geo.south_west.lat_deg >= geo.north_east.lat_deg ||
-        geo.south_west.lon_deg >= geo.north_east.lon_deg) {
+    if (!on_earth(geo.south_west) || !on_earth(geo.north_east) || geo.empty()) {
       throw InvalidField("bad-parameter", "bbox",
-                         "'bbox' must be west,south,east,north in degrees with west < east and south < north");
+                         "'bbox' must be west,south,east,north in degrees with south < north, and with west < east "
+                         "unless the antimeridian lies between them");
     }
     prior.box = geo;
   }

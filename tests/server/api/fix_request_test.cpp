@@ -53,8 +53,14 @@ TEST(PriorRequest, TellsABoxFromWestToNorth) {
   EXPECT_EQ(box.south_west.lat_deg, 57.0);
   EXPECT_EQ(box.north_east.lon_deg, 12.0);
   EXPECT_EQ(box.north_east.lat_deg, 58.0);
-  const Fields query(http::Parameters{{"bbox", "179.9,-17.1,180.2,-16.8"}});
-  EXPECT_EQ(parse_prior(query).box.value().north_east.lon_deg, 180.2) << "across the antimeridian";
+}
+
+TEST(PriorRequest, TellsABoxAcrossTheAntimeridianEitherWay) {
+  for (const char* sides : {"179.9,-17.1,180.2,-16.8", "179.9,-17.1,-179.8,-16.8"}) {
+    const GeoBox box = parse_prior(Fields(http::Parameters{{"bbox", sides}})).box.value();
+    EXPECT_EQ(box.south_west.lon_deg, 179.9) << sides;
+    EXPECT_DOUBLE_EQ(box.north_east.lon_deg, 180.2) << sides;
+  }
 }
 
 TEST(PriorRequest, RefusesABoxThatHoldsNothingOrIsNotOnEarth) {

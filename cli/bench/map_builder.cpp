@@ -1,7 +1,6 @@
 #include "cli/bench/map_builder.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/units/file_beside.hpp"
 #include "core/units/fnv.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
@@ -33,10 +33,9 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
   plan.width_m = plan.height_m = source.side_m;
   world::Random random(source.seed, 0);
   world::invent_streets(plan, random);
-  const std::filesystem::path unfinished =
-      cache / fmt::format("unfinished-{}-{:g}-{}.geojson", source.seed, source.side_m, ::getpid());
-  world::write_road_truth(unfinished.string(), plan.streets, world::place(settings, world::kDefaultCentre));
-  std::filesystem::rename(unfinished, file);
+  FileBeside roads(file);
+  world::write_road_truth(roads.unfinished().string(), plan.streets, world::place(settings, world::kDefaultCentre));
+  roads.finish();
   return file;
 }
 

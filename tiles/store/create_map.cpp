@@ -1,14 +1,12 @@
 #include "tiles/store/create_map.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <string>
-#include <system_error>
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file_beside.hpp"
 #include "schema/schema.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
@@ -75,21 +73,6 @@ void write_map(const fs::path& path, const MapSettings& settings) {
   transaction.commit();
 }
 
-/// If it is there.
-void remove_map(const fs::path& path) {
-  std::error_code ignored;
-  fs::remove(path, ignored);
-  sqlite::remove_logs(path);
-}
-
-/// Makes a rename durable.
-void sync_folder(const fs::path& folder) {
-  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // some file systems do not open folders; the rename itself has been done
-  fsync(descriptor);
-  close(descriptor);
-}
-
 }  // namespace
 
 void create_map(const fs::path& path, const MapSettings& settings) {
@@ -97,19 +80,18 @@ void create_map(const fs::path& path, const MapSettings& settings) {
     throw InvalidInput("cell-size-not-supported",
                        fmt::format("cells of {} m: a map has cells of 0.25, 0.5, 1, 2, 4, 8 or 16 m", settings.cell_m));
   }
-  const fs::path unfinished = path.string() + "-new";
-  remove_map(unfinished);
+  FileBeside map(path, path.string() + "-new");
+  sqlite::remove_logs(map.unfinished());
   try {
-    write_map(unfinished, settings);
+    write_map(map.unfinished(), settings);
+    sqlite::remove_logs(path);  // of a map that was deleted without them
+    map.finish();
+  } catch (const fs::filesystem_error& error) {
+    throw IoFailure("map-not-writable", fmt::format("{}: {}", path.string(), error.code().message()));
   } catch (...) {
-    remove_map(unfinished);
+    sqlite::remove_logs(map.unfinished());
     throw;
   }
-  sqlite::remove_logs(path);  // of a map that was deleted without them
-  std::error_code error;
-  fs::rename(unfinished, path, error);
-  if (error) throw IoFailure("map-not-writable", fmt::format("{}: {}", path.string(), error.message()));
-  sync_folder(path.parent_path());
 }
 
 }  // namespace roadfix

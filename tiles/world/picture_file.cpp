@@ -4,8 +4,6 @@
 
 #include <array>
 #include <filesystem>
-#include <system_error>
-#include <utility>
 
 #include "core/units/error.hpp"
 
@@ -14,18 +12,17 @@ namespace {
 
 constexpr int kFileTile = 256;
 
-[[noreturn]] void fail(const std::string& path, const std::string& reason) {
-  throw IoFailure("world-unwritable", fmt::format("{}: cannot be written ({})", path, reason));
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
+  throw IoFailure("world-unwritable", fmt::format("{}: cannot be written ({})", path.string(), reason));
 }
 
 }  // namespace
 
-PictureFile::PictureFile(std::string path, const Placement& placement)
-    : path_(std::move(path)), partial_(path_ + ".partial") {
+PictureFile::PictureFile(const std::string& path, const Placement& placement) : file_(path, path + ".partial") {
   require_gdal();
   const GdalMessages messages;
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  if (driver == nullptr) fail(path_, "this GDAL has no GeoTIFF driver");
+  if (driver == nullptr) fail(path, "this GDAL has no GeoTIFF driver");
   CPLStringList options;
   options.SetNameValue("TILED", "YES");
   options.SetNameValue("BLOCKXSIZE", std::to_string(kFileTile).c_str());
@@ -35,20 +32,15 @@ PictureFile::PictureFile(std::string path, const Placement& placement)
   options.SetNameValue("ZLEVEL", "4");
   options.SetNameValue("PHOTOMETRIC", "RGB");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
-  dataset_.reset(driver->Create(partial_.c_str(), placement.cols, placement.rows, 3, GDT_Byte, options.List()));
-  if (!dataset_) fail(path_, messages.text());
+  dataset_.reset(
+      driver->Create(file_.unfinished().c_str(), placement.cols, placement.rows, 3, GDT_Byte, options.List()));
+  if (!dataset_) fail(path, messages.text());
   std::array<double, 6> transform{
       placement.north_west.east_m, placement.gsd_m, 0.0, placement.north_west.north_m, 0.0, -placement.gsd_m};
   const OGRSpatialReference reference = utm_reference(placement.zone);
   if (dataset_->SetGeoTransform(transform.data()) != CE_None || dataset_->SetSpatialRef(&reference) != CE_None) {
-    fail(path_, messages.text());
+    fail(path, messages.text());
   }
-}
-
-PictureFile::~PictureFile() {
-  dataset_.reset();
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
 }
 
 void PictureFile::write(cv::Point corner, const cv::Mat3b& pixels) {
@@ -56,17 +48,19 @@ void PictureFile::write(cv::Point corner, const cv::Mat3b& pixels) {
   const CPLErr error =
       dataset_->RasterIO(GF_Write, corner.x, corner.y, pixels.cols, pixels.rows, pixels.data, pixels.cols, pixels.rows,
                          GDT_Byte, 3, nullptr, 3, static_cast<GSpacing>(pixels.step[0]), 1, nullptr);
-  if (error != CE_None) fail(path_, messages.text());
+  if (error != CE_None) fail(file_.target(), messages.text());
 }
 
 void PictureFile::finish() {
   const GdalMessages messages;
   dataset_->FlushCache(true);
   dataset_.reset();
-  if (messages.text() != GdalMessages::kNone) fail(path_, messages.text());
-  std::error_code error;
-  std::filesystem::rename(partial_, path_, error);
-  if (error) fail(path_, error.message());
+  if (messages.text() != GdalMessages::kNone) fail(file_.target(), messages.text());
+  try {
+    file_.finish();
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(file_.target(), error.code().message());
+  }
 }
 
 }  // namespace roadfix::world

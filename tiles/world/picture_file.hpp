@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "core/units/file_beside.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/world/settings.hpp"
 
@@ -13,19 +14,15 @@ namespace roadfix::world {
 class PictureFile {
  public:
   /// Throws IoFailure "world-unwritable", as the others do.
-  PictureFile(std::string path, const Placement& placement);
-  ~PictureFile();
-  PictureFile(const PictureFile&) = delete;
-  PictureFile& operator=(const PictureFile&) = delete;
+  PictureFile(const std::string& path, const Placement& placement);
 
   /// Red, green, blue; `corner` is the tile's place in the picture.
   void write(cv::Point corner, const cv::Mat3b& pixels);
   void finish();
 
  private:
-  std::string path_;
-  std::string partial_;
-  DatasetPtr dataset_;
+  FileBeside file_;
+  DatasetPtr dataset_;  ///< closed before the file is removed
 };
 
 }  // namespace roadfix::world

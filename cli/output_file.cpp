@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <string>
 #include <system_error>
 
 #include "core/units/error.hpp"
+#include "core/units/file_beside.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -27,6 +29,30 @@ bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code none;  // where one of them does not exist yet
   if (fs::exists(a, none) && !fs::is_regular_file(a, none)) return false;
   return fs::equivalent(a, b, none) || fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
+
+/// Throws as write_file, naming `file`.
+void write(const fs::path& path, std::string_view bytes, const fs::path& file) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary);
+  if (!out) unwritable(file, errno);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) unwritable(file, errno);
+}
+
+/// Devices and pipes, and what a shell has opened for the process: no other file can take their place.
+bool is_open_elsewhere(const fs::path& file) {
+  const std::string path = fs::absolute(file).lexically_normal().string();
+  std::error_code none;  // where the file does not exist yet
+  return path.starts_with("/dev/") || path.starts_with("/proc/") || is_standard_output(file) ||
+         (fs::exists(file, none) && !fs::is_regular_file(file, none));
+}
+
+fs::path where_links_lead(const fs::path& file) {
+  std::error_code error;
+  const fs::path end = fs::weakly_canonical(file, error);
+  return error ? file : end;
 }
 
 }  // namespace
@@ -55,16 +81,21 @@ void require_apart(std::initializer_list<fs::path> outputs, std::initializer_lis
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {
+  if (is_open_elsewhere(file)) return write(file, bytes, file);
+  require_writable({file});
+  FileBeside whole(where_links_lead(file));
   errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  if (!out) unwritable(file, errno);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (out) return;
-  const int reason = errno;
-  std::error_code ignored;  // the first failure is the one to tell of
-  if (fs::is_regular_file(file, ignored)) fs::remove(file, ignored);
-  unwritable(file, reason);
+  if (!std::ofstream(whole.unfinished())) {
+    if (errno == ENOSPC || errno == EDQUOT) unwritable(file, errno);
+    return write(file, bytes, file);  // the folder takes no new files
+  }
+  write(whole.unfinished(), bytes, file);
+  try {
+    if (fs::exists(whole.target())) fs::permissions(whole.unfinished(), fs::status(whole.target()).permissions());
+    whole.finish();
+  } catch (const fs::filesystem_error& error) {
+    unwritable(file, error.code().value());
+  }
 }
 
 bool is_standard_output(const fs::path& file) {

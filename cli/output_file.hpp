@@ -8,8 +8,9 @@
 
 namespace roadfix::cli {
 
-/// Replaces the file. Throws IoFailure "result-unwritable" with the reason unless all of it was written, and leaves no
-/// part of it then.
+/// Replaces the file. Throws IoFailure "result-unwritable" with the reason unless all of it was written, and leaves the
+/// file of before then. Only what no other file can take the place of, such as devices, pipes, standard output and
+/// files in folders that take no new ones, may keep a part.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// Nothing is written over what the command reads, or over another of its outputs: throws InvalidInput

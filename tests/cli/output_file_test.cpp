@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/room.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::cli {
@@ -17,6 +20,10 @@ using roadfix::testing::code_of;
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::ptrdiff_t files_in(const std::filesystem::path& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
 TEST(OutputFile, HoldsTheBytesAndNothingOfTheFileBefore) {
@@ -30,6 +37,51 @@ TEST(OutputFile, HoldsTheBytesAndNothingOfTheFileBefore) {
 TEST(OutputFile, IsRefusedWhereNotAllOfItCanBeWritten) {
   EXPECT_EQ(code_of([] { write_file("/nowhere/at/all.json", "{}"); }), "result-unwritable");
   EXPECT_EQ(code_of([] { write_file("/dev/full", "{}"); }), "result-unwritable");
+}
+
+TEST(OutputFile, IsAsBeforeWhereThereIsNoRoomForTheNewOne) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "calibration.json";
+  write_file(file, "of last week");
+  {
+    const roadfix::testing::Room room(100);
+    EXPECT_EQ(code_of([&] { write_file(file, std::string(1000, 'x')); }), "result-unwritable");
+    EXPECT_EQ(code_of([&] { write_file(folder.path() / "new.json", std::string(1000, 'x')); }), "result-unwritable");
+  }
+  EXPECT_EQ(content_of(file), "of last week");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(OutputFile, KeepsItsLinkAndItsPermissions) {
+  namespace fs = std::filesystem;
+  const roadfix::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "out.json";
+  write_file(file, "before");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_directory(folder.path() / "results");
+  fs::create_symlink("../out.json", folder.path() / "results" / "link");
+  write_file(folder.path() / "results" / "link", "after");
+  EXPECT_EQ(content_of(file), "after");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "results" / "link"));
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(OutputFile, IsWrittenInItsPlaceWhereItsFolderTakesNoOther) {
+  const roadfix::testing::TemporaryFolder folder;
+  const std::string longest(255, 'n');  // which leaves no room for a longer name beside it
+  write_file(folder.path() / longest, "before");
+  write_file(folder.path() / longest, "after");
+  EXPECT_EQ(content_of(folder.path() / longest), "after");
+}
+
+TEST(OutputFile, GoesToWhatAProcessHasOpenAlready) {
+  const roadfix::testing::TemporaryFolder folder;
+  std::FILE* const open = std::fopen((folder.path() / "printed").c_str(), "w");
+  write_file("/proc/self/fd/" + std::to_string(fileno(open)), "first,");
+  std::fseek(open, 0, SEEK_END);
+  std::fputs(" then", open);
+  std::fclose(open);
+  EXPECT_EQ(content_of(folder.path() / "printed"), "first, then");
 }
 
 TEST(OutputFile, IsLookedAtBeforehandAndLeftAsItIs) {

@@ -4,12 +4,12 @@
 
 #include <fstream>
 #include <ios>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "core/units/error.hpp"
+#include "core/units/file_beside.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/mbtiles.hpp"
 #include "tiles/export/one_side.hpp"
@@ -78,24 +78,23 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
 }
 
 struct Monitor {
+  MapDataset& source;
   const OnProgress& progress;
   const std::stop_token& stop;
   double share_before = 0.0;  ///< of the whole work
   double share = 1.0;
 };
 
+/// GDAL is C below: no exception may leave.
 int on_progress(double share, const char*, void* monitor) {
   const Monitor& now = *static_cast<const Monitor*>(monitor);
-  if (now.progress) now.progress(static_cast<std::int64_t>((now.share_before + share * now.share) * 1000.0), 1000);
+  try {
+    if (now.progress) now.progress(static_cast<std::int64_t>((now.share_before + share * now.share) * 1000.0), 1000);
+  } catch (...) {
+    now.source.keep_failure();
+    return FALSE;
+  }
   return now.stop.stop_requested() ? FALSE : TRUE;
-}
-
-/// What a copy leaves beside its target when it fails, and side files of a driver.
-void remove_unfinished(const fs::path& unfinished) {
-  std::error_code ignored;
-  for (const char* suffix : {"", ".aux.xml", "-journal", ".ovr.tmp", ".msk.ovr.tmp"})
-    fs::remove(unfinished.string() + suffix, ignored);
-  fs::remove(common_world_file(unfinished), ignored);
 }
 
 bool ends_with(const fs::path& file, std::string_view end) {
@@ -105,44 +104,73 @@ bool ends_with(const fs::path& file, std::string_view end) {
   return in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && bytes == end;
 }
 
-/// GDAL's driver does not notice when the last bytes of a picture or of the files that say where it lies find no room.
-void require_whole_picture(const fs::path& picture, const fs::path& world, const fs::path& reference) {
-  constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
-  if (ends_with(picture, kLastChunk) && ends_with(world, "\n") && ends_with(reference, "</PAMDataset>\n")) return;
-  throw IoFailure("export-failed",
-                  fmt::format("{}: its end cannot be written. Check that the disk has room", picture.string()));
-}
+/// A picture, and what of the files beside it says where it lies.
+class Picture {
+ public:
+  explicit Picture(const fs::path& target)
+      : picture_(target),
+        world_(common_world_file(target), common_world_file(unfinished())),
+        reference_(target.string() + kReference, unfinished().string() + kReference) {}
+  /// A copy that fails leaves more.
+  ~Picture() {
+    std::error_code ignored;
+    for (const char* suffix : {"-journal", ".ovr.tmp", ".msk.ovr.tmp"}) {
+      fs::remove(unfinished().string() + suffix, ignored);
+    }
+  }
+  Picture(const Picture&) = delete;
+  Picture& operator=(const Picture&) = delete;
+
+  const fs::path& unfinished() const { return picture_.unfinished(); }
+  /// GDAL's driver does not notice when the last bytes of a PNG or of the files beside it find no room.
+  bool is_whole_png() const {
+    constexpr std::string_view kLastChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+    return ends_with(unfinished(), kLastChunk) && ends_with(world_.unfinished(), "\n") &&
+           ends_with(reference_.unfinished(), "</PAMDataset>\n");
+  }
+  void finish() {
+    picture_.finish();
+    remove_side_files(picture_.target());
+    for (FileBeside* beside : {&world_, &reference_}) {
+      if (fs::exists(beside->unfinished())) beside->finish();
+    }
+  }
+
+ private:
+  static constexpr const char* kReference = ".aux.xml";
+  FileBeside picture_;
+  FileBeside world_;
+  FileBeside reference_;
+};
 
 /// False where GDAL failed or was stopped.
-bool written_by(GDALDriver& driver, MapDataset& source, const Driver& target, const fs::path& path, Monitor monitor) {
+bool written_by(GDALDriver& driver, const Driver& target, const fs::path& path, Monitor monitor) {
   constexpr double kCopyShare = 0.7;  // of the time, where zooms follow
   const bool has_zooms = target.name == std::string_view("MBTiles");
   if (has_zooms) monitor.share = kCopyShare;
-  const std::unique_ptr<GDALDataset> written(driver.CreateCopy(
-      path.c_str(), &source, FALSE, const_cast<char**>(target.options.List()), on_progress, &monitor));
+  const DatasetPtr written(driver.CreateCopy(path.c_str(), &monitor.source, FALSE,
+                                             const_cast<char**>(target.options.List()), on_progress, &monitor));
   if (written == nullptr || !has_zooms) return written != nullptr;
   monitor.share_before = kCopyShare;
   monitor.share = 1.0 - kCopyShare;
   return add_zooms(*written, on_progress, &monitor);
 }
 
-void copy(MapDataset& source, const Driver& target, const fs::path& path, const Monitor& monitor) {
+void copy(const Driver& target, const fs::path& path, const Monitor& monitor) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
   if (driver == nullptr) {
     throw IoFailure("export-failed", fmt::format("this GDAL has no {} driver. Choose another format", target.name));
   }
+  const GdalMessages messages;
   CPLErrorReset();
-  // The error is reported by exception, not printed by GDAL.
-  CPLPushErrorHandler(CPLQuietErrorHandler);
-  const bool copied = written_by(*driver, source, target, path, monitor);
-  CPLPopErrorHandler();
-  source.rethrow_failure();
+  const bool copied = written_by(*driver, target, path, monitor);
+  monitor.source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("export-stopped", "the export was stopped; nothing was written");
-  if (!copied || CPLGetLastErrorType() >= CE_Failure) {
+  if (!copied || CPLGetLastErrorType() >= CE_Failure) {  // of MBTiles, the driver itself gets over some
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
                                 "has room",
-                                path.string(), CPLGetLastErrorMsg()));
+                                path.string(), messages.text()));
   }
 }
 
@@ -160,28 +188,21 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
                                     geometry.cols, geometry.rows));
   }
   if (options.format == ExportFormat::kMbTiles) require_one_side(map.info().settings.zone, geometry);
-  // The name ends like the target: drivers look at the extension.
-  const fs::path unfinished = target.parent_path() / ("unfinished-" + target.filename().string());
-  remove_unfinished(unfinished);
   try {
     MapDataset source(map, geometry, driver.pixels);
-    copy(source, driver, unfinished, {progress, stop});
-    const fs::path world = common_world_file(unfinished);
-    const fs::path reference = unfinished.string() + ".aux.xml";
-    if (options.format == ExportFormat::kMbTiles) complete_metadata(unfinished, map.info());
-    if (options.format == ExportFormat::kPng) require_whole_picture(unfinished, world, reference);
-    if (options.format == ExportFormat::kMbTiles) sqlite::remove_logs(target);
-    fs::rename(unfinished, target);
-    remove_side_files(target);
-    if (fs::exists(world)) fs::rename(world, common_world_file(target));
-    if (fs::exists(reference)) fs::rename(reference, target.string() + ".aux.xml");
-    remove_unfinished(unfinished);
+    Picture picture(target);
+    copy(driver, picture.unfinished(), {source, progress, stop});
+    if (options.format == ExportFormat::kMbTiles) {
+      complete_metadata(picture.unfinished(), map.info());
+      sqlite::remove_logs(target);
+    }
+    if (options.format == ExportFormat::kPng && !picture.is_whole_png()) {
+      throw IoFailure("export-failed",
+                      fmt::format("{}: its end cannot be written. Check that the disk has room", target.string()));
+    }
+    picture.finish();
   } catch (const fs::filesystem_error& error) {
-    remove_unfinished(unfinished);
     throw IoFailure("export-failed", fmt::format("{}: {}", target.string(), error.code().message()));
-  } catch (...) {
-    remove_unfinished(unfinished);
-    throw;
   }
 }
 

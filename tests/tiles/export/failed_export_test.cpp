@@ -1,4 +1,7 @@
 // What cannot be exported leaves nothing behind.
+#include <stdexcept>
+#include <utility>
+
 #include "tests/support/room.hpp"
 #include "tests/tiles/export/map_export_fixture.hpp"
 
@@ -44,6 +47,25 @@ TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
     EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
   }
   EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(MapExport, PassesOnWhatTheOneWhoWatchesItThrows) {
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng, ExportFormat::kMbTiles}) {
+    const auto watch = [](std::int64_t, std::int64_t) { throw std::runtime_error("the terminal has gone"); };
+    EXPECT_THROW(export_map(MapReader(path), folder / "out", {.format = format}, watch), std::runtime_error);
+    EXPECT_EQ(files(), 1U);
+  }
+}
+
+TEST_F(MapExport, LeavesTheFilesOfAnotherToTheSameTargetAlone) {
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng, ExportFormat::kMbTiles}) {
+    bool began = false;
+    const auto other = [&](std::int64_t, std::int64_t) {
+      if (!std::exchange(began, true)) export_map(MapReader(path), folder / "out", {.format = format});
+    };
+    EXPECT_NO_THROW(export_map(MapReader(path), folder / "out", {.format = format}, other));
+    EXPECT_TRUE(began);
+  }
 }
 
 }  // namespace

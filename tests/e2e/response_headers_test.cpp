@@ -13,6 +13,7 @@
 
 #include "server/api/web_mercator.hpp"
 #include "tests/e2e/service_fixture.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace roadfix {
 namespace {
@@ -120,7 +121,7 @@ TEST_F(ResponseHeaders, AreDescribedWhereTheyAreSent) {
   expect_described("takeStep", 204, client_->Post(steps + "?format=command_int", step, "application/json"));
   std::atomic<bool> listening = false;
   const std::jthread end([&] {
-    while (!listening) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(testing::eventually([&] { return listening.load(); }));
     testing::client_of(*service_).Delete("/v1/tracks/" + id);
   });
   expect_described("getTrackEvents", 200, client_->Get("/v1/tracks/" + id + "/events", [&](const char*, std::size_t) {

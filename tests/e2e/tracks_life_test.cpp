@@ -7,12 +7,14 @@
 #include <thread>
 
 #include "tests/e2e/tracks_fixture.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace roadfix {
 namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
+using testing::eventually;
 using ::testing::HasSubstr;
 
 TEST_F(Tracks, LoseNoAnsweredStepWhenTheServiceIsKilledAtAnyMoment) {
@@ -85,7 +87,7 @@ TEST_F(Tracks, EndEventsInOrderWhenTheServiceStopsAndLimitTheirNumber) {
     });
     whole = static_cast<bool>(answer);
   });
-  while (!connected) std::this_thread::sleep_for(5ms);
+  EXPECT_TRUE(eventually([&] { return connected.load(); }));
   EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + id + "/events").c_str())), "503 server-busy");
   running->send_signal(SIGTERM);
   EXPECT_EQ(running->wait(10min), 0);
@@ -98,7 +100,7 @@ TEST_F(Tracks, EndWhenNothingComes) {
   const auto running = service({"--track-idle", "0.2"});
   httplib::Client client = client_of(*running);
   const std::string idle = begin(client);
-  while (client.Get(("/v1/tracks/" + idle).c_str())->status == 200) std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(eventually([&] { return client.Get(("/v1/tracks/" + idle).c_str())->status != 200; }));
   EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + idle).c_str())), "410 track-ended");
   EXPECT_EQ(testing::refusal(send(client, idle, flight(1)[0])), "410 track-ended");
   EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
@@ -113,7 +115,7 @@ TEST_F(Tracks, RefuseStepsOverAMapThatWasReplaced) {
     MapWriter writer(folder_ / "town.gpkg", {town_.zone, 2.0});
     writer.remove_source("town");
   }
-  while (testing::json_of(client.Get("/v1/maps/town"))["version"] == version) std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(eventually([&] { return testing::json_of(client.Get("/v1/maps/town"))["version"] != version; }));
   EXPECT_EQ(testing::refusal(send(client, id, flight(1)[0])), "409 map-replaced");
   const json track = testing::json_of(client.Get(("/v1/tracks/" + id).c_str()));
   EXPECT_FALSE(track.contains("last")) << "nothing was taken";

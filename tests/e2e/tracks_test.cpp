@@ -5,12 +5,14 @@
 #include <thread>
 
 #include "tests/e2e/tracks_fixture.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace roadfix {
 namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
+using testing::eventually;
 using ::testing::HasSubstr;
 
 TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
@@ -212,10 +214,10 @@ TEST_F(Tracks, SendEventsAsTheyHappenAndFromWhereTheClientLeft) {
   std::string all;
   std::string rest;
   std::jthread whole([&] { all = listen({{"Accept-Encoding", "gzip"}}, connected); });
-  while (!connected) std::this_thread::sleep_for(5ms);
+  EXPECT_TRUE(eventually([&] { return connected.load(); }));
   const std::string second = send(client, id, steps[1])->body;
   std::jthread tail([&] { rest = listen({{"Last-Event-ID", "0"}}, resumed); });
-  while (!resumed) std::this_thread::sleep_for(5ms);
+  EXPECT_TRUE(eventually([&] { return resumed.load(); }));
   client.Delete(("/v1/tracks/" + id).c_str());
   whole.join();
   tail.join();

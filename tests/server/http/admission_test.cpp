@@ -9,15 +9,13 @@
 
 #include "server/http/errors.hpp"
 #include "server/http/message.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
-
-void wait_for(const auto& condition) {
-  for (int i = 0; i < 5000 && !condition(); ++i) std::this_thread::sleep_for(1ms);
-}
+using testing::eventually;
 
 TEST(Admission, RefusesWhatComesWhenTheQueueIsFull) {
   Admission admission(1, 0);
@@ -48,7 +46,7 @@ TEST(Admission, LetsGoOfWhatWasAbandonedAndLeavesNoPlaceBehind) {
         let_go = true;
       }
     });
-    wait_for([&] { return admission.waiting() == 1; });
+    EXPECT_TRUE(eventually([&] { return admission.waiting() == 1; }));
     abandoned = true;
   }
   EXPECT_TRUE(let_go);
@@ -66,7 +64,7 @@ TEST(Admission, LetsThemInInTheOrderTheyCame) {
         const auto ticket = admission.enter("a", Clock::now() + 10s);
         order.push_back(i);  // one at a time: that is what the ticket is for
       });
-      wait_for([&] { return admission.waiting() == i + 1; });
+      EXPECT_TRUE(eventually([&] { return admission.waiting() == i + 1; }));
     }
   }
   threads.clear();
@@ -84,7 +82,7 @@ std::jthread entering(Admission& admission, const std::string& client, std::vect
       order.emplace_back("-");
     }
   });
-  wait_for([&] { return admission.waiting() == before + 1; });
+  EXPECT_TRUE(eventually([&] { return admission.waiting() == before + 1; }));
   return thread;
 }
 
@@ -135,7 +133,7 @@ TEST(Admission, NeverLetsMoreInThanItMay) {
         --inside;
       });
     }
-    wait_for([&] { return admission.waiting() == 24; });
+    EXPECT_TRUE(eventually([&] { return admission.waiting() == 24; }));
     EXPECT_EQ(admission.running(), 3);
   }
   EXPECT_GE(max, 1);

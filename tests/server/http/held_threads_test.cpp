@@ -13,6 +13,7 @@ namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::eventually;
 
 TEST(HeldThreads, LeavesAQuarterOfTheThreadsAndEightAtMost) {
   for (const auto& [threads, most] : {std::pair{1, 1}, {3, 3}, {4, 3}, {8, 6}, {64, 56}}) {
@@ -68,7 +69,7 @@ class HttpServerHeldThreads : public testing::HttpServerTest {
     });
   }
   void wait_for_long(int count) const {
-    while (long_ < count) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(eventually([&] { return long_ >= count; }));
   }
 
   std::atomic<int> long_ = 0;
@@ -82,7 +83,7 @@ TEST_F(HttpServerHeldThreads, AnswersAtOnceWhileAllOthersWaitRunOrStream) {
   for (int i = 0; i < 2; ++i) others.push_back(asked("192.0.2.1", "/long"));
   wait_for_long(4);
   others.push_back(asked("192.0.2.1", "/wait"));
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   others.push_back(asked("192.0.2.1", "/wait"));
   wait_for_figure("roadfix_heavy_waiting 1");
   for (const char* path : {"/long", "/events"}) {
@@ -105,7 +106,7 @@ TEST_F(HttpServerHeldThreads, MakesTheClientWithTheMostGiveAThreadToAnother) {
     for (int& status : greedy) {
       others.push_back(asked("192.0.2.1", "/wait", &status));
       if (others.size() == 1) {
-        while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+        EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
       } else {
         wait_for_figure("roadfix_heavy_waiting " + std::to_string(others.size() - 1));
       }

@@ -16,6 +16,7 @@
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
 #include "server/http/server.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/raw_http.hpp"
 
 namespace roadfix::testing {
@@ -95,11 +96,8 @@ class HttpServerTest : public ::testing::Test {
     return client;
   }
   void wait_for_figure(const std::string& line) const {
-    const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (metrics_.text().find(line) == std::string::npos) {
-      ASSERT_LT(std::chrono::steady_clock::now(), late) << "there is no figure " << line;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    EXPECT_TRUE(eventually([&] { return metrics_.text().find(line) != std::string::npos; }))
+        << "there is no figure " << line;
   }
   std::string raw(const std::string& request) const {
     RawConnection connection(port_);

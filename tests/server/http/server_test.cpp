@@ -7,6 +7,7 @@ namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::eventually;
 
 class HttpServer : public testing::HttpServerTest {};
 
@@ -38,9 +39,9 @@ TEST_F(HttpServer, FinishesWhatHasBegunWhenItStops) {
     const auto result = client().Post("/wait", "", "text/plain");
     if (result) answer = result->body;
   });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   std::jthread stopper([&] { server->stop(); });
-  while (client().Get("/echo")) std::this_thread::sleep_for(1ms);  // until it takes nothing new
+  EXPECT_TRUE(eventually([&] { return !client().Get("/echo"); })) << "it takes nothing new";
   go_ = true;
   stopper.join();
   caller.join();

@@ -7,6 +7,7 @@ namespace roadfix::http {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::eventually;
 
 class HttpServerTimes : public testing::HttpServerTest {
  protected:
@@ -132,7 +133,7 @@ TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
   const auto server = started();
   testing::RawConnection slow(port_);
   slow.send("POST /length HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 5\r\n\r\nab");
-  while (metrics_.connections == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return metrics_.connections > 0; }));
   std::this_thread::sleep_for(20ms);
   slow.send("cde");
   EXPECT_THAT(slow.read_all(), ::testing::EndsWith("\r\n\r\n5"));
@@ -144,7 +145,7 @@ TEST_F(HttpServerTimes, CountsNoTimeOfItsOwnAgainstTheSenderOfTheNextRequest) {
   const auto server = started();
   testing::RawConnection patient(port_);
   patient.send("POST /wait HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n");
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   patient.send("GET /echo?text=next HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   const testing::RawConnection queued(port_);
   std::this_thread::sleep_for(20ms);
@@ -165,7 +166,7 @@ TEST_F(HttpServerTimes, TellsConnectionsBeyondItsQueueToComeBack) {
   settings_.max_waiting_connections = 1;
   const auto server = started();
   std::jthread busy([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   const testing::RawConnection queued(port_);  // connections are taken in the order they came
   const std::string answer = raw("");
   EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 503"));
@@ -181,7 +182,7 @@ TEST_F(HttpServerTimes, CountsTheTimeOfAHeavyRequestFromItsTurnOn) {
   Clock::time_point released;
   {
     std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
     std::jthread second([&] { client().Post("/times", "", "text/plain"); });
     wait_for_figure("roadfix_heavy_waiting 1");
     released = Clock::now();
@@ -201,7 +202,7 @@ TEST_F(HttpServerTimes, LetsARequestWaitForOthersWithoutATurnThatTheyMayNeed) {
                }});
   const auto server = started();
   std::jthread dependent([&] { EXPECT_EQ(client().Post("/dependent", "it", "text/plain")->body, "it done"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   EXPECT_EQ(client().Post("/length", "abc", "text/plain")->body, "3");
   go_ = true;
 }
@@ -215,7 +216,7 @@ TEST_F(HttpServerTimes, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {
   {
     testing::RawConnection running(port_);
     running.send("POST /answer" + std::string(kEmptyPost));
-    while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
     {
       testing::RawConnection queued(port_);
       queued.send("POST /answer" + std::string(kEmptyPost));
@@ -233,7 +234,7 @@ TEST_F(HttpServerTimes, DoesWhatIsMoreThanAnAnswerThoughItsClientHungUp) {
   settings_.turn_time = 10min;
   const auto server = started();
   const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   {
     testing::RawConnection queued(port_);
     queued.send("POST /wait" + std::string(kEmptyPost));
@@ -250,7 +251,7 @@ TEST_F(HttpServerTimes, SendsAwayWhatHasWaitedTooLongForItsTurn) {
   settings_.turn_time = 1ms;
   const auto server = started();
   std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
-  while (waiting_ == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   const auto answer = client().Post("/times", "", "text/plain");
   go_ = true;
   ASSERT_TRUE(answer);

@@ -12,6 +12,7 @@
 
 #include "core/units/error.hpp"
 #include "tests/support/as_another_user.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix::server {
@@ -172,8 +173,7 @@ TEST(MapRegistry, WatchesByItself) {
   MapRegistry registry(folder.path(), kCache);
   registry.watch(std::chrono::milliseconds(5));
   make_map(folder / "city.gpkg", 1);
-  for (int i = 0; i < 2000 && registry.maps().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  EXPECT_EQ(registry.maps().size(), 1U);
+  EXPECT_TRUE(testing::eventually([&] { return registry.maps().size() == 1; }));
 }
 
 TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
@@ -191,10 +191,10 @@ TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
     MapRegistry registry(folder / "maps", kCache);
     registry.watch(milliseconds(2));
     fs::rename(folder / "maps", folder / "away");
-    for (int i = 0; i < 2000 && said("cannot be read") == 0; ++i) std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_TRUE(testing::eventually([&] { return said("cannot be read") > 0; }));
     std::this_thread::sleep_for(milliseconds(50));
     fs::rename(folder / "away", folder / "maps");
-    for (int i = 0; i < 2000 && said("can be read again") == 0; ++i) std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_TRUE(testing::eventually([&] { return said("can be read again") > 0; }));
   }
   spdlog::set_default_logger(usual);
   EXPECT_EQ(said("cannot be read"), 1) << "a folder that stays away for a night is no night of messages";

@@ -11,11 +11,26 @@ from travel import Travel, movement
 #: The last two: another client flew it, or the state file could not be written and is older than the track.
 TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced", "step-differs", "step-late")
 MOVEMENT = ("forward_m", "right_m", "turn_deg")
-PRIOR = ("lat", "lon", "radius_m", "bbox")
+PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg")
 SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
 KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
 FASTEST_M_S = 50.0
-WIDEST_M = 10_000.0  # beyond it the last place says too little to begin a track around it
+WIDEST_M = 2e7  # of a prior: all of the Earth
+DEGREE_M = 111_700.0  # at most
+
+
+def told_place(request):
+    """What POST /v1/tracks is told of the place, as a known one. None where it is told nothing."""
+    if "radius_m" in request:
+        lat, lon, within_m = request["lat"], request["lon"], request["radius_m"]
+    elif "bbox" in request:
+        west, south, east, north = request["bbox"]
+        width = (east - west) % 360.0
+        lat, lon = (south + north) / 2.0, (west + width / 2.0 + 180.0) % 360.0 - 180.0
+        within_m = math.hypot(width, north - south) / 2.0 * DEGREE_M
+    else:
+        return None
+    return {"lat": lat, "lon": lon, "within_m": within_m, "flown_m": 0.0}
 
 
 def farther(known, moved):
@@ -59,7 +74,7 @@ class Track:
         in `packet_format`, if there is one."""
         self._travel.add(tuple(place), fields.get("covariance"))
         if not self.id:
-            self._begin(origin)
+            self._begin(origin, self._request)
         elif origin != self._state["origin"]:
             self._begin_near_the_last_place(origin)
         try:
@@ -99,14 +114,11 @@ class Track:
             self._moved_on(asked, last)
         return taken
 
-    def _begin(self, origin, known=None, prior=None):
-        request = self._request
-        if prior:
-            request = {**{name: value for name, value in request.items() if name not in PRIOR}, **prior}
+    def _begin(self, origin, request, known=None):
         track = json.loads(self._service.ask("POST", "/v1/tracks", json.dumps(request).encode(), "application/json"))
         former = [*self._state.get("former", []), self.id] if self.id else []
-        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin, "known": known,
-                    "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
+        self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
+                    "known": known or told_place(request), "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
         self._begun(track["id"])
         for track_id in former[:-KEPT_TRACKS]:
             self._end(track_id)
@@ -118,16 +130,16 @@ class Track:
             pass
 
     def _begin_near_the_last_place(self, origin):
-        """Around the place that was known last, as far as the vehicle may have flown since."""
+        """Around the place that was known last, as far as the vehicle may have flown since, however far that is: what
+        was told of the start need not hold the vehicle any more."""
+        request = {name: value for name, value in self._request.items() if name not in PRIOR}
         known = self._state.get("known")
         if known:
             since_s = max(0.0, time.time() - self._state["taken_s"])
             known = {**known, "flown_m": known["flown_m"] + FASTEST_M_S * since_s}
-            radius_m = 100.0 + 5.0 * known["sigma_m"] + known["flown_m"]
-            if radius_m <= WIDEST_M:
-                self._begin(origin, known, {"lat": known["lat"], "lon": known["lon"], "radius_m": radius_m})
-                return
-        self._begin(origin)
+            request.update(lat=known["lat"], lon=known["lon"],
+                           radius_m=min(known["within_m"] + known["flown_m"], WIDEST_M))
+        self._begin(origin, request, known)
 
     def _moved_to(self, place):
         return movement(self._state["place"], place) if "place" in self._state else {}
@@ -166,7 +178,8 @@ class Track:
         del state["asked"]
         if answer["status"] == "converged":
             pose = answer["pose"]
-            state["known"] = {"lat": pose["lat"], "lon": pose["lon"], "sigma_m": max(answer["sigma_m"]), "flown_m": 0.0}
+            state["known"] = {"lat": pose["lat"], "lon": pose["lon"],
+                              "within_m": 100.0 + 5.0 * max(answer["sigma_m"]), "flown_m": 0.0}
         self._keep(state)
 
     def _post(self, fields, image, answer_type="application/json"):

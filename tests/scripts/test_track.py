@@ -15,10 +15,10 @@ from track import Track
 
 
 class Steps(unittest.TestCase):
-    def fly(self, fake, count, patience_s=10.0, **options):
+    def fly(self, fake, count, patience_s=10.0, request=None, **options):
         service = Service(fake.url, patience_s)
         self.addCleanup(service.close)
-        track = Track(service, {"map": "m", "lat": 1, "lon": 2, "radius_m": 3}, **options)
+        track = Track(service, request or {"map": "m", "lat": 1, "lon": 2, "radius_m": 3}, **options)
         return track, [track.step((10.0 * i, 0.0, 0.0), {"time_us": i + 1}) for i in range(count)]
 
     def test_are_sent_again_with_the_same_number_while_the_service_is_away_or_busy(self):
@@ -213,12 +213,34 @@ class Steps(unittest.TestCase):
                 self.assertEqual(len(fake.begun()), tracks)
                 self.assertEqual(fake.begun()[-1]["lat"], 1, "where the operator says")
 
-    def test_are_not_looked_for_around_a_place_that_was_known_too_far_away(self):
+    def test_begin_a_new_track_around_the_last_known_place_however_far_they_have_gone(self):
         with FakeService([CONVERGED]) as fake:
             track, _ = self.fly(fake, 1)
             track.step((20_000.0, 0.0, 0.0), {"time_us": 3})
             track.step((0.0, 0.0, 0.0), {"time_us": 4}, origin="restarted")
-            self.assertEqual(fake.begun()[-1]["lat"], 1)
+            self.assertEqual(fake.begun()[-1]["lat"], 7.0, "where the flight began it may have left")
+            self.assertGreater(fake.begun()[-1]["radius_m"], 20_000.0)
+
+    def test_begin_a_new_track_around_the_place_of_the_start_where_none_was_known_since(self):
+        for prior, lat, lon, radius_m in (({"lat": 1, "lon": 2, "radius_m": 3}, 1, 2, 3.0),
+                                          ({"bbox": [179.0, 1.0, 181.0, 3.0]}, 2.0, -180.0, 2.0**0.5 * 111_700.0),
+                                          ({"bbox": [179.0, 1.0, -179.0, 3.0]}, 2.0, -180.0, 2.0**0.5 * 111_700.0)):
+            with FakeService() as fake:
+                request = {"map": "m", "heading_deg": 90, "heading_range_deg": 5, **prior}
+                track, _ = self.fly(fake, 1, request=request)
+                self.assertEqual(fake.begun()[-1]["heading_deg"], 90)
+                track.step((500.0, 0.0, 0.0), {"time_us": 2})
+                track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin="restarted")
+                begun = fake.begun()[-1]
+                self.assertAlmostEqual(begun.pop("radius_m"), radius_m + 500.0, delta=50.0 * 2.0)
+                self.assertEqual(begun, {"map": "m", "lat": lat, "lon": lon}, "nor is the heading that of the start")
+
+    def test_begin_a_new_track_anywhere_where_no_place_was_ever_known(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 0, request={"map": "m", "wind_sigma_m_s": 5})
+            for origin in ("first", "second"):
+                track.step((0.0, 0.0, 0.0), {"time_us": 1}, origin=origin)
+            self.assertEqual(fake.begun()[-1], {"map": "m", "wind_sigma_m_s": 5})
 
     def test_refuse_the_state_of_another_map(self):
         with FakeService() as fake, tempfile.TemporaryDirectory() as folder:

@@ -1,7 +1,5 @@
 #include "cli/calibration_option.hpp"
 
-#include <fmt/format.h>
-
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
@@ -14,9 +12,8 @@ void add_calibration_option(CLI::App& command, std::string& file) {
 }
 
 std::shared_ptr<const Calibration> read_calibration(const std::string& file) {
-  const auto text = read_file(file);
-  if (!text) throw NotFound("calibration-missing", fmt::format("calibration file {} cannot be opened", file));
-  return said_of(file, [&] { return std::make_shared<const Calibration>(parse_calibration(*text)); });
+  const std::string text = read_named_file(file, "calibration-missing");
+  return said_of(file, [&] { return std::make_shared<const Calibration>(parse_calibration(text)); });
 }
 
 }  // namespace roadfix::cli

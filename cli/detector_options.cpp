@@ -50,7 +50,10 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
 }  // namespace
 
 void add_detector_options(CLI::App& command, DetectorChoice& choice) {
-  command.add_option("--detector", choice.name, "Road detector")
+  command
+      .add_option("--detector", choice.name,
+                  "Road detector: neural (a network), tree (the paper's growing tree), or auto (neural where its "
+                  "weights are found, else tree)")
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(kDetectorNames.begin(), kDetectorNames.end())));
   command.add_option("--model", choice.model, "ONNX file of the neural detector, with its JSON beside it")

@@ -33,14 +33,16 @@ void add_basics(CLI::App& command, FlyOptions& o) {
                   std::string("One or more of ") + fly::kFilterNames + ", over the same flights")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--particles", filter.particles, "At most")
+  command.add_option("--particles", filter.particles, "Maximum number of particles of a filter")
       ->capture_default_str()
       ->check(CLI::Range(10, 1'000'000));
   command
       .add_option("--runs", o.runs, "Flights, with seeds that count up; of a recorded flight so many of each sequence")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
-  command.add_option("--seed", o.campaign.seed, "Of the first flight")->capture_default_str()->check(seed());
+  command.add_option("--seed", o.campaign.seed, "Random seed of the first flight; the next ones count up")
+      ->capture_default_str()
+      ->check(seed());
   add_threads_option(command, "--jobs", o.campaign.jobs, "Flights at a time; results do not depend on it");
 }
 
@@ -48,7 +50,7 @@ void add_belief_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "What the filters take to be uncertain";
   command
       .add_option("--scale-range", o.service.filter.vehicle.scale_range,
-                  "The altitude: the ground seen may be smaller by this share, or larger by as much, for long")
+                  "Lasting altitude error: the ground seen may be smaller or larger by this share")
       ->capture_default_str()
       ->group(kGroup)
       ->check(between(0.0, kMaxScaleRange));
@@ -179,7 +181,7 @@ void add_service_options(CLI::App& command, FlyOptions& o) {
       ->check(CLI::IsMember({"features", "frames"}))
       ->group(kGroup);
   command
-      .add_option("--vehicles", o.vehicles, "So many flights, all at the same time; default: --runs, --jobs of them")
+      .add_option("--vehicles", o.vehicles, "Flights, all at the same time; default: --runs flights, --jobs at once")
       ->check(CLI::Range(1, 1024))
       ->group(kGroup);
   command

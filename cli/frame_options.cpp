@@ -19,21 +19,13 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) {
     throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
   }
-  const auto bytes = read_file(path);
-  if (!bytes) throw NotFound("file-not-found", fmt::format("{} cannot be opened", path));
-  return {bytes->begin(), bytes->end()};
+  const std::string bytes = read_named_file(path, "file-not-found");
+  return {bytes.begin(), bytes.end()};
 }
 
 auto decoded(const std::string& path, const auto& decode) {
   const std::vector<std::uint8_t> bytes = bytes_of(path);
-  return said_of(path, [&] {
-    try {
-      return decode(bytes);
-    } catch (const InvalidInput& error) {
-      if (error.code() != "image-format") throw;
-      throw InvalidInput(error.code(), fmt::format("{}; gdal_translate -of PNG makes one", error.what()));
-    }
-  });
+  return said_of(path, [&] { return decode(bytes); });
 }
 
 FrameCamera told_camera(const FrameCamera& camera) {
@@ -83,10 +75,10 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
   fov->needs(agl);
   focal->needs(agl);
   add_degrees_option(command, "--roll", o.camera.roll,
-                     "Roll of the camera in degrees, right side down, 0 = straight down")
+                     "Roll of the camera in degrees, positive with the right side down; 0 = straight down")
       ->needs(agl);
   add_degrees_option(command, "--pitch", o.camera.pitch,
-                     "Pitch of the camera in degrees, nose up, 0 = straight down (a gimbal's -90)")
+                     "Pitch of the camera in degrees, positive with the nose up; 0 = straight down (a gimbal's -90)")
       ->needs(agl);
   const auto set_principal = [&o](const std::vector<double>& at) { o.camera.principal_px.emplace(at[0], at[1]); };
   command

@@ -18,9 +18,7 @@ namespace {
 RoadRules rules_of(const IngestArguments& arguments) {
   RoadRules rules;
   if (!arguments.rules_file.empty()) {
-    const auto text = read_file(arguments.rules_file);
-    if (!text) throw NotFound("rules-not-found", fmt::format("{}: cannot be read", arguments.rules_file));
-    rules = RoadRules::parse(*text);
+    rules = RoadRules::parse(read_named_file(arguments.rules_file, "rules-not-found"));
   }
   if (!arguments.classes.empty()) rules.select(arguments.classes);
   if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);
@@ -122,7 +120,7 @@ void add_ingest_options(CLI::App& command, IngestArguments& a) {
   add_provenance_options(command, a);
   add_threads_option(command, "--jobs", a.options.jobs, "Blocks in progress at a time");
   command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());
-  command.add_flag("--replace", a.options.replace, "Replace a source of the same name, and what was told of it");
+  command.add_flag("--replace", a.options.replace, "Replace a source of the same name and its metadata");
   command.add_flag("--dry-run", a.dry_run, "Print the plan and stop");
   command.add_flag("--json", a.json, "Print one line of JSON for each source");
 }

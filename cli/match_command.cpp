@@ -60,9 +60,7 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
 
 /// One pose a line; empty lines and a first line of column names are skipped.
 void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
-  const auto text = read_file(path);
-  if (!text) throw NotFound("file-not-found", fmt::format("{} cannot be read", path));
-  std::istringstream in(*text);
+  std::istringstream in(read_named_file(path, "file-not-found"));
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     if (++number == 1) line = without_byte_order_mark(line);
@@ -115,7 +113,7 @@ void add_match_command(CLI::App& app) {
   add_degrees_option(*command, "--heading-step", o->match.heading_step,
                      "Round headings to this many degrees and positions to cells: faster for many poses")
       ->check(between(0.0, 90.0));
-  add_threads_option(*command, "--threads", o->match.threads, "Threads");
+  add_threads_option(*command, "--threads", o->match.threads, "Threads for scoring");
   command->add_flag("--json", o->as_json, "Answer as JSON");
   command->callback([o] { run_match(*o); });
 }

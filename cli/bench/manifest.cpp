@@ -183,9 +183,7 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
 }
 
 Manifest read_manifest(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) throw NotFound("manifest-missing", fmt::format("bench manifest {} cannot be opened", file.string()));
-  return parse_manifest(*text, file.parent_path());
+  return parse_manifest(read_named_file(file, "manifest-missing"), file.parent_path());
 }
 
 Manifest with_methods(Manifest manifest, std::string_view names) {

@@ -13,9 +13,7 @@
 namespace roadfix::evaluation {
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
-  const auto text = read_file(csv);
-  if (!text) throw NotFound("frames-missing", fmt::format("{} cannot be opened", csv.string()));
-  return parse_frames_csv(*text);
+  return parse_frames_csv(read_named_file(csv, "frames-missing"));
 }
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {

@@ -99,14 +99,13 @@ std::vector<GridPoint> survey_lanes(const GridBox& box, double spacing_m) {
 }
 
 std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const UtmZone& zone) {
-  const auto text = read_file(file);
-  if (!text) throw NotFound("waypoints-missing", fmt::format("{} cannot be read", file.string()));
+  const std::string text = read_named_file(file, "waypoints-missing");
   std::vector<GridPoint> points;
   const auto add = [&](const nlohmann::json& place) {
     points.push_back(zone.project({place.at(1).get<double>(), place.at(0).get<double>()}));
   };
   try {
-    const nlohmann::json document = nlohmann::json::parse(*text);
+    const nlohmann::json document = nlohmann::json::parse(text);
     for (const auto& feature : document.at("features")) {
       const auto& geometry = feature.at("geometry");
       if (geometry.at("type") == "Point") add(geometry.at("coordinates"));

@@ -58,8 +58,12 @@ json ServiceConnection::answered(const Send& send, Clock::time_point began) {
     if (!may_pass(answer)) return content_of(*answer);
     if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
     if (Clock::now() + pause > began + patience_) {
-      throw IoFailure("service-silent", fmt::format("the service at {} did not take a request within {} s ({})", base_,
-                                                    patience_.count(), reason_of(answer)));
+      throw IoFailure(
+          "service-silent",
+          fmt::format(
+              "the service at {} did not take a request within {} s ({}): is roadfix serve running there? If it is "
+              "busy, raise --patience",
+              base_, patience_.count(), reason_of(answer)));
     }
     rest(answer && answer->retry_after ? std::max<std::chrono::milliseconds>(pause, *answer->retry_after) : pause);
   }

@@ -59,7 +59,10 @@ std::optional<ImageHeader> read_image_header(Bytes bytes) {
 
 cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop) {
   const auto header = read_image_header(bytes);
-  if (!header) throw InvalidInput("image-format", "the bytes are neither a PNG nor a JPEG image");
+  if (!header) {
+    throw InvalidInput("image-format",
+                       "the bytes are neither a PNG nor a JPEG image: convert them (gdal_translate -of PNG)");
+  }
   if (header->cols <= 0 || header->rows <= 0) throw InvalidInput("image-damaged", "the image has no pixels");
   if (header->cols > max_pixels / header->rows) {
     throw LimitExceeded("image-too-large",

@@ -98,7 +98,7 @@ cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes, const std::stop_token& 
                        fmt::format("the JPEG image is damaged or cut off ({})", reader.message.data()));
   }
   if (reader.pixels.channels() > 3) {
-    throw InvalidInput("image-format", "the JPEG image has the colours of a printer (CMYK); save it as RGB");
+    throw InvalidInput("image-format", "the JPEG image has the colours of a printer (CMYK): save it as RGB");
   }
   return reader.pixels;
 }

@@ -1,19 +1,46 @@
 #include "core/units/file.hpp"
 
+#include <fmt/format.h>
+
+#include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 
-namespace roadfix {
+#include "core/units/error.hpp"
 
-std::optional<std::string> read_file(const std::filesystem::path& file) {
+namespace roadfix {
+namespace {
+
+/// `reason`: the errno of a file that cannot be read.
+std::optional<std::string> bytes_of(const std::filesystem::path& file, int& reason) {
+  reason = EISDIR;
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) return std::nullopt;
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return in.bad() ? std::nullopt : std::optional(std::move(bytes));
+  std::string bytes;
+  if (in) bytes.assign(std::istreambuf_iterator<char>(in), {});
+  reason = errno == 0 ? EIO : errno;
+  return in ? std::optional(std::move(bytes)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> read_file(const std::filesystem::path& file) {
+  int reason = 0;
+  return bytes_of(file, reason);
+}
+
+std::string read_named_file(const std::filesystem::path& file, const char* code) {
+  int reason = 0;
+  std::optional<std::string> bytes = bytes_of(file, reason);
+  if (bytes) return *std::move(bytes);
+  throw NotFound(code, fmt::format("{} cannot be read ({}): check its name and the permission to read it",
+                                   file.string(), std::generic_category().message(reason)));
 }
 
 }  // namespace roadfix

@@ -66,18 +66,16 @@ def parse_arguments(arguments):
                         help="of the steps that wait send only the newest; without it all of them, as of a recording")
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
     parser.add_argument("--patience", type=float, default=60.0, metavar="S",
-                        help="how long a step is sent again while the service is away or busy (default: %(default)g). "
-                             "Half of what is left is the time for an answer, so that a cut connection is noticed and "
-                             "the step sent again; what the service computes meanwhile is not lost, the repetition "
-                             "gets it. A search may take half a minute: with much less patience its answer is missed, "
-                             "though the step counts")
+                        help="retry a step for S seconds while the service is unreachable or busy (default: %(default)g; "
+                             "keep 60 or more: a search can take 30 s). Half of what is left is the time for an "
+                             "answer; a repetition gets what the service has computed meanwhile")
     parser.add_argument("--format", choices=(*FORMATS_WITHOUT_AGE, *PROCESSING),
                         help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
     parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
-                        help="oldest message that is sent, counted from time_us where that is of this computer's clock, "
-                             "else from when its line came, until it is sent; what messages say of it themselves does "
-                             "not count: " + ", ".join(PROCESSING) + " (default: %(default)g)")
+                        help="drop positions older than S seconds from capture (time_us where it is of this computer's "
+                             "clock, else when its line came) to sending (default: %(default)g); of "
+                             + " and ".join(PROCESSING) + " the processing time that they report is not counted")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")

@@ -1,7 +1,7 @@
 """Makes steps for scripts/ground_station of what an autopilot tells by MAVLink and of pictures that a camera writes into
 a folder: a line of JSON for each picture.
 
-  ffmpeg -i rtsp://CAMERA/stream -vf fps=1 frames/%06d.jpg &
+  mkdir -p frames && ffmpeg -i rtsp://CAMERA/stream -vf fps=1 frames/%06d.jpg &
   python3 scripts/mavlink_steps --listen 14551 --watch frames --camera level |
     python3 scripts/ground_station --map city --frame fov_deg=78 --live
 

@@ -50,7 +50,8 @@ CellArray cells_of_json(const Fields& fields, const Limits& limits) {
   if (bytes.size() != cells.cells().size()) {
     throw InvalidField(
         "bad-parameter", "cells",
-        fmt::format("'cells' holds {} bytes, {} x {} cells need {}", bytes.size(), cols, rows, cells.cells().size()));
+        fmt::format("'cells' holds {} bytes, {} x {} cells need {}: check cols and rows; a cell is one byte",
+                    bytes.size(), cols, rows, cells.cells().size()));
   }
   std::ranges::copy(bytes, cells.cells().begin());
   return cells;

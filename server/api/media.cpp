@@ -69,7 +69,7 @@ const Media& negotiated(std::string_view accept, std::span<const Media> offered)
   if (quality(preferences, best->type) > 0.0) return *best;
   std::string types;
   for (const Media& media : offered) types += fmt::format("{}{}", types.empty() ? "" : ", ", media.type);
-  throw InvalidInput("not-acceptable", fmt::format("Accept matches none of {}", types));
+  throw InvalidInput("not-acceptable", fmt::format("Accept matches none of {}: name one, or use format=", types));
 }
 
 const Media& media_asked_for(const http::Request& request, const Fields& fields, std::span<const Media> offered) {

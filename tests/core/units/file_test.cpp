@@ -1,13 +1,21 @@
 #include "core/units/file.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <string>
 
+#include "core/units/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(ReadFile, GivesEveryByte) {
   const testing::TemporaryFolder folder;
@@ -22,6 +30,23 @@ TEST(ReadFile, GivesNothingOfAFolderAndOfWhatIsNotThere) {
   const testing::TemporaryFolder folder;
   EXPECT_EQ(read_file(folder.path()), std::nullopt);
   EXPECT_EQ(read_file(folder / "none"), std::nullopt);
+}
+
+TEST(ReadNamedFile, TellsWhyAFileCannotBeRead) {
+  const testing::TemporaryFolder folder;
+  const auto refusal = [](const std::filesystem::path& file) {
+    try {
+      read_named_file(file, "code-of-file");
+    } catch (const NotFound& error) {
+      return error.code() + ": " + error.what();
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(refusal(folder / "none"), AllOf(StartsWith("code-of-file: " + (folder / "none").string()),
+                                              HasSubstr("No such file"), HasSubstr("check its name")));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("directory"));
+  std::ofstream(folder / "file") << "bytes";
+  EXPECT_EQ(read_named_file(folder / "file", "code-of-file"), "bytes");
 }
 
 }  // namespace

@@ -106,8 +106,9 @@ double share_of_classes(OGRLayer& layer, const std::string& attribute, const Roa
 
 /// The attribute that the user named or that of OpenStreetMap, packed or not, else one that other road data keep the
 /// same classes in; nullopt where nothing tells roads apart.
-std::optional<std::string> class_attribute_in(OGRLayer& layer, const RoadRules& rules) {
+std::optional<std::string> class_attribute_in(const VectorFile& file, OGRLayer& layer, const RoadRules& rules) {
   const std::string& wanted = rules.class_attribute();
+  if (file.is_openstreetmap()) return wanted;  // any tag may be packed, and the layer alone may seem empty
   if (has_attribute(layer, wanted) || packs(layer, wanted)) return wanted;
   if (wanted != RoadRules().class_attribute()) return std::nullopt;
   struct Usual {
@@ -145,9 +146,9 @@ int AttributePlaces::operator()(std::string_view name) {
   return known->second;
 }
 
-RoadLayer::RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
+RoadLayer::RoadLayer(const VectorFile& file, OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
     : layer_(&layer), to_plane_(std::move(to_plane)), places_(layer), rules_(rules) {
-  const std::optional<std::string> attribute = class_attribute_in(layer, rules);
+  const std::optional<std::string> attribute = class_attribute_in(file, layer, rules);
   if (attribute) rules_.set_class_attribute(*attribute);
   classified_ = attribute.has_value();
 }

@@ -13,6 +13,7 @@
 
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/road_rules.hpp"
+#include "tiles/sources/vector_file.hpp"
 
 namespace roadfix {
 
@@ -32,9 +33,10 @@ class AttributePlaces {
 
 class RoadLayer {
  public:
-  /// The class attribute is that of the rules; where the layer lacks it and the user named none, the first of fclass,
-  /// type, class and road_class whose values are mostly classes of the rules. The layer must outlive this.
-  RoadLayer(OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules);
+  /// The class attribute is that of the rules; where the layer, unlike those of OpenStreetMap, lacks it and the user
+  /// named none, the first of fclass, type, class and road_class whose values are mostly classes of the rules. The
+  /// layer, one of the file's, must outlive this.
+  RoadLayer(const VectorFile& file, OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules);
 
   std::string name() const { return layer_->GetName(); }
   OGRLayer& layer() const { return *layer_; }

@@ -118,7 +118,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     parts.any_layer = true;
     const OGRSpatialReference crs = file.crs_of(*layer);
     if (parts.crs.empty()) parts.crs = crs_name(crs);
-    layers.emplace(layer, RoadLayer(*layer, transformation(crs, plane, path), rules));
+    layers.emplace(layer, RoadLayer(file, *layer, transformation(crs, plane, path), rules));
   }
   file.for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
     const auto found = layers.find(&of);

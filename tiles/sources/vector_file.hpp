@@ -33,6 +33,9 @@ class VectorFile {
   const std::string& path() const { return path_; }
   /// All that have geometries, or the one that the user chose, if the file has it; of OpenStreetMap files the lines.
   const std::vector<OGRLayer*>& layers() const { return layers_; }
+  /// Whether it is of OpenStreetMap. Then a layer alone may give none of its features until those of others are read,
+  /// and tags without an attribute of their own are packed into one.
+  bool is_openstreetmap() const { return osm_; }
   /// Of all layers of the file, "'roads', 'rivers'", for messages.
   std::string layer_names() const;
   /// Throws InvalidInput "roads-without-georeference".

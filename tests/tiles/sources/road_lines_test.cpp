@@ -62,6 +62,25 @@ TEST_F(RoadLines, OpenStreetMapXmlIsReadWithAllItsTags) {
   EXPECT_NEAR(network.points[0].east_m, kCentre.east_m - 150.0, 0.01);
 }
 
+TEST_F(RoadLines, OfOpenStreetMapAreToldApartByAnyTagHoweverManyNodesWithTagsComeBeforeThem) {
+  const std::string path = (folder / "trees.osm").string();
+  {
+    std::ofstream file(path);
+    file << "<?xml version='1.0'?><osm version='0.6'>";
+    for (int i = 1; i <= 20000; ++i) {
+      file << fmt::format("<node id='{}' version='1' lat='37.{:05}' lon='38'><tag k='natural' v='tree'/></node>", i, i);
+    }
+    file << "<way id='1' version='1'><nd ref='1'/><nd ref='99'/><tag k='tracktype' v='grade1'/></way>"
+            "<way id='2' version='1'><nd ref='2'/><nd ref='98'/><tag k='waterway' v='river'/></way></osm>";
+  }
+  RoadRules rules = RoadRules::parse("grade1 4 yes");
+  rules.set_class_attribute("tracktype");
+  const RoadNetwork network = read_road_network({path}, {}, rules, kZone);
+  EXPECT_EQ(network.lines.size(), 1U);
+  EXPECT_EQ(network.left_out, 1);
+  EXPECT_THAT(network.notes, IsEmpty());
+}
+
 TEST_F(RoadLines, RiversBesideClassifiedRoadsAreNotDrawnAndSaidSo) {
   const std::string roads = geojson({feature(R"("highway":"primary")", at(-150, 40), at(150, 40))});
   std::filesystem::rename(roads, folder / "streets.geojson");

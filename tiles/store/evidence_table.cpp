@@ -42,11 +42,12 @@ bool EvidenceTable::put(std::int64_t source_id, TileIndex block, const CellArray
 
 std::vector<std::string> EvidenceTable::twins_of(const std::string& source) {
   std::vector<std::string> names;
-  // Equal cells are equal bytes.
+  // Equal cells are equal bytes. What is used twice, SQLite would first copy into a temporary file, all tiles of it.
   Statement twins(
       map_,
-      "WITH own AS (SELECT e.* FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id WHERE "
-      "s.name = ?1 AND s.in_force = 1) SELECT name FROM roadfix_sources s WHERE in_force = 1 AND name <> ?1 "
+      "WITH own AS NOT MATERIALIZED (SELECT e.tile_column, e.tile_row, e.tile_data FROM roadfix_evidence e JOIN "
+      "roadfix_sources s ON s.id = e.source_id WHERE s.name = ?1 AND s.in_force = 1) SELECT name FROM roadfix_sources "
+      "s WHERE in_force = 1 AND name <> ?1 "
       "AND EXISTS (SELECT 1 FROM own) AND NOT EXISTS (SELECT 1 FROM own WHERE NOT EXISTS (SELECT 1 FROM "
       "roadfix_evidence o WHERE o.source_id = s.id AND o.tile_column = own.tile_column AND o.tile_row = "
       "own.tile_row AND o.tile_data = own.tile_data)) ORDER BY name");

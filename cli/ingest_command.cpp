@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,13 +37,14 @@ void note_twins(MapWriter& writer, const std::string& source, const std::string&
 }
 
 /// Of the source, and of those beside it, for which it may be the other side.
-void note_shifts(const std::string& map, const std::string& source, const std::map<std::string, SourceShift>& shifts) {
+void note_shifts(const std::string& map, const std::string& source, const ShiftReport& shifts) {
   std::vector<std::string> names;
-  for (const auto& [name, shift] : shifts) names.insert(name == source ? names.begin() : names.end(), name);
+  for (const auto& [name, shift] : shifts.beside) names.insert(name == source ? names.begin() : names.end(), name);
   for (const std::string& name : names) {
     const double stated_m = MapWriter::records_of(map, name).front().provenance.registration_sigma_m;
-    print_shift_note(name, shifts.at(name), stated_m, name == names.front());
+    print_shift_note(name, shifts.beside.at(name), stated_m, name == names.front());
   }
+  for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);
 }
 
 IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSummary& summary,

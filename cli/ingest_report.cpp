@@ -60,7 +60,8 @@ void print_report(nlohmann::json json, const SourceSummary& summary, const MapSe
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
-  for (const auto& [name, shift] : report.shifts) json["shifts"][name] = api::to_json(shift);
+  for (const auto& [name, shift] : report.shifts.beside) json["shifts"][name] = api::to_json(shift);
+  for (const std::string& note : report.shifts.notes) json["notes"].push_back(note);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = summary.is_lines();
   const double amount = lines ? share * static_cast<double>(summary.features)

@@ -37,9 +37,10 @@ void remove_source(const RemoveArguments& options) {
     was_there = writer.remove_source(options.source, progress.updates(), stop);
   }
   // It may have been what others lay beside.
-  measure_shifts(writer, names_of(options.map));
+  const ShiftReport shifts = measure_shifts(writer, names_of(options.map));
   fmt::print("{}: source '{}' {}\n", options.map, options.source,
              was_there ? "is removed" : "was not there any more; what was left to fuse is fused");
+  for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);
 }
 
 }  // namespace

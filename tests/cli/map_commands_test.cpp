@@ -105,6 +105,22 @@ TEST_F(MapCommands, RemoveLeavesTheMapOfTheOtherSources) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
 }
 
+TEST_F(MapCommands, RemoveSaysThatItDidAndWhichEvidenceOfOtherSourcesIsDamaged) {
+  {
+    MapWriter writer(path, settings_37n());
+    ingest(writer, {"b", 2, some_blocks(2)});
+    ingest(writer, {"far", 3, some_blocks(1, 9)});
+  }
+  testing::open_sqlite(path).execute(
+      "UPDATE roadfix_evidence SET tile_data = zeroblob(50) WHERE source_id = (SELECT id FROM roadfix_sources WHERE "
+      "name "
+      "= 'b')");
+  const ProgramResult result = roadfix("remove " + path.string() + " far");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, HasSubstr("source 'far' is removed"));
+  EXPECT_THAT(result.err, HasSubstr("evidence of source 'b' column 847 row"));
+}
+
 TEST_F(MapCommands, ExportWritesARegion) {
   const auto target = folder / "out.tif";
   const std::string arguments = path.string() + " " + target.string();

@@ -10,7 +10,6 @@
 #include "core/units/error.hpp"
 #include "core/units/splitmix.hpp"
 #include "tiles/pipeline/block_flow.hpp"
-#include "tiles/pipeline/source_shift.hpp"
 
 namespace roadfix {
 namespace {

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "tiles/pipeline/source_shift.hpp"
 #include "tiles/sources/cell_source.hpp"
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/map_writer.hpp"
@@ -33,7 +33,7 @@ struct IngestReport {
   std::int64_t observed_cells = 0;  ///< of the blocks of this run
   double reading_s = 0.0;           ///< reading and detecting
   double fusing_s = 0.0;
-  std::map<std::string, SourceShift> shifts{};  ///< of this source and those beside it, by name
+  ShiftReport shifts{};  ///< of this source and those beside it
 };
 
 /// Tiles of the map's lattice that the source touches, row by row from the north-west, at least one. `name`

@@ -1,11 +1,15 @@
 #include "tiles/pipeline/source_shift.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 #include "core/grid/cell.hpp"
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -143,17 +147,26 @@ std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, doubl
   return sure && elsewhere ? std::optional(shift) : std::nullopt;
 }
 
-std::map<std::string, SourceShift> measure_shifts(MapWriter& writer, const std::set<std::string>& sources) {
+ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources) {
   constexpr std::int64_t kTiles = 64;
   std::map<std::string, std::optional<SourceShift>> measured;
-  std::map<std::string, SourceShift> beside;
+  std::map<std::string, std::vector<std::string>> not_measured;  // by what is in the way
+  ShiftReport result;
   for (const std::string& source : sources) {
-    const auto shift = shift_of(writer.shared_evidence(source, kTiles), writer.settings().cell_m);
-    measured.emplace(source, shift);
-    if (shift) beside.emplace(source, *shift);
+    try {
+      const auto shift = shift_of(writer.shared_evidence(source, kTiles), writer.settings().cell_m);
+      measured.emplace(source, shift);
+      if (shift) result.beside.emplace(source, *shift);
+    } catch (const CorruptData& damage) {
+      not_measured[damage.what()].push_back(source);
+    }
   }
   writer.put_shifts(measured);
-  return beside;
+  for (const auto& [damage, names] : not_measured) {
+    result.notes.push_back(fmt::format("whether '{}' lies beside the other sources was not measured: {}",
+                                       fmt::join(names, "' or '"), damage));
+  }
+  return result;
 }
 
 }  // namespace roadfix

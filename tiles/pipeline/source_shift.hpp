@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/map_writer.hpp"
@@ -20,7 +21,13 @@ namespace roadfix {
 /// `sigma_m`, half of its length per axis: the 95 % ellipse around a place on the one side holds that on the other.
 std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m);
 
-/// Measures these sources in force anew and tells the map. Returns those that lie beside the others.
-std::map<std::string, SourceShift> measure_shifts(MapWriter& writer, const std::set<std::string>& sources);
+struct ShiftReport {
+  std::map<std::string, SourceShift> beside;  ///< of the sources that lie beside the others
+  std::vector<std::string> notes;             ///< why others could not be measured
+};
+
+/// Measures these sources in force anew and tells the map. Of one that cannot be measured, since evidence is damaged,
+/// the map keeps what it knew.
+ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources);
 
 }  // namespace roadfix

@@ -1,9 +1,10 @@
 #include "tiles/store/evidence_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <set>
-#include <span>
 
 #include "core/units/error.hpp"
 #include "tiles/store/fusion.hpp"
@@ -13,6 +14,17 @@
 namespace roadfix {
 
 using sqlite::Statement;
+
+CellArray decoded_evidence(const std::filesystem::path& map, const EvidencePlace& place,
+                           std::span<const std::byte> png) {
+  try {
+    return decode_tile(png, TileDepth::kEvidence);
+  } catch (const CorruptData& error) {
+    throw CorruptData(error.code(), fmt::format("{}: evidence of source '{}' column {} row {} is damaged: {}. Ingest "
+                                                "the source again with --replace",
+                                                map.string(), place.source, place.column, place.row, error.what()));
+  }
+}
 
 EvidenceTable::EvidenceTable(sqlite::Connection& map, int finest_zoom)
     : map_(map),
@@ -65,16 +77,18 @@ SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::in
                    "e.tile_row AND o.tile_column = e.tile_column AND s.in_force = 1 AND o.source_id NOT IN own)) "
                    "SELECT tile_row, tile_column FROM tiles WHERE place * ?2 / all_of_them < (place + 1) * ?2 / "
                    "all_of_them");
-  Statement evidence(map_,
-                     "SELECT e.tile_data, s.name = ?1, s.registration_sigma_m FROM roadfix_evidence e JOIN "
-                     "roadfix_sources s ON s.id = e.source_id WHERE s.in_force = 1 AND e.tile_row = ?2 AND "
-                     "e.tile_column = ?3");
+  Statement evidence(
+      map_,
+      "SELECT e.tile_data, s.name, s.registration_sigma_m FROM roadfix_evidence e JOIN roadfix_sources s "
+      "ON s.id = e.source_id WHERE s.in_force = 1 AND e.tile_row = ?1 AND e.tile_column = ?2");
   for (shared.with(source, count); shared.step();) {
     SharedEvidence::Tile tile;
     std::vector<CellArray> others;
-    for (evidence.with(source, shared.integer(0), shared.integer(1)); evidence.step();) {
-      CellArray cells = decode_tile(evidence.blob(0), TileDepth::kEvidence);
-      if (evidence.integer(1) == 1) {
+    const std::int64_t row = shared.integer(0);
+    const std::int64_t column = shared.integer(1);
+    for (evidence.with(row, column); evidence.step();) {
+      CellArray cells = decoded_evidence(map_.path(), {evidence.text(1), column, row}, evidence.blob(0));
+      if (evidence.text(1) == source) {
         tile.own = std::move(cells);
         result.own_sigma_m = evidence.real(2);
       } else {

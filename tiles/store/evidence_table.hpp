@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,16 @@
 #include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
+
+/// A tile of the finest level, as the file counts them, of which a source says something.
+struct EvidencePlace {
+  std::string source;
+  std::int64_t column = 0;
+  std::int64_t row = 0;
+};
+/// Throws CorruptData that names the map and the place.
+CellArray decoded_evidence(const std::filesystem::path& map, const EvidencePlace& place,
+                           std::span<const std::byte> png);
 
 class EvidenceTable {
  public:

@@ -8,6 +8,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "tiles/store/evidence_table.hpp"
 #include "tiles/store/fusion.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -129,14 +130,7 @@ std::optional<CellArray> TileTable::fused_evidence(TileIndex index) {
   }
   std::vector<CellArray> sources;
   for (const auto& [png, source] : witnesses) {
-    try {
-      sources.push_back(decode_tile(png, TileDepth::kEvidence));
-    } catch (const CorruptData& error) {
-      throw CorruptData(error.code(),
-                        fmt::format("{}: evidence of source '{}' column {} row {} is damaged: {}. Ingest the source "
-                                    "again with --replace",
-                                    map_.path().string(), source, index.col, tile_row(index, finest_), error.what()));
-    }
+    sources.push_back(decoded_evidence(map_.path(), {source, index.col, tile_row(index, finest_)}, png));
   }
   if (sources.empty()) return std::nullopt;
   return fused(sources);

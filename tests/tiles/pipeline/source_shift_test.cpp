@@ -1,6 +1,6 @@
 #include "tiles/pipeline/source_shift.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <string>
@@ -8,12 +8,18 @@
 
 #include "core/grid/resample.hpp"
 #include "tests/support/put_block.hpp"
+#include "tests/support/sqlite_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kCellM = 2.0;
 
@@ -169,6 +175,7 @@ class MeasuredShifts : public ::testing::Test {
     }
     writer.finish_source(name);
   }
+  std::vector<SourceStatus> sources() const { return MapReader(folder / "m.gpkg").info().sources; }
 
   testing::TemporaryFolder folder;
   const CellArray town = testing::street_map(5, {kCellM, {0, 0}, 712, 712}).cells;
@@ -178,23 +185,22 @@ class MeasuredShifts : public ::testing::Test {
 TEST_F(MeasuredShifts, OfTwoThatDifferBothCountAsUncertain) {
   put("a", 0);
   put("b", 10);
-  const auto shifts = measure_shifts(writer, {"a", "b"});
+  const auto shifts = measure_shifts(writer, {"a", "b"}).beside;
   ASSERT_EQ(shifts.size(), 2U);
   EXPECT_EQ(shifts.at("b").east_m, -20.0);
   EXPECT_EQ(shifts.at("a").east_m, 20.0);
-  const MapReader reader(folder / "m.gpkg");
-  for (const SourceStatus& source : reader.info().sources) {
+  for (const SourceStatus& source : sources()) {
     EXPECT_EQ(source.registration_sigma_m(), 10.0) << source.record.name;
     EXPECT_EQ(source.record.provenance.registration_sigma_m, 2.5);
   }
-  EXPECT_EQ(measure_shifts(writer, {"a", "b"}), shifts) << "what was measured before takes no part";
+  EXPECT_EQ(measure_shifts(writer, {"a", "b"}).beside, shifts) << "what was measured before takes no part";
 }
 
 TEST_F(MeasuredShifts, OfThreeOnlyTheOneThatTwoContradictDoes) {
   put("a", 0);
   put("b", 10);
   put("c", 0);
-  const auto shifts = measure_shifts(writer, {"a", "b", "c"});
+  const auto shifts = measure_shifts(writer, {"a", "b", "c"}).beside;
   ASSERT_EQ(shifts.size(), 1U);
   EXPECT_EQ(shifts.count("b"), 1U);
 }
@@ -202,17 +208,33 @@ TEST_F(MeasuredShifts, OfThreeOnlyTheOneThatTwoContradictDoes) {
 TEST_F(MeasuredShifts, AreForgottenWhenTheSourceIsReplacedByOneThatFitsOrStatesItsError) {
   put("a", 0);
   put("b", 10);
-  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).size(), 2U);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
   put("b", 10, 10.0);
-  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).empty()) << "2 sigma explain it";
-  const auto info = [&]() -> MapInfo { return MapReader(folder / "m.gpkg").info(); };
-  EXPECT_EQ(info().sources[0].registration_sigma_m(), 2.5);
-  EXPECT_EQ(info().sources[1].registration_sigma_m(), 10.0);
+  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).beside.empty()) << "2 sigma explain it";
+  EXPECT_EQ(sources()[0].registration_sigma_m(), 2.5);
+  EXPECT_EQ(sources()[1].registration_sigma_m(), 10.0);
   put("b", 10, 2.5);
-  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).size(), 2U);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
   put("b", 0);
-  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).empty());
-  EXPECT_EQ(info().sources[0].registration_sigma_m(), 2.5);
+  EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).beside.empty());
+  EXPECT_EQ(sources()[0].registration_sigma_m(), 2.5);
+}
+
+TEST_F(MeasuredShifts, StayAsTheyWereKnownWhereEvidenceIsDamagedAndItIsSaidWhich) {
+  put("a", 0);
+  put("b", 10);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
+  testing::open_sqlite(folder / "m.gpkg")
+      .execute(
+          "UPDATE roadfix_evidence SET tile_data = zeroblob(50) WHERE tile_column = 848 AND source_id = (SELECT id "
+          "FROM "
+          "roadfix_sources WHERE name = 'a')");
+  const ShiftReport report = measure_shifts(writer, {"a", "b"});
+  EXPECT_THAT(report.beside, IsEmpty());
+  EXPECT_THAT(report.notes, ElementsAre(AllOf(HasSubstr("whether 'a' or 'b' lies beside"), HasSubstr("m.gpkg"),
+                                              HasSubstr("evidence of source 'a' column 848 row"))));
+  ASSERT_EQ(sources().size(), 2U);
+  for (const SourceStatus& status : sources()) EXPECT_TRUE(status.shift) << status.record.name;
 }
 
 }  // namespace

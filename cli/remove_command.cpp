@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <set>
 #include <string>
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "tiles/pipeline/source_shift.hpp"
-#include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_writer.hpp"
 
 namespace roadfix::cli {
@@ -18,13 +16,6 @@ struct RemoveArguments {
   std::string map;
   std::string source;
 };
-
-std::set<std::string> names_of(const std::string& map) {
-  const MapReader reader(map);
-  std::set<std::string> names;
-  for (const SourceStatus& source : reader.info().sources) names.insert(source.record.name);
-  return names;
-}
 
 void remove_source(const RemoveArguments& options) {
   const std::stop_token stop = stop_on_signals();
@@ -37,7 +28,7 @@ void remove_source(const RemoveArguments& options) {
     was_there = writer.remove_source(options.source, progress.updates(), stop);
   }
   // It may have been what others lay beside.
-  const ShiftReport shifts = measure_shifts(writer, names_of(options.map));
+  const ShiftReport shifts = measure_shifts(writer, writer.sources_in_force());
   fmt::print("{}: source '{}' {}\n", options.map, options.source,
              was_there ? "is removed" : "was not there any more; what was left to fuse is fused");
   for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);

@@ -75,7 +75,9 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
                     const IngestOptions& options) {
   assert(options.jobs >= 1);
   const std::vector<TileIndex> blocks = plan_blocks(source, record.name, writer.settings());
-  std::set<std::string> touched = names_beside(writer, record.name);
+  // One that was stopped before it measured leaves that to the next.
+  std::set<std::string> touched =
+      writer.shifts_outdated() ? writer.sources_in_force() : names_beside(writer, record.name);
   const std::vector<TileIndex> open = writer.begin_source(record, blocks, options.replace);
   IngestReport report;
   report.blocks = std::ssize(blocks);

@@ -196,6 +196,7 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
         s.sources.remove(replaced->id);
       }
       s.sources.put_in_force(complete->id);
+      call_shifts_outdated(s.map);
     } else if (!replaced) {
       throw s.no_source(source);
     }
@@ -213,6 +214,15 @@ SharedEvidence MapWriter::shared_evidence(const std::string& source, std::int64_
 std::vector<std::string> MapWriter::sources_beside(const std::string& source) {
   return state_->evidence.sources_beside(source);
 }
+
+std::set<std::string> MapWriter::sources_in_force() {
+  std::set<std::string> names;
+  Statement all(state_->map, "SELECT name FROM roadfix_sources WHERE in_force = 1");
+  while (all.step()) names.insert(all.text(0));
+  return names;
+}
+
+bool MapWriter::shifts_outdated() { return roadfix::shifts_outdated(state_->map); }
 
 void MapWriter::put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts) {
   roadfix::put_shifts(state_->map, shifts);
@@ -233,7 +243,10 @@ bool MapWriter::remove_source(const std::string& source, const OnProgress& progr
     for (const bool in_force : {false, true}) {
       const auto found = s.sources.find(source, in_force);
       if (!found) continue;
-      if (in_force) s.fusion.add_source(found->id);
+      if (in_force) {
+        s.fusion.add_source(found->id);
+        call_shifts_outdated(s.map);
+      }
       s.sources.remove(found->id);
       any = true;
     }

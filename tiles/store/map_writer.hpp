@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -67,6 +68,11 @@ class MapWriter {
   /// Other sources in force that say something of a tile that this one in force does, too.
   std::vector<std::string> sources_beside(const std::string& source);
 
+  std::set<std::string> sources_in_force();
+
+  /// Whether sources came, went or were replaced since put_shifts(), so that any of those in force may lie beside the
+  /// others or not by now: finish_source() or remove_source() was stopped, or what should follow it.
+  bool shifts_outdated();
   /// Tells the map which of these sources in force lie beside the others; nullopt for one that does not.
   void put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts);
 

@@ -9,6 +9,14 @@ using sqlite::Transaction;
 
 }  // namespace
 
+void call_shifts_outdated(Connection& map) {
+  map.execute("INSERT OR REPLACE INTO roadfix_meta (key, value) VALUES ('shifts_outdated', '1')");
+}
+
+bool shifts_outdated(Connection& map) {
+  return sqlite::number(map, "SELECT count(*) FROM roadfix_meta WHERE key = 'shifts_outdated'") > 0;
+}
+
 void put_shifts(Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts) {
   Transaction transaction(map, Transaction::Kind::kWrite);
   Statement forget(map,
@@ -23,6 +31,7 @@ void put_shifts(Connection& map, const std::map<std::string, std::optional<Sourc
     put.with(name, shift->east_m, shift->north_m, shift->correlation, shift->correlation_in_place, shift->sigma_m)
         .run();
   }
+  map.execute("DELETE FROM roadfix_meta WHERE key = 'shifts_outdated'");
   transaction.commit();
 }
 

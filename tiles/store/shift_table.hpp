@@ -12,7 +12,12 @@
 
 namespace roadfix {
 
-/// Of sources in force, by their names; nullopt for one that fits the others, or of which that cannot be told.
+/// Says, as part of the caller's transaction, that the sources in force are others than those that were measured.
+void call_shifts_outdated(sqlite::Connection& map);
+bool shifts_outdated(sqlite::Connection& map);
+
+/// Of sources in force, by their names; nullopt for one that fits the others, or of which that cannot be told. From
+/// then on they count as measured.
 void put_shifts(sqlite::Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts);
 
 /// Of sources in force, by their names.

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "core/grid/resample.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/put_block.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/pipeline/ingest.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
@@ -218,6 +220,36 @@ TEST_F(MeasuredShifts, AreForgottenWhenTheSourceIsReplacedByOneThatFitsOrStatesI
   put("b", 0);
   EXPECT_TRUE(measure_shifts(writer, {"a", "b"}).beside.empty());
   EXPECT_EQ(sources()[0].registration_sigma_m(), 2.5);
+}
+
+/// Says nothing of a box.
+class BlankSource final : public CellSource {
+ public:
+  explicit BlankSource(GridBox extent) : extent_(extent) {}
+  SourceSummary summary() const override { return {}; }
+  GridBox extent() const override { return extent_; }
+  bool touches(const GridBox& /*box*/) const override { return true; }
+  CellArray read(const GridGeometry& block, std::uint64_t /*seed*/) const override { return {block.cols, block.rows}; }
+
+ private:
+  GridBox extent_;
+};
+
+TEST_F(MeasuredShifts, OfThoseBesideAReplacedSourceAreMeasuredAnewThoughFusingItsReplacementWasStopped) {
+  put("a", 0);
+  put("b", 10);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
+  const SourceRecord elsewhere{.name = "b", .kind = "roads", .fingerprint = "elsewhere"};
+  const BlankSource source(grown(tile_geometry({900, -8165}, kCellM).box(), -1.0));
+  std::stop_source stop;
+  const auto stop_at_once = [&](std::int64_t, std::int64_t) { stop.request_stop(); };
+  EXPECT_EQ(testing::code_of([&] {
+              ingest(source, elsewhere, writer, {.replace = true, .on_fusing = stop_at_once, .stop = stop.get_token()});
+            }),
+            "fusion-stopped");
+  EXPECT_TRUE(ingest(source, elsewhere, writer, {.replace = true}).shifts.beside.empty());
+  ASSERT_EQ(sources().size(), 2U);
+  for (const SourceStatus& status : sources()) EXPECT_FALSE(status.shift) << status.record.name;
 }
 
 TEST_F(MeasuredShifts, StayAsTheyWereKnownWhereEvidenceIsDamagedAndItIsSaidWhich) {

@@ -65,6 +65,19 @@ TEST_F(ShiftTable, ForgetsASourceThatFitsAgainAndOneThatIsRemoved) {
   EXPECT_EQ(source(1).shift, std::nullopt);
 }
 
+TEST_F(ShiftTable, IsOutdatedFromAChangeOfTheSourcesInForceUntilTheyAreMeasured) {
+  EXPECT_FALSE(writer->shifts_outdated());
+  ingest(*writer, {"b", 2, some_blocks(1, 1)});
+  EXPECT_FALSE(writer->shifts_outdated()) << "it is in force already";
+  ingest(*writer, {"b", 3, some_blocks(1, 1)}, true);
+  EXPECT_TRUE(writer->shifts_outdated());
+  writer->put_shifts({});
+  EXPECT_FALSE(writer->shifts_outdated());
+  writer->remove_source("b");
+  EXPECT_TRUE(writer->shifts_outdated());
+  EXPECT_EQ(writer->sources_in_force(), std::set<std::string>{"a"});
+}
+
 TEST_F(ShiftTable, VerifyFindsErrorsThatNoShiftStandsFor) {
   for (const std::string sigma : {"0", "-10", "9e999", "'much'"}) {
     testing::open_sqlite(path).execute(("UPDATE roadfix_shifts SET sigma_m = " + sigma).c_str());

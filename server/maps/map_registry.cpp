@@ -17,6 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".gpkg";
+constexpr const char* kBusy = "map-busy";
+
+/// A request or a look at the folder waits so long for a writer: both are repeated, and others wait behind them.
+constexpr std::chrono::seconds kLockPatience{1};
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
 
@@ -116,13 +120,24 @@ MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
   return stamp;
 }
 
+MapRegistry::Entry MapRegistry::seen(const Entry& known, const fs::path& path, const Stamp& stamp) const {
+  try {
+    return is_current(known, path, stamp) ? Entry{stamp, known.map, {}} : opened(path, stamp);
+  } catch (const Interrupted& busy) {
+    if (known.map != nullptr) return known;  // and its stamp, so that the next look goes on
+    return {stamp, nullptr, {path.stem(), busy.code(), busy.what()}};
+  }
+}
+
 MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp) const {
   const std::string name = path.stem();
   try {
-    const auto reader = std::make_shared<const MapReader>(path, cache_bytes_);
+    const auto reader = std::make_shared<const MapReader>(path, cache_bytes_, kLockPatience);
     auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, search_cache_bytes_)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     return {stamp, std::move(map), {}};
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error& error) {
     return {stamp, nullptr, {name, error.code(), error.what()}};
   }
@@ -135,7 +150,9 @@ bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Sta
   if (entry.stamp == stamp) return true;
   if (entry.stamp.inode != stamp.inode) return false;
   try {
-    return says_the_same(MapReader(path, 0).info(), entry.map->reader->info());
+    return says_the_same(MapReader(path, 0, kLockPatience).info(), entry.map->reader->info());
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error&) {
     return false;  // opened() finds the same and reports it
   }
@@ -161,7 +178,7 @@ void MapRegistry::refresh() {
       const auto found = entries_.find(name);
       if (found != entries_.end()) known = found->second;
     }
-    Entry current = is_current(known, path, stamp) ? Entry{stamp, known.map, {}} : opened(path, stamp);
+    Entry current = seen(known, path, stamp);
     if (current.map == nullptr && current.problem.reason != known.problem.reason) {
       spdlog::warn("map {} cannot be served: {} [{}]", name, current.problem.reason, current.problem.code);
     }
@@ -195,11 +212,10 @@ std::shared_ptr<const ServedMap> MapRegistry::find(const std::string& name) cons
   if (found == entries_.end()) {
     throw NotFound("map-not-found", fmt::format("no map is called '{}'; GET /v1/maps lists them", name.substr(0, 80)));
   }
-  if (found->second.map == nullptr) {
-    throw IoFailure("map-unreadable",
-                    fmt::format("the map '{}' cannot be read: {}", name, found->second.problem.reason));
-  }
-  return found->second.map;
+  const auto& [stamp, map, problem] = found->second;
+  if (map != nullptr) return map;
+  if (problem.code == kBusy) throw Interrupted(kBusy, problem.reason);
+  throw IoFailure("map-unreadable", fmt::format("the map '{}' cannot be read: {}", name, problem.reason));
 }
 
 std::size_t MapRegistry::cached_bytes() const {

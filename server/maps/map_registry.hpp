@@ -45,7 +45,7 @@ class MapRegistry {
   MapRegistry(const MapRegistry&) = delete;
   MapRegistry& operator=(const MapRegistry&) = delete;
 
-  /// Looks at the folder now.
+  /// Looks at the folder now. A map that a writer keeps locked stays as it was until the next look.
   void refresh();
   /// Refreshes in a thread of its own, again and again.
   void watch(std::chrono::milliseconds interval);
@@ -53,8 +53,9 @@ class MapRegistry {
 
   std::vector<std::shared_ptr<const ServedMap>> maps() const;
   std::vector<UnreadableMap> unreadable() const;
-  /// The name is the file's without .gpkg. Throws NotFound ("map-not-found") or IoFailure ("map-unreadable") with the
-  /// reason.
+  /// The name is the file's without .gpkg. Throws NotFound ("map-not-found"), IoFailure ("map-unreadable") with the
+  /// reason, or Interrupted ("map-busy") of one that was locked at every look. What reads of a map waits a second for a
+  /// writer that has locked it, then throws that, too.
   std::shared_ptr<const ServedMap> find(const std::string& name) const;
   std::size_t cached_bytes() const;
   std::size_t search_cached_bytes() const;
@@ -75,6 +76,7 @@ class MapRegistry {
     UnreadableMap problem;
   };
   static Stamp stamp_of(const std::filesystem::path& path);
+  Entry seen(const Entry& known, const std::filesystem::path& path, const Stamp& stamp) const;
   Entry opened(const std::filesystem::path& path, const Stamp& stamp) const;
   bool is_current(const Entry& entry, const std::filesystem::path& path, const Stamp& stamp) const;
   void forget_missing(const std::map<std::string, std::filesystem::path>& present);

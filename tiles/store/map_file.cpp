@@ -101,7 +101,7 @@ void explain_wal_mode(const Connection& map) {
 }
 
 /// The first look into the file; undoes what a killed writer left.
-void look_into(Connection& map) {
+void look_into(Connection& map, std::chrono::milliseconds patience) {
   const Transaction no_writer_between(map, Transaction::Kind::kRead);
   constexpr const char* kLook = "SELECT count(*) FROM sqlite_master";
   try {
@@ -111,7 +111,7 @@ void look_into(Connection& map) {
       explain_wal_mode(map);
       throw;
     }
-    recover_map(map.path());
+    recover_map(map.path(), patience);
     number(map, kLook);
   }
   explain_cut_off(map);
@@ -145,16 +145,16 @@ bool is_there(const fs::path& path) {
   throw IoFailure("map-io", fmt::format("{}: {}", path.string(), error.message()));
 }
 
-void recover_map(const fs::path& path) {
-  Connection map(path, Access::kReadWrite, map_error);
+void recover_map(const fs::path& path, std::chrono::milliseconds patience) {
+  Connection map(path, Access::kReadWrite, map_error, patience);
   number(map, "SELECT count(*) FROM sqlite_master");
 }
 
-Connection open_map(const fs::path& path, Access access) {
+Connection open_map(const fs::path& path, Access access, std::chrono::milliseconds patience) {
   require_content(path);
-  Connection map(path, access, map_error);
+  Connection map(path, access, map_error, patience);
   try {
-    look_into(map);
+    look_into(map, patience);
     require_ours(map);
     if (access == Access::kReadWrite) leave_wal_mode(map);
   } catch (const CorruptData&) {

@@ -1,6 +1,7 @@
 // A file as a map: recognised and described. Shared by reader, writer and verifier; not for other modules.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 
 #include "tiles/store/map_records.hpp"
@@ -18,11 +19,14 @@ bool is_there(const std::filesystem::path& path);
 
 /// Opens what create_map made. Undoes what a killed writer left half done, even for reading where that is possible.
 /// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version", "map-from-older-version")
-/// or CorruptData ("map-empty-file", "map-cut-off", "map-corrupt").
-sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access access);
+/// or CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), and, as all that uses the connection, Interrupted
+/// ("map-busy") where a writer keeps the file locked for longer than `patience`.
+sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access access,
+                            std::chrono::milliseconds patience = sqlite::kPatience);
 
-/// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to.
-void recover_map(const std::filesystem::path& path);
+/// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to,
+/// Interrupted ("map-busy").
+void recover_map(const std::filesystem::path& path, std::chrono::milliseconds patience);
 
 MapSettings read_settings(sqlite::Connection& map);
 std::string read_version(sqlite::Connection& map);

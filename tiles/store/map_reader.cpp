@@ -52,9 +52,9 @@ TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
 }  // namespace
 
 struct MapReader::State {
-  State(const std::filesystem::path& name, std::size_t cache_bytes)
-      : path(name), file(identity_of(name)), cache(cache_bytes) {
-    Channel first(open_map(path, Access::kRead));
+  State(const std::filesystem::path& name, std::size_t cache_bytes, std::chrono::milliseconds wait)
+      : path(name), patience(wait), file(identity_of(name)), cache(cache_bytes) {
+    Channel first(open_map(path, Access::kRead, patience));
     info = read_info(*first.map);
     idle.push_back(std::move(first));
   }
@@ -78,7 +78,7 @@ struct MapReader::State {
         return channel;
       }
     }
-    Channel channel(open_map(path, Access::kRead));
+    Channel channel(open_map(path, Access::kRead, patience));
     if (identity_of(path) == file) return channel;
     throw Interrupted("map-renewed",
                       fmt::format("{}: another file took its place while it was read. Try again", path.string()));
@@ -91,7 +91,7 @@ struct MapReader::State {
       return use(channel);
     } catch (const IoFailure& error) {
       if (error.code() != kMapNeedsRecovery) throw;
-      recover_map(path);
+      recover_map(path, patience);
       return use(channel);
     }
   }
@@ -105,6 +105,7 @@ struct MapReader::State {
   }
 
   std::filesystem::path path;
+  std::chrono::milliseconds patience;
   std::optional<FileIdentity> file;  ///< that all channels read, whatever has the name by now
   std::optional<MapInfo> info;
   TileCache cache;
@@ -112,8 +113,8 @@ struct MapReader::State {
   std::vector<Channel> idle;
 };
 
-MapReader::MapReader(const std::filesystem::path& path, std::size_t cache_bytes)
-    : state_(std::make_unique<State>(path, cache_bytes)) {}
+MapReader::MapReader(const std::filesystem::path& path, std::size_t cache_bytes, std::chrono::milliseconds patience)
+    : state_(std::make_unique<State>(path, cache_bytes, patience)) {}
 MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&&) noexcept = default;
 MapReader& MapReader::operator=(MapReader&&) noexcept = default;

@@ -2,6 +2,7 @@
 // writer.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,15 +10,19 @@
 
 #include "core/grid/road_grid.hpp"
 #include "tiles/store/map_records.hpp"
+#include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
 
 class MapReader {
  public:
-  /// `cache_bytes` bounds the decoded tiles that are kept in memory.
+  /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file at the end of a
+  /// transaction, and from the middle of a large one on. This and all that reads waits for it as long as `patience`,
+  /// then throws Interrupted ("map-busy").
   /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
   /// ("map-not-ours", "map-from-newer-version", "map-from-older-version") or IoFailure.
-  explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20);
+  explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20,
+                     std::chrono::milliseconds patience = sqlite::kPatience);
   ~MapReader();
   MapReader(MapReader&&) noexcept;
   MapReader& operator=(MapReader&&) noexcept;

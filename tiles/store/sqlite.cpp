@@ -11,8 +11,6 @@
 namespace roadfix::sqlite {
 namespace {
 
-constexpr int kBusyTimeoutMs = 120'000;
-
 Failure failure_of(int code) {
   if (code == SQLITE_READONLY_ROLLBACK) return Failure::kNeedsRecovery;
   switch (code & 0xff) {
@@ -60,7 +58,8 @@ std::int64_t big_endian(const Header& header, std::size_t at, std::size_t bytes)
 
 void Connection::Close::operator()(sqlite3* handle) const { sqlite3_close(handle); }
 
-Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf error_of)
+Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf error_of,
+                       std::chrono::milliseconds patience)
     : path_(path), error_of_(error_of) {
   const int mode = access == Access::kRead        ? SQLITE_OPEN_READONLY
                    : access == Access::kReadWrite ? SQLITE_OPEN_READWRITE
@@ -73,7 +72,7 @@ Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf
     fail(code, reason == 0 ? std::string(sqlite3_errstr(code)) : std::system_category().message(reason));
   }
   sqlite3_extended_result_codes(handle, 1);
-  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  sqlite3_busy_timeout(handle, static_cast<int>(patience.count()));
 }
 
 void Connection::fail(int code, const std::string& detail) const {

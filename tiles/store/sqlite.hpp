@@ -2,6 +2,7 @@
 // Failures throw what the kind of file makes of them: to who uses it, a map and a store of tracks are different things.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -17,6 +18,9 @@ struct sqlite3_stmt;
 namespace roadfix::sqlite {
 
 enum class Access { kRead, kReadWrite, kCreate };
+
+/// How long a person would rather wait than repeat a command.
+inline constexpr std::chrono::milliseconds kPatience = std::chrono::minutes(2);
 
 /// Why SQLite refused.
 enum class Failure {
@@ -35,9 +39,10 @@ using ErrorOf = std::exception_ptr (*)(const std::filesystem::path& file, Failur
 
 class Connection {
  public:
-  /// Not to be used from two threads at once. Waits up to 2 min for locks of other processes. This and all that uses
-  /// the connection throws what `error_of` returns.
-  Connection(const std::filesystem::path& path, Access access, ErrorOf error_of);
+  /// Not to be used from two threads at once. Waits as long as `patience` for locks of other processes, each time. This
+  /// and all that uses the connection throws what `error_of` returns.
+  Connection(const std::filesystem::path& path, Access access, ErrorOf error_of,
+             std::chrono::milliseconds patience = kPatience);
 
   const std::filesystem::path& path() const { return path_; }
   /// Runs statements that return nothing of interest.

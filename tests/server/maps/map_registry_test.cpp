@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "tests/support/as_another_user.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
@@ -20,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using roadfix::testing::AsAnotherUser;
+using roadfix::testing::code_of;
 using roadfix::testing::TemporaryFolder;
 
 constexpr std::size_t kCache = std::size_t{1} << 20;
@@ -59,6 +62,40 @@ TEST(MapRegistry, KeepsTheReaderOfAFileThatWasOnlyTouched) {
   fs::last_write_time(folder / "city.gpkg", fs::file_time_type::clock::now() + std::chrono::seconds(5));
   registry.refresh();
   EXPECT_EQ(registry.find("city"), before);
+}
+
+TEST(MapRegistry, KeepsAMapThatAWriterHasLockedAsItWasAndItsReadersWaitOnlyASecond) {
+  using Clock = std::chrono::steady_clock;
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  const auto city = registry.find("city");
+  {
+    sqlite::Connection writer = roadfix::testing::open_sqlite(folder / "city.gpkg");
+    writer.execute("BEGIN EXCLUSIVE");
+    fs::last_write_time(folder / "city.gpkg", fs::file_time_type::clock::now() + std::chrono::seconds(5));
+    const Clock::time_point start = Clock::now();
+    registry.refresh();
+    EXPECT_EQ(registry.find("city"), city);
+    EXPECT_EQ(code_of([&] { city->view.read(GridGeometry::covering(city->view.extent, 2.0)); }), "map-busy");
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
+    writer.execute("UPDATE roadfix_meta SET value = '0123456789abcdef' WHERE key = 'version'; COMMIT");
+  }
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->view.version, "0123456789abcdef") << "the next look sees what was written";
+  EXPECT_NO_THROW(city->view.read(GridGeometry::covering(city->view.extent, 2.0)));
+}
+
+TEST(MapRegistry, AsksToComeBackForAMapThatIsLockedWhenItAppears) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  sqlite::Connection writer = roadfix::testing::open_sqlite(folder / "city.gpkg");
+  writer.execute("BEGIN EXCLUSIVE");
+  MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(code_of([&] { registry.find("city"); }), "map-busy");
+  writer.execute("ROLLBACK");
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->name, "city");
 }
 
 TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame) {

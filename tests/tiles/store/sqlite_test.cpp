@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <stdexcept>
 
@@ -90,8 +91,7 @@ TEST_F(Sqlite, AFileThatMayNotGrowIsFull) {
 TEST_F(Sqlite, AFileThatAnotherWritesIsBusy) {
   Connection writer(path, Access::kReadWrite, refused);
   const Transaction open(writer, Transaction::Kind::kWrite);
-  Connection second(path, Access::kReadWrite, refused);
-  second.execute("PRAGMA busy_timeout = 0");
+  Connection second(path, Access::kReadWrite, refused, std::chrono::milliseconds(0));
   EXPECT_EQ(failure_of([&] { second.execute("INSERT INTO t VALUES (1)"); }), Failure::kBusy);
 }
 

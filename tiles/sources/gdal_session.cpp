@@ -60,8 +60,6 @@ void require_gdal() {
     // A progressive JPEG is unpacked as a whole, with 3 to 6 bytes a pixel, and GDAL stops at 500 MB where this is not
     // set. The largest JPEG takes 26 GB; whoever wants less says so in the environment, where libjpeg looks too.
     if (CPLGetConfigOption("JPEGMEM", nullptr) == nullptr) CPLSetConfigOption("JPEGMEM", "26000M");
-    // Reading must leave nothing beside the user's files.
-    CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "NO");
   });
 }
 

@@ -1,43 +1,18 @@
 #include "tiles/export/window_tiff.hpp"
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
-#include <atomic>
-#include <memory>
 #include <vector>
 
 #include "core/units/error.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/probability_pixel.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/memory_file.hpp"
 
 namespace roadfix {
 namespace {
-
-/// A file of GDAL's memory file system, gone with this object.
-class MemoryFile {
- public:
-  MemoryFile() {
-    static std::atomic<std::uint64_t> next{0};
-    path_ = fmt::format("/vsimem/roadfix-window-{}.tif", next++);
-  }
-  ~MemoryFile() { VSIUnlink(path_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const std::string& path() const { return path_; }
-  std::string bytes() const {
-    vsi_l_offset size = 0;
-    const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
-    return data == nullptr ? std::string()
-                           : std::string(reinterpret_cast<const char*>(data), static_cast<std::size_t>(size));
-  }
-
- private:
-  std::string path_;
-};
 
 void require(bool done) {
   if (!done) throw IoFailure("export-failed", fmt::format("GDAL cannot write the window: {}", CPLGetLastErrorMsg()));
@@ -55,12 +30,12 @@ std::vector<float> probabilities(const CellArray& cells) {
 std::string window_tiff(const CellArray& cells, const UtmZone& zone, const std::array<double, 6>& geotransform,
                         const MapInfo& info) {
   require_gdal();
-  const MemoryFile file;
+  const MemoryFile file(".tif");
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   require(driver != nullptr);
   std::array<const char*, 2> options{"COMPRESS=DEFLATE", nullptr};
-  std::unique_ptr<GDALDataset> dataset(driver->Create(file.path().c_str(), cells.cols(), cells.rows(), 1, GDT_Float32,
-                                                      const_cast<char**>(options.data())));
+  DatasetPtr dataset(
+      driver->Create(file.path(), cells.cols(), cells.rows(), 1, GDT_Float32, const_cast<char**>(options.data())));
   require(dataset != nullptr);
   const OGRSpatialReference reference = utm_reference(zone);
   auto transform = geotransform;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string_view>
 
 #include "core/units/text.hpp"
@@ -53,8 +52,7 @@ bool is_aux_xml(const std::string& path) { return lower_case(path).ends_with(kEn
 
 std::string told_by_aux_xml(const std::string& path) {
   const GdalMessages messages;
-  const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> file(CPLParseXMLFile(path.c_str()),
-                                                                       CPLDestroyXMLNode);
+  const CPLXMLTreeCloser file(CPLParseXMLFile(path.c_str()));
   CPLXMLNode* root = file ? CPLSearchXMLNode(file.get(), "=PAMDataset") : nullptr;
   if (root == nullptr) return {};
   remove_derived(*root);

@@ -23,7 +23,7 @@ std::string wkt(const OGRSpatialReference& reference) {
   return result;
 }
 
-void* create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
+PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
   require_known_datum(file.crs(), target, file.path());
   const GdalMessages messages;
   CPLStringList options;
@@ -33,8 +33,9 @@ void* create_transformer(const RasterFile& file, const OGRSpatialReference& targ
   // gdalwarp -rpc -to RPC_DEM=... makes an orthoimage first.
   const char* height = file.dataset().GetMetadataItem("HEIGHT_OFF", "RPC");
   if (height != nullptr) options.SetNameValue("RPC_HEIGHT", height);
-  void* transformer = GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List());
-  if (transformer == nullptr) {
+  PixelTransformerPtr transformer(
+      GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List()));
+  if (!transformer) {
     throw InvalidInput(
         "crs-not-transformable",
         fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", file.path(),
@@ -86,7 +87,7 @@ void require_way_back(const RasterFile& file, const std::vector<cv::Point2d>& pi
 
 }  // namespace
 
-void Georeference::Destroy::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
+void DestroyTransformer::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
 
 Georeference::Georeference(const RasterFile& file, UtmZone zone)
     : file_(&file), zone_(zone), transformer_(create_transformer(file, utm_reference(zone))) {}
@@ -131,10 +132,9 @@ double Georeference::gsd_m() const {
 }
 
 LatLon centre_of(const RasterFile& file) {
-  void* transformer = create_transformer(file, wgs84_reference());
+  const PixelTransformerPtr transformer = create_transformer(file, wgs84_reference());
   std::vector<cv::Point2d> point{{file.size().width / 2.0, file.size().height / 2.0}};
-  transform(transformer, point, false);
-  GDALDestroyGenImgProjTransformer(transformer);
+  transform(transformer.get(), point, false);
   const bool on_earth = std::abs(point[0].x) <= 360.0 && std::abs(point[0].y) <= 90.0;
   if (!on_earth) nowhere(file, "latitude and longitude");
   return {point[0].y, point[0].x};

@@ -12,6 +12,12 @@
 
 namespace roadfix {
 
+struct DestroyTransformer {
+  void operator()(void* transformer) const;
+};
+/// Of GDALCreateGenImgProjTransformer2().
+using PixelTransformerPtr = std::unique_ptr<void, DestroyTransformer>;
+
 class Georeference {
  public:
   /// Refers to the file, which must outlive it. Throws InvalidInput "crs-not-transformable".
@@ -28,13 +34,9 @@ class Georeference {
   double gsd_m() const;
 
  private:
-  struct Destroy {
-    void operator()(void* transformer) const;
-  };
-
   const RasterFile* file_;
   UtmZone zone_;
-  std::unique_ptr<void, Destroy> transformer_;
+  PixelTransformerPtr transformer_;
 };
 
 /// Geographic centre of the image, to choose a zone by. Throws InvalidInput "crs-not-transformable".

@@ -1,13 +1,11 @@
 #include "tiles/sources/picture_tags.hpp"
 
 #include <cpl_minixml.h>
-#include <cpl_vsi.h>
-#include <fmt/format.h>
 
-#include <atomic>
 #include <string_view>
 
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/memory_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -34,25 +32,6 @@ PictureTags tags_of(GDALDataset& file) {
   return tags;
 }
 
-/// Bytes as a file of GDAL's, under a name of its own.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::span<const std::uint8_t> bytes) {
-    static std::atomic<std::uint64_t> count = 0;
-    name_ = fmt::format("/vsimem/roadfix-{}.jpg", count++);
-    auto* data = const_cast<GByte*>(bytes.data());  // GDAL writes into files that are opened to be written
-    VSIFCloseL(VSIFileFromMemBuffer(name_.c_str(), data, bytes.size(), FALSE));
-  }
-  ~MemoryFile() { VSIUnlink(name_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const char* name() const { return name_.c_str(); }
-
- private:
-  std::string name_;
-};
-
 }  // namespace
 
 Tags tags_of_xmp(const std::string& text) {
@@ -71,12 +50,12 @@ PictureTags read_picture_tags(const std::string& path) { return tags_of(*open_da
 PictureTags read_picture_tags(std::span<const std::uint8_t> bytes) {
   require_gdal();
   const GdalMessages quiet;
-  const MemoryFile file(bytes);
+  const MemoryFile file(".jpg", bytes);
   // Of all that GDAL reads only this, whatever the bytes claim to be, and nothing that stands beside it.
   const char* const only_jpeg[] = {"JPEG", nullptr};
   const char* const no_siblings[] = {nullptr};
   const DatasetPtr dataset(
-      GDALDataset::Open(file.name(), GDAL_OF_RASTER | GDAL_OF_READONLY, only_jpeg, nullptr, no_siblings));
+      GDALDataset::Open(file.path(), GDAL_OF_RASTER | GDAL_OF_READONLY, only_jpeg, nullptr, no_siblings));
   return dataset ? tags_of(*dataset) : PictureTags();
 }
 

@@ -4,16 +4,10 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <memory>
 #include <string_view>
 
 namespace roadfix {
 namespace {
-
-struct DestroyXml {
-  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
-};
-using XmlPtr = std::unique_ptr<CPLXMLNode, DestroyXml>;
 
 /// 0 where there is none.
 double number_at(const CPLXMLNode* node, const char* path) { return std::atof(CPLGetXMLValue(node, path, "0")); }
@@ -38,7 +32,7 @@ bool is_mosaic(const CPLXMLNode* band) {
 std::optional<std::vector<cv::Rect>> filled_parts(GDALDataset& dataset, int band) {
   char** xml = dataset.GetMetadata("xml:VRT");
   if (xml == nullptr || *xml == nullptr) return std::nullopt;
-  const XmlPtr tree(CPLParseXMLString(*xml));
+  const CPLXMLTreeCloser tree(CPLParseXMLString(*xml));
   const CPLXMLNode* root = tree ? CPLGetXMLNode(tree.get(), "=VRTDataset") : nullptr;
   const CPLXMLNode* node = root != nullptr ? band_of(root, band) : nullptr;
   if (node == nullptr || !is_mosaic(node)) return std::nullopt;

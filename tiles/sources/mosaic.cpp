@@ -42,30 +42,43 @@ Sampled sampled_in(const std::vector<float>& values) {
   return {max, std::ranges::all_of(values, [max](float v) { return v == 0.0F || v == max; })};
 }
 
-std::string_view kind_of_values(const RasterFile& file) {
-  if (!file.holds_integers()) return "real numbers";
-  return file.declared_range() ? "bytes" : "integers of more than 8 bits";
-}
+/// What an image holds, as far as those of one source have to agree.
+struct Content {
+  explicit Content(const RasterFile& file)
+      : path(file.path()),
+        channels(file.channels()),
+        integers(file.holds_integers()),
+        bytes(file.declared_range().has_value()) {}
+
+  std::string_view values() const {
+    if (!integers) return "real numbers";
+    return bytes ? "bytes" : "integers of more than 8 bits";
+  }
+  bool looks_like_heights() const { return channels == 1 && !integers; }
+
+  std::string path;
+  int channels;
+  bool integers;
+  bool bytes;
+};
 
 /// One range of values serves them all.
-void require_same_kind(const RasterFile& first, const RasterFile& other) {
-  if (kind_of_values(first) == kind_of_values(other)) return;
+void require_same_values(const Content& first, const Content& other) {
+  if (first.values() == other.values()) return;
   throw InvalidInput("road-values-mixed",
                      fmt::format("{} holds {}, but {} holds {}: the value of a certain road differs. Ingest them one "
                                  "by one, as separate sources",
-                                 first.path(), kind_of_values(first), other.path(), kind_of_values(other)));
+                                 first.path, first.values(), other.path, other.values()));
 }
 
-bool looks_like_heights(const RasterFile& file) { return file.channels() == 1 && !file.holds_integers(); }
-
 /// A model of heights beside an orthophoto would hide it, as the first by name.
-void require_no_heights_beside_colours(const RasterFile& first, const RasterFile& other) {
+void require_no_heights_beside_colours(const Content& first, const Content& other) {
   for (const auto& [heights, colours] : {std::pair{&first, &other}, {&other, &first}}) {
-    if (!looks_like_heights(*heights) || colours->channels() < 3) continue;
+    if (!heights->looks_like_heights() || colours->channels < 3) continue;
     throw InvalidInput("imagery-mixed",
                        fmt::format("{} has colours, but {} has one band of real numbers, as heights have: ingest the "
                                    "orthophoto itself; if both are imagery, one by one",
-                                   colours->path(), heights->path()));
+                                   colours->path, heights->path));
   }
 }
 
@@ -78,14 +91,13 @@ double bytes_of_rows(const RasterFile& file, double rows) {
 }  // namespace
 
 struct Mosaic::Image {
-  std::string path;
+  Content content;
   GridBox footprint;
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
   double full_opacity = 1.0;
   Sampled sampled = {};
   bool exported = false;
-  bool bytes = false;
   ValueRange range = {};
   std::shared_ptr<const Collar> collar = nullptr;
 };
@@ -98,35 +110,36 @@ struct Mosaic::Handle {
   Georeference georeference;
 };
 
-Mosaic::Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
+Mosaic::Mosaic(const std::vector<std::string>& paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
     : options_(options), rule_(rule), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
   std::vector<float> values;
-  for (std::string& path : paths) add_image(std::move(path), values);
+  for (const std::string& path : paths) add_image(path, values);
   choose_ranges(std::move(values));
   if (rule == ValueRule::kShare) channels_ = 1;
   if (rule == ValueRule::kPicture || options.collar) find_collars();
 }
 
 /// Adds to `values` what is sampled of an image whose type does not say its range.
-void Mosaic::add_image(std::string path, std::vector<float>& values) {
+void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
   RasterFile file(path, options_);
+  Content content(file);
   if (!images_.empty()) {
-    const RasterFile first(images_.front().path, options_);
-    rule_ == ValueRule::kShare ? require_same_kind(first, file) : require_no_heights_beside_colours(first, file);
+    const Content& first = images_.front().content;
+    rule_ == ValueRule::kShare ? require_same_values(first, content)
+                               : require_no_heights_beside_colours(first, content);
   }
   const Georeference georeference(file, zone_);
-  Image image{std::move(path), georeference.footprint(), georeference.gsd_m(),
+  Image image{std::move(content), georeference.footprint(), georeference.gsd_m(),
               rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt, file.full_opacity()};
   extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
-  channels_ = std::max(channels_, file.channels());
-  integers_ = integers_ || file.holds_integers();
+  channels_ = std::max(channels_, image.content.channels);
+  integers_ = integers_ || image.content.integers;
   if (images_.empty()) crs_ = crs_name(file.crs());
   PositionError error = roadfix::position_error(file, georeference, zone_);
   if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
   told_.push_back(provenance_in(file.dataset()));
   image.exported = holds_exported_roads(file.dataset());
-  image.bytes = file.declared_range().has_value();
   exported_ = exported_ && image.exported;
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
@@ -148,7 +161,9 @@ void Mosaic::choose_ranges(std::vector<float> values) {
   } else {
     range_ = rule_ == ValueRule::kPicture ? percentile_range(std::move(values)) : share_range(values, integers_);
   }
-  const auto exact = [&](const Image& image) { return rule_ == ValueRule::kShare && image.exported && image.bytes; };
+  const auto exact = [&](const Image& image) {
+    return rule_ == ValueRule::kShare && image.exported && image.content.bytes;
+  };
   if (std::ranges::all_of(images_, exact)) range_ = kExportedBytes;
   // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
   const bool masks = rule_ == ValueRule::kShare && integers_ &&
@@ -162,7 +177,7 @@ void Mosaic::choose_ranges(std::vector<float> values) {
 
 void Mosaic::find_collars() {
   for (Image& image : images_) {
-    RasterFile file(image.path, options_);
+    RasterFile file(image.content.path, options_);
     const std::optional<Rgb> colour = options_.collar ? options_.collar : find_collar(file, image.range);
     if (colour) image.collar = std::make_shared<Collar>(file, *colour, image.range);
   }
@@ -198,10 +213,10 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
 }
 
 std::shared_ptr<RasterFile> Mosaic::open(const Image& image, double gsd_m) const {
-  auto file = std::make_shared<RasterFile>(image.path, options_);
+  auto file = std::make_shared<RasterFile>(image.content.path, options_);
   const int overview = file->overview_for(gsd_m / image.gsd_m);
   // The collar was judged on the pixels of the full image, and its windows are in them.
-  if (overview >= 0 && !image.collar) file = std::make_shared<RasterFile>(image.path, options_, overview);
+  if (overview >= 0 && !image.collar) file = std::make_shared<RasterFile>(image.content.path, options_, overview);
   file->set_full_opacity(image.full_opacity);
   return file;
 }

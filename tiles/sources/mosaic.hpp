@@ -38,7 +38,7 @@ class Mosaic {
  public:
   /// Throws what RasterFile and Georeference throw, and InvalidInput ("road-values-mixed") for shares of several types,
   /// ("imagery-mixed") for what looks like heights beside colours.
-  Mosaic(std::vector<std::string> paths, const RasterOptions& options, ValueRule rule, UtmZone zone);
+  Mosaic(const std::vector<std::string>& paths, const RasterOptions& options, ValueRule rule, UtmZone zone);
   ~Mosaic();
 
   GridBox extent() const { return extent_; }
@@ -66,7 +66,7 @@ class Mosaic {
  private:
   struct Image;
   struct Handle;
-  void add_image(std::string path, std::vector<float>& values);
+  void add_image(const std::string& path, std::vector<float>& values);
   void choose_ranges(std::vector<float> values);
   void find_collars();
   std::unique_ptr<Handle> borrow(std::size_t image, const GridBox& box, double gsd_m) const;

@@ -202,8 +202,8 @@ TEST_F(MosaicTest, HeightsBesideAnOrthophotoAreRefusedWhicheverComesFirst) {
   const std::string dsm = write_raster(folder / "dsm.tif", heights, [](int, int col, int) { return 500.0 + col; });
   const std::string ortho = write_raster(folder / "ortho.tif", colours, [](int, int col, int) { return 2.0 * col; });
   const std::string grey = square("grey.tif", 0, 0, 64, 100);
-  const auto refusal = [&](std::vector<std::string> paths) {
-    return testing::code_of([&] { Mosaic(std::move(paths), {}, ValueRule::kPicture, kZone); });
+  const auto refusal = [&](const std::vector<std::string>& paths) {
+    return testing::code_of([&] { Mosaic(paths, {}, ValueRule::kPicture, kZone); });
   };
   EXPECT_EQ(refusal({dsm, ortho}), "imagery-mixed");
   EXPECT_EQ(refusal({ortho, dsm}), "imagery-mixed");

@@ -170,18 +170,14 @@ bool RoadLayer::tells_other_lines() const {
   return std::ranges::any_of(kPacked, has) || std::ranges::any_of(kOthers, has);
 }
 
-std::string RoadLayer::class_of(const OGRFeature& feature) {
-  return classified_ ? FeatureTags(feature, places_)(rules_.class_attribute()) : std::string();
-}
-
 std::optional<OGREnvelope> RoadLayer::extent_seen() const {
   return seen_.IsInit() != 0 ? std::optional(seen_) : std::nullopt;
 }
 
-std::optional<double> RoadLayer::see(const OGRFeature& feature) {
+std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
   FeatureTags tags(feature, places_);
   const OGRGeometry& geometry = *feature.GetGeometryRef();
-  const std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
+  std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
   if (holds_a_line(geometry)) {
     ++lines_;
     if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
@@ -193,15 +189,19 @@ std::optional<double> RoadLayer::see(const OGRFeature& feature) {
     seen_.Merge(own);
   }
   const std::optional<double> width = rules_.width_of(std::ref(tags), classified_);
-  const std::optional<StatedWidth> stated = width ? rules_.stated_width(std::ref(tags)) : std::nullopt;
-  if (!stated) return width;
+  if (!width) return std::nullopt;
+  note_stated_width(feature, rules_.stated_width(std::ref(tags)));
+  return DrawnFeature{*width, std::move(road_class)};
+}
+
+void RoadLayer::note_stated_width(const OGRFeature& feature, const std::optional<StatedWidth>& stated) {
+  if (!stated) return;
   const int field = places_(stated->attribute);
   if (field >= 0) {
     stated_widths_[feature.GetFieldDefnRef(field)->GetNameRef()].push_back(stated->width_m);
   } else if (rules_.is_width_attribute(stated->attribute)) {
     stated_widths_[stated->attribute].push_back(stated->width_m);
   }
-  return width;
 }
 
 }  // namespace roadfix

@@ -31,6 +31,12 @@ class AttributePlaces {
   std::map<std::string, int, std::less<>> known_;
 };
 
+/// How a feature is drawn.
+struct DrawnFeature {
+  double width_m = 0.0;
+  std::string road_class;  ///< as it stands in the file; empty where the layer or the feature has none
+};
+
 class RoadLayer {
  public:
   /// The class attribute is that of the rules; where the layer, unlike those of OpenStreetMap, lacks it and the user
@@ -48,15 +54,12 @@ class RoadLayer {
   /// "no attributes" or "the attributes a, b", for messages.
   std::string attributes() const;
 
-  /// Takes note of a feature, whose geometry must not be null: width in metres to draw it with, nullopt to leave it
-  /// out.
-  std::optional<double> see(const OGRFeature& feature);
+  /// Takes note of a feature, whose geometry must not be null; nullopt to leave it out.
+  std::optional<DrawnFeature> see(const OGRFeature& feature);
   /// Around all that tells where the roads were looked for, in the layer's own coordinates: where the layer has classes
   /// the features of classes that the rules know, drawn or not, else all. nullopt where there was none.
   std::optional<OGREnvelope> extent_seen() const;
 
-  /// As it stands in the file; empty where the layer or the feature has none.
-  std::string class_of(const OGRFeature& feature);
   /// Widths in metres of the drawn features that state them in an attribute of the layer or in the one that the user
   /// named, by the attribute's name in the file.
   const std::map<std::string, std::vector<double>>& stated_widths() const { return stated_widths_; }
@@ -69,6 +72,8 @@ class RoadLayer {
   bool tells_other_lines() const;
 
  private:
+  void note_stated_width(const OGRFeature& feature, const std::optional<StatedWidth>& stated);
+
   OGRLayer* layer_;
   TransformationPtr to_plane_;
   AttributePlaces places_;

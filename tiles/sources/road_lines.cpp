@@ -127,9 +127,9 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
     ++parts.features;
     RoadLayer& layer = found->second;
     RoadNetwork& network = parts.of(layer).network;
-    const std::optional<double> width = layer.see(feature);
-    if (!width ||
-        !add_geometry(*geometry, layer.to_plane(), {*width, index_of(layer.class_of(feature), network)}, network)) {
+    const std::optional<DrawnFeature> drawn = layer.see(feature);
+    if (!drawn ||
+        !add_geometry(*geometry, layer.to_plane(), {drawn->width_m, index_of(drawn->road_class, network)}, network)) {
       ++network.left_out;
     }
   });

@@ -21,10 +21,9 @@ struct UserProvenance {
 };
 
 /// Completes `record`, which has the registration error of the source, and may state it otherwise. `own` is what the
-/// source tells of itself, `told` what the user does. `before` are the records of this
-/// name in the map, the one in force first: those of the same fingerprint keep what was told of them, unless `replace`
-/// describes the source anew. Returns notes for the user on what is taken from the source, what changes, and what
-/// replacing loses.
+/// source tells of itself, `told` what the user does. `before` are the records of this name in the map, the one in
+/// force first: those of the same fingerprint keep what was told of them, unless `replace` describes the source anew.
+/// Returns notes for the user on what is taken from the source, what changes, and what replacing loses.
 std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const UserProvenance& told,
                                          std::span<const SourceRecord> before, bool replace);
 

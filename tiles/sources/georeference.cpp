@@ -101,7 +101,8 @@ GridBox Georeference::footprint() const {
   std::vector<cv::Point2d> points;
   for (int row = 0; row <= kSteps; ++row) {
     for (int col = 0; col <= kSteps; ++col) {
-      points.emplace_back(double{1} * size.width * col / kSteps, double{1} * size.height * row / kSteps);
+      points.emplace_back(static_cast<double>(size.width) * col / kSteps,
+                          static_cast<double>(size.height) * row / kSteps);
     }
   }
   const std::vector<cv::Point2d> pixels = points;

@@ -20,7 +20,7 @@ using PixelTransformerPtr = std::unique_ptr<void, DestroyTransformer>;
 
 class Georeference {
  public:
-  /// Refers to the file, which must outlive it. Throws InvalidInput "crs-not-transformable".
+  /// Refers to the file, which must outlive it. Throws InvalidInput ("crs-not-transformable", "datum-unknown").
   Georeference(const RasterFile& file, UtmZone zone);
 
   /// Pixel coordinates of points on the plane; NaN where a point has no place in the image's reference system.
@@ -39,7 +39,7 @@ class Georeference {
   PixelTransformerPtr transformer_;
 };
 
-/// Geographic centre of the image, to choose a zone by. Throws InvalidInput "crs-not-transformable".
+/// Geographic centre of the image, to choose a zone by. Throws InvalidInput ("crs-not-transformable", "datum-unknown").
 LatLon centre_of(const RasterFile& file);
 
 }  // namespace roadfix

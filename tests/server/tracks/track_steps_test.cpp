@@ -75,8 +75,12 @@ TEST_F(TrackStepsTest, LetsNoMoreStepsWaitForThoseBeforeThemThanItMay) {
   take(*tracks, id, 0);
   TrackSteps steps(*tracks);
   std::vector<std::jthread> early;
-  for (int i = 0; i < 2; ++i) early.emplace_back([&] { steps.await_predecessor(id, 2); });
-  const auto is_busy = [&] { return code_of([&] { steps.await_predecessor(id, 1); }) == "server-busy"; };
+  const auto is_refused = [&](std::int64_t sequence) {
+    return code_of([&] { steps.await_predecessor(id, sequence); }) == "server-busy";
+  };
+  const auto waits = [&] { EXPECT_TRUE(testing::eventually([&] { return !is_refused(2); })); };
+  for (int i = 0; i < 2; ++i) early.emplace_back(waits);  // which the look below may keep from it at first
+  const auto is_busy = [&] { return is_refused(1); };
   EXPECT_TRUE(testing::eventually(is_busy));
   take(*tracks, id, 1);
   early.clear();

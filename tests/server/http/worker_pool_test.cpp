@@ -62,7 +62,6 @@ TEST(WorkerPool, CountsJobsBeyondItsThreadsAsWaiting) {
 }
 
 TEST(WorkerPool, SaysWhereAThreadCannotBeStarted) {
-  if (ROADFIX_SANITIZED) GTEST_SKIP() << "sanitizers want room of their own for each thread";
   const LittleRoom room;
   EXPECT_THROW(WorkerPool(1000, 1), std::system_error);
 }

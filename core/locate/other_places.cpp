@@ -37,14 +37,15 @@ bool is_same_place(const GridPose& a, const GridPose& b) {
 void sort_out_other_places(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                            SearchResult& found) {
   if (found.modes.empty()) return;
-  const GridPose best = found.modes.front().pose;
-  const PositionCovariance covariance = told_covariance(map, calibration, nadir_sigma_m, found.modes.front());
-  const auto is_best = [&](const SearchMode& mode) {
-    return is_same_place(mode.pose, best) &&
-           squared_mahalanobis(best.position, mode.pose.position, covariance) <= kRegionSigmas * kRegionSigmas;
+  const SearchMode best = found.modes.front();
+  const auto lies_within = [&](const SearchMode& mode, const PositionCovariance& covariance) {
+    return is_same_place(mode.pose, best.pose) &&
+           squared_mahalanobis(best.pose.position, mode.pose.position, covariance) <= kRegionSigmas * kRegionSigmas;
   };
-  if (found.nearby && !is_best(*found.nearby)) count_nearby(found);
-  std::erase_if(found.outside, is_best);
+  const PositionCovariance told = told_covariance(map, calibration, nadir_sigma_m, best);
+  if (found.nearby && !lies_within(*found.nearby, told)) count_nearby(found);
+  const double peak_m2 = best.covariance[0][0] + best.covariance[1][1];
+  std::erase_if(found.outside, [&](const SearchMode& mode) { return lies_within(mode, {peak_m2, 0.0, peak_m2}); });
 }
 
 }  // namespace roadfix

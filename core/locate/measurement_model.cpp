@@ -30,9 +30,7 @@ double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t fram
   } else {
     const double samples = samples_per_cell * static_cast<double>(std::max(frame_cells, sums.n));
     const double seen = samples_per_cell * static_cast<double>(sums.n);
-    const bool comparable = has_contrast_of_map(sums) && has_contrast_of_features(sums);
-    const double r = comparable ? pearson(sums).value_or(0.0) : 0.0;
-    log_ratio = expected_correlation * (seen * r - 0.5 * samples * expected_correlation);
+    log_ratio = expected_correlation * (seen * contrasted_pearson(sums) - 0.5 * samples * expected_correlation);
   }
   // exp() cannot overflow: log_ratio is at most a few thousand samples times a fraction, so it is bounded first.
   constexpr double kMax = 300.0;

@@ -21,7 +21,7 @@ double mean_cells_on_map(const Particles& p, const ParticleMatches& matches) {
 double share_with_roads(const Particles& p, const ParticleMatches& matches) {
   double share = 0.0;
   for (std::size_t i = 0; i < matches.sums.size(); ++i) {
-    if (has_contrast_of_map(matches.sums[i])) share += p.weight[i];
+    if (map_has_contrast(matches.sums[i])) share += p.weight[i];
   }
   return share;
 }

@@ -5,14 +5,20 @@
 
 namespace roadfix {
 
-bool has_contrast_of_map(const MatchSums& s) {
-  const auto n = static_cast<double>(s.n);
-  return s.n > 0 && s.mm - s.m * s.m / n >= kMinVariance * n;
+namespace {
+
+/// Of `n` cells with this sum and sum of squares.
+bool has_contrast(std::int64_t n, double sum, double squares) {
+  const auto cells = static_cast<double>(n);
+  return n > 0 && squares - sum * sum / cells >= kMinVariance * cells;
 }
 
-bool has_contrast_of_features(const MatchSums& s) {
-  const auto n = static_cast<double>(s.n);
-  return s.n > 0 && s.ll - s.l * s.l / n >= kMinVariance * n;
+}  // namespace
+
+bool map_has_contrast(const MatchSums& s) { return has_contrast(s.n, s.m, s.mm); }
+
+double contrasted_pearson(const MatchSums& s) {
+  return map_has_contrast(s) && has_contrast(s.n, s.l, s.ll) ? pearson(s).value_or(0.0) : 0.0;
 }
 
 FootprintCells footprint_cells(const FeatureMap& features) {
@@ -23,8 +29,8 @@ FootprintCells footprint_cells(const FeatureMap& features) {
 
 double score_of(const MatchSums& s, const FootprintCells& cells) {
   const auto n = static_cast<double>(s.n);
-  if (n < cells.min || !has_contrast_of_map(s) || !has_contrast_of_features(s)) return 0.0;
-  return pearson(s).value_or(0.0) * std::sqrt(n / static_cast<double>(cells.full));
+  if (n < cells.min) return 0.0;
+  return contrasted_pearson(s) * std::sqrt(n / static_cast<double>(cells.full));
 }
 
 }  // namespace roadfix

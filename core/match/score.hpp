@@ -12,9 +12,11 @@ namespace roadfix {
 /// cell of certain road in ten thousand, or probabilities that differ by 1 %.
 inline constexpr double kMinVariance = 1e-4;
 
-/// Whether the cells observed in both show it on either side.
-bool has_contrast_of_map(const MatchSums& sums);
-bool has_contrast_of_features(const MatchSums& sums);
+/// Whether the map shows as much in the cells observed in both.
+bool map_has_contrast(const MatchSums& sums);
+
+/// Pearson's correlation; 0 where the map or the feature map has too little contrast to be compared.
+double contrasted_pearson(const MatchSums& sums);
 
 /// What the cells observed in both, at a pose, are measured by.
 struct FootprintCells {

@@ -108,9 +108,7 @@ std::unique_ptr<OGRMultiPolygon> parse_poly(const std::string& text, const std::
 }
 
 std::unique_ptr<OGRMultiPolygon> read_poly_file(const std::string& path) {
-  const std::optional<std::string> text = read_file(path);
-  if (!text) throw NotFound("source-not-found", fmt::format("{}: cannot be read", path));
-  return parse_poly(*text, path);
+  return parse_poly(read_named_file(path, "source-not-found"), path);
 }
 
 }  // namespace roadfix

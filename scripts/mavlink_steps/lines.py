@@ -24,7 +24,8 @@ class Lines:
     def add(self, path, captured):
         ahead_s = captured - time.monotonic()
         if ahead_s > WAIT_S:  # it would keep back all that come after it
-            print(f"{path} is left out: its time lies {ahead_s:.1f} s ahead: check the camera's clock and --delay", file=sys.stderr)
+            print(f"{path} is left out: its time lies {ahead_s:.1f} s ahead: check the camera's clock and --delay",
+                  file=sys.stderr)
         else:
             self._waiting.append((path, captured))
 

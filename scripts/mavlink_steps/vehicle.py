@@ -108,8 +108,8 @@ class Vehicle:
         """As of the last message. Throws Unknown."""
         height_m = self._heights.agl_m(self._heard)
         if height_m is None:
-            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED): give --agl, or ask the autopilot for one of "
-                          "them (SET_MESSAGE_INTERVAL)")
+            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED): give --agl, or ask the autopilot "
+                          "for one of them (SET_MESSAGE_INTERVAL)")
         return height_m
 
     def alt_m(self):

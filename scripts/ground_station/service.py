@@ -8,6 +8,7 @@ import urllib.parse
 ANSWER_TIME_S = 90.0  # a search may wait its turn for 30 s and take as long
 SHORTEST_S = 0.2      # an attempt
 BUSY = (408, 429, 502, 503, 504)
+NOT_ROADFIX = "not-roadfix"
 
 
 class Silent(Exception):
@@ -22,6 +23,15 @@ class Refused(Exception):
         self.status = status
         self.problem = problem
         self.code = problem.get("code")
+
+    @property
+    def leaves_the_track(self):
+        """As it was. Else whatever is in between may have refused what the service took."""
+        return 400 <= self.status < 500 and self.code not in (None, NOT_ROADFIX)
+
+
+def _not_roadfix(status, what):
+    return Refused(status, {"code": NOT_ROADFIX, "detail": f"something other than Roadfix answered; {what}"})
 
 
 class Service:
@@ -66,6 +76,17 @@ class Service:
             time.sleep(wait_s)
             pause_s = min(2.0 * pause_s, 2.0)
 
+    def ask_object(self, members, *request):
+        """The JSON object of the answer, which has these members."""
+        content = self.ask(*request) or b""
+        try:
+            answer = json.loads(content)
+        except (ValueError, RecursionError):
+            answer = None
+        if not isinstance(answer, dict) or any(name not in answer for name in members):
+            raise _not_roadfix(200, f"an answer without {' and '.join(members)}")
+        return answer
+
     def _connect(self, left_s):
         """For one attempt. A cut link says nothing: half of the time that is left remains for others. A step that the
         service is at meanwhile is not lost, since it is processed once."""
@@ -96,9 +117,8 @@ class Service:
         if answer.status in (200, 201) and found.startswith(answer_type):
             return content
         elsewhere = answer.headers.get("Location") if 300 <= answer.status < 400 else None
-        what = f"redirected to {elsewhere}" if elsewhere else f"an answer of type '{found}'"
-        raise Refused(answer.status, {"code": "not-roadfix",
-                                      "detail": f"something other than Roadfix answered; {what}"})
+        raise _not_roadfix(answer.status,
+                           f"redirected to {elsewhere}" if elsewhere else f"an answer of type '{found}'")
 
     @staticmethod
     def _problem(content):

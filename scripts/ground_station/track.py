@@ -15,6 +15,7 @@ PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg")
 SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
 KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
 FASTEST_M_S = 50.0
+STEP = ("sequence", "status")  # of its answer
 WIDEST_M = 2e7  # of a prior: all of the Earth
 DEGREE_M = 111_700.0  # at most
 
@@ -108,14 +109,14 @@ class Track:
         asked = self._state.get("asked")
         if not asked:
             return False
-        last = json.loads(self._service.ask("GET", f"/v1/tracks/{self.id}")).get("last", {})
+        last = self._service.ask_object(("id",), "GET", f"/v1/tracks/{self.id}").get("last", {})
         taken = all(last.get(name) == asked[name] for name in ("sequence", "time_us"))
         if taken:
             self._moved_on(asked, last)
         return taken
 
     def _begin(self, origin, request, known=None):
-        track = json.loads(self._service.ask("POST", "/v1/tracks", json.dumps(request).encode(), "application/json"))
+        track = self._service.ask_object(("id",), "POST", "/v1/tracks", json.dumps(request).encode(), "application/json")
         former = [*self._state.get("former", []), self.id] if self.id else []
         self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
                     "known": known or told_place(request), "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
@@ -157,15 +158,19 @@ class Track:
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
         self._keep({**before, "asked": asked})
         asked_before, self._asked_places = self._asked_places, len(self._travel)
+        taken = False
         try:
             if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
-                packet = self._post({**numbered, "format": packet_format}, image, "application/x-")
+                packet = self._service.ask(*self._request_of({**numbered, "format": packet_format}, image),
+                                           "application/x-")
+                taken = True
                 if packet is not None and send:
                     send(packet)
-            answer = json.loads(self._post({**numbered, "format": "json"}, image))
-        except Refused:
-            self._asked_places = asked_before
-            self._keep(before)
+            answer = self._service.ask_object(STEP, *self._request_of({**numbered, "format": "json"}, image))
+        except Refused as refusal:
+            if not taken and refusal.leaves_the_track:
+                self._asked_places = asked_before
+                self._keep(before)
             raise
         self._moved_on(asked, answer)
         return answer
@@ -182,12 +187,12 @@ class Track:
                               "within_m": 100.0 + 5.0 * max(answer["sigma_m"]), "flown_m": 0.0}
         self._keep(state)
 
-    def _post(self, fields, image, answer_type="application/json"):
+    def _request_of(self, fields, image):
         path = f"/v1/tracks/{self.id}/steps"
         if image is None:
-            return self._service.ask("POST", path, json.dumps(fields).encode(), "application/json", answer_type)
+            return "POST", path, json.dumps(fields).encode(), "application/json"
         kind = "image/png" if image.startswith(b"\x89PNG") else "image/jpeg"
-        return self._service.ask("POST", f"{path}?{as_query(fields)}", image, kind, answer_type)
+        return "POST", f"{path}?{as_query(fields)}", image, kind
 
     def _keep(self, state):
         self._state = state

@@ -31,9 +31,11 @@ def packet_of(packet_format, told_s):
 
 class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
-    taken, "pay" where something in between answers,
-    "still at it" where it takes the one before that it had not told of; then 200. A step takes `delay_s` when
-    it comes first, and messages say that it took `told_s`."""
+    taken, "pay" or "hello" where something in between answers, "still at it" where it takes the one before that it had
+    not told of; then 200. A step takes `delay_s` when it comes first, and messages say that it took `told_s`. A track
+    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem."""
+
+    TIME_OF_SILENCE_S = 3600.0
 
     def __init__(self, script=(), delay_s=0.0, told_s=None):
         self.script = list(script)
@@ -42,6 +44,10 @@ class FakeService:
         self.before = {}  # step that came
         self.ended = []   # tracks
         self.came = set()
+        self.silent_s = 0.0
+        self.left_s = None  # of the time of silence; None: what follows from silent_s
+        self.set_s = 0.0    # by which the clock was set since the last step
+        self.gone = None
         fake = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
@@ -63,8 +69,11 @@ class FakeService:
                     self.wfile.write(content)
 
             def do_GET(self):
+                if fake.gone:
+                    self.answer(fake.gone[0], json.dumps(fake.gone[1]).encode())
+                    return
                 last = {"last": {"status": "searching", **fake.last}} if fake.last else {}
-                self.answer(200, json.dumps({"id": "T", **last}).encode())
+                self.answer(200, json.dumps({**fake.track(fake.silent_s), **last}).encode())
 
             def do_DELETE(self):
                 fake.ended.append(self.path)
@@ -75,7 +84,7 @@ class FakeService:
                 if self.path == "/v1/tracks":
                     fake.requests.append((self.path, body, dict(self.headers)))
                     fake.last = {}
-                    self.answer(201, b'{"id": "T"}')
+                    self.answer(201, json.dumps(fake.track(0.0)).encode())
                     return
                 step = step_of(self.path, body)
                 if (self.path, body) not in fake.came:
@@ -100,8 +109,13 @@ class FakeService:
                                 "application/x-" + step["format"])
                 elif said == "pay":
                     self.answer(200, b"<html>Please pay</html>", "text/html")
+                elif said == "hello":
+                    self.answer(200, b'{"status": "ok"}')
+                elif status == 200:
+                    told = {"status": "searching"} if said == 200 else answer
+                    self.answer(200, json.dumps({**told, "sequence": fake.before["sequence"]}).encode())
                 else:
-                    self.answer(status, json.dumps({"status": "searching"} if said == 200 else answer).encode())
+                    self.answer(status, json.dumps(answer).encode())
 
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True).start()
@@ -113,6 +127,11 @@ class FakeService:
     def __exit__(self, *_):
         self.server.shutdown()
         self.server.server_close()
+
+    def track(self, silent_s):
+        left_s = self.TIME_OF_SILENCE_S - silent_s if self.left_s is None else self.left_s
+        touched_us = round(1e6 * (time.time() - silent_s - self.set_s))
+        return {"id": "T", "touched_us": touched_us, "silent_s": silent_s, "expires_in_s": left_s}
 
     def steps(self):
         return [step_of(path, body) for path, body, _ in self.requests if "/steps" in path]

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """A flight that the ground station's client follows, with a service that is busy, hangs up, or forgets."""
+import contextlib
 import json
 import os
 import tempfile
@@ -29,6 +30,12 @@ class Steps(unittest.TestCase):
             self.assertEqual(len({json.dumps(s) for s in fake.steps()[1:]}), 1, "each as the first")
             self.assertGreater(time.monotonic() - began, 1.0, "Retry-After")
 
+    def test_are_sent_again_for_all_that_a_service_or_a_proxy_says_of_being_busy(self):
+        for status in (408, 429, 502, 503, 504):
+            with FakeService([200, status]) as fake:
+                self.fly(fake, 2)
+                self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2, 2], status)
+
     def test_that_may_have_been_taken_keep_their_number(self):
         with FakeService([200] + ["lose"] * 100) as fake:
             track, _ = self.fly(fake, 1, patience_s=0.2)
@@ -49,6 +56,37 @@ class Steps(unittest.TestCase):
             track.step((25.0, 0.0, 0.0), {"time_us": 4})
             self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2])
             self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 25.0)
+
+    def test_whose_number_another_step_has_were_not_taken(self):
+        with FakeService([200] + ["hang up"] * 100) as fake:
+            track, _ = self.fly(fake, 1, patience_s=0.2)
+            with self.assertRaises(Silent):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            fake.script.clear()
+            fake.last = {"sequence": 2, "time_us": 77}
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual(fake.steps()[-1]["sequence"], 2)
+
+    def test_whose_position_was_told_are_taken_whatever_comes_of_the_rest_of_the_answer(self):
+        for answer in ((500, {}), (404, {}), (403, {"code": "logged-out"}), "pay", "hello"):
+            with FakeService([CONVERGED, 200, answer]) as fake:
+                track, _ = self.fly(fake, 1)
+                sent = []
+                with self.assertRaises(Refused):
+                    track.step((10.0, 0.0, 0.0), {"time_us": 2}, packet_format="gps_input", send=sent.append)
+                self.assertEqual(len(sent), 1)
+                track.step((25.0, 0.0, 0.0), {"time_us": 3})
+                self.assertEqual((fake.steps()[-1]["sequence"], len(fake.begun())), (3, 1))
+                self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 15.0)
+
+    def test_that_something_in_between_refused_may_have_been_taken(self):
+        with FakeService([CONVERGED, (500, {})]) as fake:
+            track, _ = self.fly(fake, 1)
+            with self.assertRaises(Refused):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            fake.last = {"sequence": 2, "time_us": 2}
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual((fake.steps()[-1]["sequence"], len(fake.begun())), (3, 1))
 
     def test_are_the_next_ones_of_a_client_that_was_stopped_while_it_waited(self):
         for fate, sequence, forward_m in (("lose", 3, 15.0), ("hang up", 2, 25.0)):
@@ -95,6 +133,14 @@ class Steps(unittest.TestCase):
                 track.step((25.0, 0.0, 0.0), {"time_us": 3})
                 self.assertEqual(fake.steps()[-1]["sequence"], 2)
 
+    def test_are_refused_where_something_else_answers_in_json(self):
+        with FakeService([200, "hello"]) as fake:
+            track, _ = self.fly(fake, 1)
+            with self.assertRaisesRegex(Refused, "200 not-roadfix: .* an answer without sequence and status"):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            track.step((25.0, 0.0, 0.0), {"time_us": 3})
+            self.assertEqual(fake.steps()[-1]["sequence"], 2)
+
     def test_begin_a_new_track_without_a_movement_where_theirs_has_ended(self):
         with FakeService([200, (410, {"code": "track-ended"})]) as fake:
             self.fly(fake, 2)
@@ -126,6 +172,22 @@ class Steps(unittest.TestCase):
                 with self.assertRaises(Refused):
                     track.step((10.0, 0.0, 0.0), {"time_us": 4_500_000})
                 self.assertEqual(len(fake.begun()), 1)
+
+    def test_begin_a_new_track_where_the_clock_was_set_back_by_more_than_two_seconds(self):
+        for time_us, tracks in ((3_000_000, 1), (2_999_999, 2)):
+            with FakeService([CONVERGED, (409, {"code": "time-backwards"})]) as fake:
+                track, _ = self.fly(fake, 0)
+                track.step((0.0, 0.0, 0.0), {"time_us": 5_000_000})
+                with contextlib.suppress(Refused):
+                    track.step((10.0, 0.0, 0.0), {"time_us": time_us})
+                self.assertEqual(len(fake.begun()), tracks)
+
+    def test_say_what_their_picture_is(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 0)
+            for i, (picture, kind) in enumerate(((b"\x89PNG\r\n", "image/png"), (b"\xff\xd8", "image/jpeg"))):
+                track.step((0.0, 0.0, 0.0), {"time_us": i}, picture)
+                self.assertEqual(fake.requests[-1][2]["Content-Type"], kind)
 
     def test_leave_only_so_many_tracks_behind(self):
         with FakeService() as fake:

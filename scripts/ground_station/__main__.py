@@ -24,7 +24,7 @@ import time
 
 from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from service import Refused, Service, Silent
-from state import FORGOTTEN_S
+from silence import FORGOTTEN_S
 from steps import NewestLine, all_lines, place_and_covariance, read_step
 from track import Track
 

@@ -1,5 +1,6 @@
 """HTTP with the service: what it refuses, and patience while it is away or busy."""
 import base64
+import email.utils
 import http.client
 import json
 import time
@@ -35,7 +36,8 @@ def _not_roadfix(status, what):
 
 
 class Service:
-    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them."""
+    """A connection that is kept. `url` may hold user:password, for a proxy that asks for them. `date_s`: when it
+    answered last, in seconds since 1970 by its own clock; None where it does not say."""
 
     def __init__(self, url, patience_s=60.0):
         self._url = urllib.parse.urlsplit(url)
@@ -43,6 +45,7 @@ class Service:
             raise ValueError(f"'{url}' is no address of a service: write http://HOST:PORT")
         self._patience_s = patience_s
         self._connection = None
+        self.date_s = None
 
     def page_of(self, track_id):
         """The operator's page that follows a track. Without the password: links are passed on."""
@@ -105,6 +108,7 @@ class Service:
             headers["Authorization"] = "Basic " + base64.b64encode(pair.encode()).decode()
         self._connection.request(method, self._url.path.rstrip("/") + path, body, headers)
         answer = self._connection.getresponse()
+        self.date_s = self._date_s(answer)
         return answer, answer.read()
 
     def _checked(self, answer, content, answer_type):
@@ -127,6 +131,13 @@ class Service:
         except ValueError:
             problem = None
         return problem if isinstance(problem, dict) else {"detail": content[:200].decode(errors="replace")}
+
+    @staticmethod
+    def _date_s(answer):
+        try:
+            return email.utils.parsedate_to_datetime(answer.headers["Date"]).timestamp()
+        except (TypeError, ValueError):
+            return None
 
     @staticmethod
     def _retry_after_s(answer):

@@ -1,13 +1,10 @@
 """The file that keeps a track for a client that is started again."""
 import json
-import math
 import os
 import pathlib
 import sys
-import time
 
-#: What was known longer ago is of another flight.
-FORGOTTEN_S = 600.0
+HEAD = '{"map"'
 
 
 def _refused(constant):
@@ -22,30 +19,42 @@ class StateFile:
         self._map = map_name
         self._fails = False
 
+    def __str__(self):
+        return str(self._path)
+
     def read(self):
-        """Of the flight under way, {} if there is none. Throws ValueError where the file is of something else."""
+        """{} where there was no flight, the map alone where the file does not tell any more: the power may have failed
+        while it was written. Throws ValueError where the file is of something else."""
         if not self._path or not self._path.exists():
             return {}
+        text = self._path.read_text(encoding="utf-8", errors="replace")
         try:
-            state = json.loads(self._path.read_text(encoding="utf-8"), parse_constant=_refused)
+            state = json.loads(text, parse_constant=_refused)
+        except json.JSONDecodeError:
+            state = {"map": self._map} if HEAD.startswith(text.strip("\0")[:len(HEAD)]) else None
         except (ValueError, RecursionError):
             state = None
         if not isinstance(state, dict) or state.get("map", self._map) != self._map:
             raise ValueError(f"{self._path} is not of a track over the map '{self._map}': remove it, or name another "
                              "file")
-        return state if 0.0 <= time.time() - state.get("taken_s", -math.inf) < FORGOTTEN_S else {}
+        return state
 
-    def write(self, state):
-        """Throws OSError."""
-        if self._path:
-            written = self._path.with_name(self._path.name + ".part")
-            written.write_text(json.dumps(state), encoding="utf-8")
-            os.replace(written, self._path)
+    def write(self, state, synced=True):
+        """`synced`: for a power cut, too, which takes the time of the disk. Throws OSError."""
+        if not self._path:
+            return
+        written = self._path.with_name(self._path.name + ".part")
+        with open(written, "w", encoding="utf-8") as file:
+            file.write(json.dumps(state))
+            if synced:
+                file.flush()
+                os.fsync(file.fileno())
+        os.replace(written, self._path)
 
-    def keep(self, state):
+    def keep(self, state, synced=True):
         """In flight: where it cannot be written, the flight goes on without it."""
         try:
-            self.write(state)
+            self.write(state, synced)
             self._fails = False
         except OSError as error:
             if not self._fails:

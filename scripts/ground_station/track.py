@@ -1,44 +1,22 @@
 """A flight that the service follows, told where the vehicle's own estimator believes to be."""
 import json
 import math
-import time
+import sys
 import urllib.parse
 
-from service import Refused, Silent
+from places import FASTEST_M_S, around, claimed_place, left, length_m, told_place, without_prior
+from service import ANSWER_TIME_S, Refused, Silent
+from silence import (FORGOTTEN_S, is_forgotten_by_date, moment, since, since_by_service, since_in_this_boot,
+                     time_of_silence, was_asked_lately)
 from state import StateFile
 from travel import Travel, movement
 
 #: The last two: another client flew it, or the state file could not be written and is older than the track.
 TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced", "step-differs", "step-late")
 MOVEMENT = ("forward_m", "right_m", "turn_deg")
-PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg")
 SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
 KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
-FASTEST_M_S = 50.0
 STEP = ("sequence", "status")  # of its answer
-WIDEST_M = 2e7  # of a prior: all of the Earth
-DEGREE_M = 111_700.0  # at most
-
-
-def told_place(request):
-    """What POST /v1/tracks is told of the place, as a known one. None where it is told nothing."""
-    if "radius_m" in request:
-        lat, lon, within_m = request["lat"], request["lon"], request["radius_m"]
-    elif "bbox" in request:
-        west, south, east, north = request["bbox"]
-        width = (east - west) % 360.0
-        lat, lon = (south + north) / 2.0, (west + width / 2.0 + 180.0) % 360.0 - 180.0
-        within_m = math.hypot(width, north - south) / 2.0 * DEGREE_M
-    else:
-        return None
-    return {"lat": lat, "lon": lon, "within_m": within_m, "flown_m": 0.0}
-
-
-def farther(known, moved):
-    """A known place, left by a movement."""
-    if not known or not moved:
-        return known
-    return {**known, "flown_m": known["flown_m"] + math.hypot(moved["forward_m"], moved["right_m"])}
 
 
 def as_query(fields):
@@ -52,7 +30,7 @@ def as_query(fields):
 class Track:
     """A flight that the service follows. `request`: the members of POST /v1/tracks. With `state_file` a client that
     was restarted goes on with the track that it had, unless that was long ago. `begun` is called with the id of each
-    track that begins."""
+    track that begins. What it was and is no longer known is said on standard error."""
 
     def __init__(self, service, request, state_file=None, begun=lambda track_id: None):
         self._service = service
@@ -61,6 +39,7 @@ class Track:
         self._file = StateFile(state_file, request["map"])
         self._state = self._file.read()
         self._file.write(self._state)  # one that cannot be written is told of before the flight
+        self._of_another_process = bool(self._state)
         self._travel = Travel()
         self._asked_places = 0  # of it that the step without an answer spans
 
@@ -74,25 +53,57 @@ class Track:
         of the movement since the last call of this or of pass_by(); `send` is called with the message for the autopilot
         in `packet_format`, if there is one."""
         self._travel.add(tuple(place), fields.get("covariance"))
+        if self._of_another_process:
+            self._recall(origin)
         if not self.id:
             self._begin(origin, self._request)
         elif origin != self._state["origin"]:
-            self._begin_near_the_last_place(origin)
+            self._begin_near_the_last_place(origin, "the vehicle's frame has another origin")
         try:
             self._settle()
             return self._step(place, fields, image, packet_format, send)
         except Refused as refusal:
             if not self._is_over(refusal, fields):
                 raise
-            code = refusal.code
+            over = refusal
         # The service may have been at the step without an answer still when it was asked about it.
-        if code != "step-differs" or not self._settle():
-            self._begin_near_the_last_place(origin)
+        if over.code != "step-differs" or not self._settle():
+            jumped = over.problem.get("field") in MOVEMENT
+            self._begin_near_the_last_place(origin, over, 0.0 if jumped else length_m(self._moved_to(place)))
         return self._step(place, fields, image, packet_format, send)
 
     def pass_by(self, place, covariance):
         """A place that no step is made of, and the covariance of the movement to it. None where it is not known."""
         self._travel.add(place, covariance)
+
+    def _recall(self, origin):
+        """The flight of another process: this one goes on with it, or it was long ago, or nobody knows when."""
+        since_s, taking_s = since_in_this_boot(self._state), 0.0
+        if since_s is None:
+            since_s, taking_s = self._since_by_service(), ANSWER_TIME_S
+        if since_s is None:
+            self._begin(origin, without_prior(self._request),
+                        f"anywhere on the map, since it is not known how long ago the last step of {self._file} was; "
+                        "to begin where --track says, remove that file before the start")
+        elif since_s >= FORGOTTEN_S and not was_asked_lately(self._state):
+            print(f"the flight of {self._file} was long ago: a new one begins", file=sys.stderr)
+            self._state = {}
+        else:
+            self._state = {**self._state, **moment(since_s + taking_s)}
+        self._of_another_process = False
+
+    def _since_by_service(self):
+        """Seconds. None where that is not known, infinite where it was on another day."""
+        if not self.id:
+            return None
+        try:
+            track = self._ask_about_track()
+        except Refused as refusal:
+            if refusal.code not in TRACK_IS_GONE:
+                raise
+            track = {}
+        since_s = since_by_service(self._state, track, self._service.date_s)
+        return math.inf if since_s is None and is_forgotten_by_date(self._state, track) else since_s
 
     def _is_over(self, refusal, fields):
         """Whether the track takes no step like that any more. The same map may have another version, the service may
@@ -103,23 +114,30 @@ class Track:
             return refusal.problem.get("field") in MOVEMENT
         return refusal.code in TRACK_IS_GONE
 
+    def _ask_about_track(self):
+        return self._service.ask_object(("id",), "GET", f"/v1/tracks/{self.id}")
+
     def _settle(self):
         """Whether there is a step without an answer that was taken after all. The next movement is then that since it,
         else since the step before it."""
         asked = self._state.get("asked")
         if not asked:
             return False
-        last = self._service.ask_object(("id",), "GET", f"/v1/tracks/{self.id}").get("last", {})
+        last = self._ask_about_track().get("last", {})
         taken = all(last.get(name) == asked[name] for name in ("sequence", "time_us"))
         if taken:
             self._moved_on(asked, last)
         return taken
 
-    def _begin(self, origin, request, known=None):
-        track = self._service.ask_object(("id",), "POST", "/v1/tracks", json.dumps(request).encode(), "application/json")
+    def _begin(self, origin, request, why=None):
+        track = self._service.ask_object(("id",), "POST", "/v1/tracks", json.dumps(request).encode(),
+                                         "application/json")
         former = [*self._state.get("former", []), self.id] if self.id else []
         self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
-                    "known": known or told_place(request), "taken_s": time.time(), "former": former[-KEPT_TRACKS:]})
+                    "known": told_place(request), "time_of_silence_s": time_of_silence(track), **moment(),
+                    "former": former[-KEPT_TRACKS:]})
+        if why:
+            print(f"a new track begins: {why}", file=sys.stderr)
         self._begun(track["id"])
         for track_id in former[:-KEPT_TRACKS]:
             self._end(track_id)
@@ -130,17 +148,11 @@ class Track:
         except (Refused, Silent):  # it has ended by itself, or will
             pass
 
-    def _begin_near_the_last_place(self, origin):
+    def _begin_near_the_last_place(self, origin, why, moved_m=0.0):
         """Around the place that was known last, as far as the vehicle may have flown since, however far that is: what
-        was told of the start need not hold the vehicle any more."""
-        request = {name: value for name, value in self._request.items() if name not in PRIOR}
-        known = self._state.get("known")
-        if known:
-            since_s = max(0.0, time.time() - self._state["taken_s"])
-            known = {**known, "flown_m": known["flown_m"] + FASTEST_M_S * since_s}
-            request.update(lat=known["lat"], lon=known["lon"],
-                           radius_m=min(known["within_m"] + known["flown_m"], WIDEST_M))
-        self._begin(origin, request, known)
+        was told of the start need not hold the vehicle any more. `moved_m`: since the last step."""
+        known = left(self._state["known"], max(moved_m, FASTEST_M_S * since(self._state)))
+        self._begin(origin, {**without_prior(self._request), **around(known)}, why)
 
     def _moved_to(self, place):
         return movement(self._state["place"], place) if "place" in self._state else {}
@@ -154,9 +166,9 @@ class Track:
             fields["covariance"] = covariance
         numbered = {**fields, "sequence": before["sequence"] + 1, **moved}
         asked = {"sequence": numbered["sequence"], "time_us": fields["time_us"], "place": list(place),
-                 "known": farther(before["known"], moved), "taken_s": time.time()}
+                 "known": left(before["known"], length_m(moved)), **moment()}
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
-        self._keep({**before, "asked": asked})
+        self._keep({**before, "asked": asked}, synced=False)  # the vehicle waits, so not for the disk
         asked_before, self._asked_places = self._asked_places, len(self._travel)
         taken = False
         try:
@@ -182,9 +194,7 @@ class Track:
         state = {**self._state, **asked}
         del state["asked"]
         if answer["status"] == "converged":
-            pose = answer["pose"]
-            state["known"] = {"lat": pose["lat"], "lon": pose["lon"],
-                              "within_m": 100.0 + 5.0 * max(answer["sigma_m"]), "flown_m": 0.0}
+            state["known"] = claimed_place(answer)
         self._keep(state)
 
     def _request_of(self, fields, image):
@@ -194,6 +204,6 @@ class Track:
         kind = "image/png" if image.startswith(b"\x89PNG") else "image/jpeg"
         return "POST", f"{path}?{as_query(fields)}", image, kind
 
-    def _keep(self, state):
+    def _keep(self, state, synced=True):
         self._state = state
-        self._file.keep(state)
+        self._file.keep(state, synced)

@@ -16,6 +16,11 @@ from track import Track
 
 
 class Steps(unittest.TestCase):
+    def setUp(self):
+        words = said()
+        self.words = words.__enter__()
+        self.addCleanup(words.__exit__, None, None, None)
+
     def fly(self, fake, count, patience_s=10.0, request=None, **options):
         service = Service(fake.url, patience_s)
         self.addCleanup(service.close)
@@ -182,6 +187,13 @@ class Steps(unittest.TestCase):
                     track.step((10.0, 0.0, 0.0), {"time_us": time_us})
                 self.assertEqual(len(fake.begun()), tracks)
 
+    def test_say_why_they_begin_a_new_track(self):
+        with FakeService([CONVERGED, (410, {"code": "track-ended", "detail": "it was silent"})]) as fake:
+            track, _ = self.fly(fake, 2)
+            track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin="restarted")
+        self.assertEqual(self.words.getvalue(), "a new track begins: 410 track-ended: it was silent\n"
+                                                "a new track begins: the vehicle's frame has another origin\n")
+
     def test_say_what_their_picture_is(self):
         with FakeService() as fake:
             track, _ = self.fly(fake, 0)
@@ -263,17 +275,6 @@ class Steps(unittest.TestCase):
                 track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin=origin)
                 radii_m.append(fake.begun()[-1]["radius_m"])
             self.assertGreater(radii_m[1], radii_m[0] + 20.0)
-
-    def test_forget_a_flight_of_long_ago(self):
-        for age_s, tracks in ((60.0, 1), (3600.0, 2)):
-            with FakeService([CONVERGED]) as fake, tempfile.TemporaryDirectory() as folder:
-                state = Path(folder, "state.json")
-                self.fly(fake, 1, state_file=state)
-                kept = json.loads(state.read_text())
-                state.write_text(json.dumps({**kept, "taken_s": kept["taken_s"] - age_s}))
-                self.fly(fake, 1, state_file=state)
-                self.assertEqual(len(fake.begun()), tracks)
-                self.assertEqual(fake.begun()[-1]["lat"], 1, "where the operator says")
 
     def test_begin_a_new_track_around_the_last_known_place_however_far_they_have_gone(self):
         with FakeService([CONVERGED]) as fake:

@@ -9,7 +9,8 @@ of JSON in for each step, a line with the answer out.
 - origin: any text that is another one once the frame has another origin, as after a restart of the estimator. The track
   then begins anew around the last place that was known.
 - image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.
-- time_us: when the frame was captured, increasing. Without it: now.
+- time_us: when the frame was captured, increasing. Without it: when the line came.
+- monotonic_s: the same by CLOCK_MONOTONIC of this computer, for the age of positions; it is not sent.
 - covariance: of the movement from the line before, as a step has it; those of lines that are not sent are added.
 - All other members are fields of a step as /openapi.json describes them: agl_m, roll_deg, pitch_deg, alt_m,
   camera_yaw_deg ...
@@ -20,12 +21,10 @@ import json
 import os
 import pathlib
 import sys
-import time
 
 from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from service import Refused, Service, Silent
-from silence import FORGOTTEN_S
-from steps import NewestLine, all_lines, place_and_covariance, read_step
+from steps import NewestLine, all_lines, captured, place_and_covariance, read_step
 from track import Track
 
 
@@ -73,19 +72,13 @@ def parse_arguments(arguments):
                         help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
     parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
-                        help="drop positions older than S seconds from capture (time_us where it is of this computer's "
-                             "clock, else when its line came) to sending (default: %(default)g); of "
+                        help="drop positions older than S seconds from capture (monotonic_s, else time_us where it is "
+                             "of this computer's clock, else when its line came) to sending (default: %(default)g); of "
                              + " and ".join(PROCESSING) + " the processing time that they report is not counted")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
     return options
-
-
-def captured(line, step):
-    """When, by time.monotonic(). A recording has a clock of its own."""
-    ago_s = time.time() - 1e-6 * step.fields["time_us"]
-    return min(line.came, time.monotonic() - ago_s) if 0.0 <= ago_s < FORGOTTEN_S else line.came
 
 
 def fly(lines, options):
@@ -110,7 +103,7 @@ def fly(lines, options):
         try:
             if sender:
                 sender.expect(step.fields)
-            send = functools.partial(sender.send, captured(line, step)) if sender else None
+            send = functools.partial(sender.send, captured(line, step.fields)) if sender else None
             answer = track.step(step.place, step.fields, step.image, step.origin, options.format, send)
         except (ValueError, OSError, Refused, Silent) as error:
             print(f"line {line.number}: {error}", file=sys.stderr)

@@ -6,6 +6,8 @@ import threading
 import time
 from typing import NamedTuple, Optional
 
+from silence import FORGOTTEN_S
+
 PLACE = ("north_m", "east_m", "yaw_deg")
 CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
 PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m", "roll_deg", "pitch_deg",
@@ -13,10 +15,11 @@ PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m
 
 
 class Line(NamedTuple):
-    """A line and when it came, by time.monotonic(). `step` is what it says, None where it is no JSON object; `passed`
-    are those since the last one that are not sent."""
+    """A line and when it came, by time.monotonic() and by the date. `step` is what it says, None where it is no JSON
+    object; `passed` are those since the last one that are not sent."""
     number: int
     came: float
+    came_us: int
     step: Optional[dict]
     passed: tuple = ()
 
@@ -30,7 +33,7 @@ def _line(number, text):
         step = json.loads(text)
     except (ValueError, RecursionError):
         step = None
-    return Line(number, time.monotonic(), step if isinstance(step, dict) else None)
+    return Line(number, time.monotonic(), time.time_ns() // 1000, step if isinstance(step, dict) else None)
 
 
 def all_lines(texts):
@@ -121,9 +124,11 @@ def read_step(line, folder, frame_fields):
     step = {name: value for name, value in line.step.items() if name not in PLACE}
     origin = step.pop("origin", None)
     file = step.pop("image", None)
-    fields = {"time_us": time.time_ns() // 1000, **frame_fields, **step}
-    if not is_number(fields["time_us"]):
-        raise ValueError("time_us is a number")
+    monotonic_s = step.pop("monotonic_s", 0.0)
+    fields = {"time_us": line.came_us, **frame_fields, **step}
+    for name, value in (("time_us", fields["time_us"]), ("monotonic_s", monotonic_s)):
+        if not is_number(value):
+            raise ValueError(f"{name} is a number")
     if file is None:
         fields = {name: value for name, value in fields.items() if name not in PICTURE_FIELDS}
         return Step(place, origin, fields, None)
@@ -132,3 +137,14 @@ def read_step(line, folder, frame_fields):
     if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
         fields["kind"] = "frame"
     return Step(place, origin, fields, pathlib.Path(folder, file).read_bytes())
+
+
+def captured(line, fields):
+    """When, by time.monotonic(), of a line and the fields of its step. By monotonic_s, which no set clock shifts; else
+    by time_us where it is of this computer's clock, which that of a recording is not; else when the line came."""
+    now = time.monotonic()
+    monotonic_s = line.step.get("monotonic_s", -1.0)
+    if 0.0 <= monotonic_s <= now:  # from the start of the computer on
+        return min(line.came, monotonic_s)
+    ago_s = time.time() - 1e-6 * fields["time_us"]
+    return min(line.came, now - ago_s) if 0.0 <= ago_s < FORGOTTEN_S else line.came

@@ -76,6 +76,7 @@ class Lines(unittest.TestCase):
                               ('{"north_m": 1, "east_m": 2, "yaw_deg": 1%s}' % ("0" * 400), "are numbers"),
                               ('{"north_m": 1, "east_m": 2, "yaw_deg": 0, "time_us": "now"}', "time_us is a number"),
                               ('{"north_m": 1, "east_m": 2, "yaw_deg": 0, "time_us": NaN}', "time_us is a number"),
+                              ('{"north_m": 1, "east_m": 2, "yaw_deg": 0, "monotonic_s": "now"}', "monotonic_s is a n"),
                               ('{"north_m": 1, "east_m": 2, "yaw_deg": 0, "image": 5}', "name of a file"),
                               ("[" * 100_000, "JSON object")):
             with self.assertRaisesRegex(ValueError, message):
@@ -97,6 +98,16 @@ class Lines(unittest.TestCase):
             feed.close()
             (line,) = lines
             self.assertEqual((line.number, [passed.number for passed in line.passed]), (5, [3, 4]))
+
+    def test_without_a_time_are_of_when_they_came(self):
+        line = next(all_lines(['{"north_m": 1, "east_m": 2, "yaw_deg": 3}']))
+        came_us = time.time_ns() // 1000
+        time.sleep(0.2)
+        self.assertLess(abs(read_step(line, ".", {}).fields["time_us"] - came_us), 100_000)
+
+    def test_keep_the_time_of_this_computer_alone_from_the_service(self):
+        text = '{"north_m": 1, "east_m": 2, "yaw_deg": 3, "time_us": 5, "monotonic_s": 6.5}'
+        self.assertEqual(read_step(next(all_lines([text])), ".", {}).fields, {"time_us": 5})
 
     def test_that_wait_when_the_input_ends_are_still_given(self):
         self.assertEqual([line.number for line in NewestLine(io.StringIO("\n{}\n"))], [2])

@@ -1,4 +1,5 @@
 """Positions to an autopilot by UDP, unless they are too old."""
+import math
 import socket
 import struct
 import sys
@@ -10,6 +11,9 @@ FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
 FORMATS_OF_GPS_INPUT = ("gps_input", "mavproxy")
 #: These say how long the service took, but nothing of the way to it and back: where in the payload, in which unit.
 PROCESSING = {"global_position_sensor": ("<8xI", 1e-6), "command_int": ("<4xf", 1.0)}
+#: ArduPilot sets its position by one of these, moved on by its velocity, and takes those of more than 5 s ago for 5 s
+#: old. The rest is for the way to it.
+LONGEST_S = {"command_int": 4.5}
 HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
 
 
@@ -43,10 +47,14 @@ class Sender:
     def send(self, captured, packet):
         """`captured`: when, by time.monotonic()."""
         told_s = told_age_s(self._format, packet)
-        age_s = time.monotonic() - captured - told_s
-        if age_s > self._max_age_s:
-            than_told = f"er than the {told_s:.1f} s that it says" if told_s else ""
-            print(f"a position is not sent: it is {age_s:.1f} s old{than_told}", file=sys.stderr)
+        age_s = max(time.monotonic() - captured, told_s)
+        why = None
+        if not age_s - told_s <= self._max_age_s:  # not even where it says no number
+            why = f"{age_s - told_s:.1f} s old" + (f"er than the {told_s:.1f} s that it says" if told_s else "")
+        elif age_s > LONGEST_S.get(self._format, math.inf):
+            why = f"{age_s:.1f} s old, which is more than its receiver believes"
+        if why:
+            print(f"a position is not sent: it is {why}", file=sys.stderr)
             return
         try:
             self._socket.sendto(packet, self._address)

@@ -175,8 +175,9 @@ class Positions(unittest.TestCase):
             self.assertFalse(self.sent(packet_format, script=[503]), "a second until it was sent again")
 
     def test_is_what_the_service_took_long_for_only_if_the_message_says_so(self):
-        for packet_format, says_so in (("command_int", True), ("nmea", False)):
-            sent = self.sent(packet_format, captured_s_ago=8.0, told_s=8.0, options=self.PATIENT)
+        for packet_format, took_s, says_so in (("global_position_sensor", 8.0, True), ("command_int", 3.0, True),
+                                               ("command_int", 8.0, False), ("nmea", 8.0, False)):
+            sent = self.sent(packet_format, captured_s_ago=took_s, told_s=took_s, options=self.PATIENT)
             self.assertEqual(sent, says_so, packet_format)
 
     def test_is_not_what_took_long_on_the_way_to_the_service_and_back(self):

@@ -1,10 +1,14 @@
 #!/usr/bin/python3
-"""How old a position is, by whatever tells of it."""
+"""How old a position is, by whatever tells of it, and what is sent to an autopilot."""
+import socket
+import struct
 import unittest
 from unittest import mock
 
 import fake_service  # noqa: F401: the folder of the program
+from words import said
 
+from positions import Sender
 from steps import Line, captured
 
 NOW_S = 5000.0  # since the start of the computer
@@ -46,6 +50,52 @@ class Ages(unittest.TestCase):
     def test_go_by_the_date_where_the_clock_of_the_computer_is_of_another_one(self):
         for other_s in (NOW_S + 0.1, -0.1):
             self.assertAlmostEqual(self.age_s(2.3, monotonic_s=other_s), 2.3, places=5)
+
+
+class Senders(unittest.TestCase):
+    def setUp(self):
+        self.autopilot = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(self.autopilot.close)
+        self.autopilot.bind(("127.0.0.1", 0))
+        self.autopilot.setblocking(False)
+        patch = mock.patch("positions.time.monotonic", lambda: NOW_S)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def sender(self, packet_format):
+        sender = Sender(packet_format, self.autopilot.getsockname(), 0.5)
+        self.addCleanup(sender._socket.close)
+        return sender
+
+    def sent(self, packet_format, age_s, packet=b"a position"):
+        with said() as words:
+            self.sender(packet_format).send(NOW_S - age_s, packet)
+        try:
+            return bool(self.autopilot.recv(2048))
+        except BlockingIOError:
+            self.assertIn("a position is not sent: it is ", words.getvalue())
+            return False
+
+    def test_drop_what_is_older_than_it_may_be(self):
+        for packet_format in ("gps_input", "mavproxy", "nmea"):
+            self.assertTrue(self.sent(packet_format, 0.499))
+            self.assertFalse(self.sent(packet_format, 0.501))
+
+    def test_drop_what_is_older_than_ardupilot_believes_whatever_it_says(self):
+        def command(told_s):
+            return struct.pack("<10xff30x", 0.0, told_s)
+
+        for age_s, told_s, sent in ((3.0, 3.0, True), (4.49, 4.4, True), (4.51, 4.4, False), (4.51, 4.51, False),
+                                    (0.2, 8.0, False), (1.0, 0.4, False), (1.0, float("nan"), False)):
+            self.assertEqual(self.sent("command_int", age_s, command(told_s)), sent, (age_s, told_s))
+
+    def test_say_that_a_packet_cannot_be_sent_and_go_on(self):
+        sender = self.sender("nmea")
+        with mock.patch.object(sender, "_socket") as broken, said() as words:
+            broken.sendto.side_effect = OSError("Network is unreachable")
+            for _ in range(2):
+                sender.send(NOW_S, b"a position")
+        self.assertEqual(words.getvalue(), 2 * "a position is not sent: Network is unreachable\n")
 
 
 if __name__ == "__main__":

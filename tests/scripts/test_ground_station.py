@@ -196,13 +196,30 @@ class Positions(unittest.TestCase):
 
 
 class Program(unittest.TestCase):
+    def lines_and_a_picture(self, folder):
+        """10 m to the north each, the third with a picture that cannot be read."""
+        Path(folder, "3.jpg").write_bytes(b"\xff\xd8")
+        place = {"east_m": 0, "yaw_deg": 0, "covariance": [1.0, 0, 0, 0, 1.0, 0, 0, 0, 0]}
+        pictures = ({}, {}, {"image": "missing.jpg"}, {"image": f"{folder}/3.jpg"})
+        return [json.dumps({"north_m": 10 * i, "time_us": i, **place, **more}) for i, more in enumerate(pictures)]
+
+    def check_covariances(self, steps):
+        for step in steps:
+            variance = float(str(step["covariance"]).strip("[").split(",")[0])
+            self.assertEqual(variance, float(step["forward_m"]) / 10.0)
+
     def test_sends_the_covariance_of_all_lines_that_a_movement_spans(self):
-        told = [1.0, 0, 0, 0, 1.0, 0, 0, 0, 0]
         with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
-            Path(folder, "3.jpg").write_bytes(b"\xff\xd8")
-            place = {"east_m": 0, "yaw_deg": 0, "covariance": told}
-            pictures = ({}, {}, {"image": "missing.jpg"}, {"image": f"{folder}/3.jpg"})
-            lines = [json.dumps({"north_m": 10 * i, "time_us": i, **place, **more}) for i, more in enumerate(pictures)]
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
+                                     input="\n".join(self.lines_and_a_picture(folder)), capture_output=True, text=True,
+                                     timeout=60)
+            self.assertIn("line 3: ", program.stderr)
+            self.assertEqual([float(step["forward_m"]) for step in fake.steps()[1:]], [10.0, 20.0])
+            self.check_covariances(fake.steps()[1:])
+
+    def test_sends_the_covariance_of_all_lines_that_it_passes_by_in_flight(self):
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
+            lines = self.lines_and_a_picture(folder)
             program = subprocess.Popen(
                 [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--live"],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -210,11 +227,9 @@ class Program(unittest.TestCase):
             program.stdin.flush()
             program.stdout.readline()
             program.communicate("\n".join(lines[1:]) + "\n", timeout=60)
-            sent = fake.steps()[1:]
+            sent = fake.steps()[1:]  # one or two, by how fast the lines were read
         self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
-        for step in sent:  # one or two, by how fast the lines were read
-            variance = float(str(step["covariance"]).strip("[").split(",")[0])
-            self.assertEqual(variance, float(step["forward_m"]) / 10.0)
+        self.check_covariances(sent)
 
     def test_goes_on_after_lines_that_are_no_text(self):
         good = b'{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 FALSE_FIX_M = 25.0
 DEMO_FOOTPRINT_M = 700  # what a camera of 78 degrees sees from 430 m; smaller ones are honestly refused more often
 EARTH_RADIUS_M = 6371008.8
+DIRECTLY = ("--noproxy", "*")  # a proxy of the environment would look for the service on itself
 
 
 class DemoError(Exception):
@@ -62,7 +63,7 @@ def free_port(wanted):
 
 def curl(*arguments):
     """Status and body of a request made with curl: the command can be repeated as it is printed."""
-    command = ["curl", "--silent", "--show-error", "--write-out", "\n%{http_code}", *arguments]
+    command = ["curl", *DIRECTLY, "--silent", "--show-error", "--write-out", "\n%{http_code}", *arguments]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise DemoError(f"no answer from the service: {done.stderr.strip()}")
@@ -123,7 +124,7 @@ def ask(base, frame, first):
     kind = "image/jpeg" if frame.file.suffix.lower() in (".jpg", ".jpeg") else "image/png"
     arguments = ["--data-binary", f"@{frame.file}", "-H", f"Content-Type: {kind}", url]
     if first:
-        print("$ curl", shlex.join(arguments), "\n", flush=True)
+        print("$ curl", shlex.join([*DIRECTLY, *arguments]), "\n", flush=True)
         print(f"{'frame':<16} {'true lat':>10} {'lon':>11} {'head':>6} | {'answer':<9} {'lat':>10} {'lon':>11} {'head':>6}"
               f" | {'error':>8} {'head':>6} {'prob':>6} {'time':>7}")
     status, body = curl(*arguments)
@@ -218,12 +219,14 @@ def prepare(arguments, work):
 
 
 def demo(arguments, work):
+    made = work / "maps" / "demo.gpkg"
+    if made.exists():
+        raise DemoError(f"{made} is the map of an earlier demo: remove it, or --keep another folder")
     port = free_port(arguments.port or 0)
     sources, frames = prepare(arguments, work)
-    maps = work / "maps"
-    maps.mkdir(exist_ok=True)
-    run(arguments.roadfix, "ingest", *sources, "--map", maps / "demo.gpkg")
-    with service(arguments.roadfix, maps, port, work / "serve.log") as process:
+    made.parent.mkdir(exist_ok=True)
+    run(arguments.roadfix, "ingest", *sources, "--map", made)
+    with service(arguments.roadfix, made.parent, port, work / "serve.log") as process:
         host = f"http://127.0.0.1:{port}"
         right = ask_all(f"{host}/v1/maps/demo", frames)
         if right == 0 and not arguments.images:
@@ -237,7 +240,7 @@ Open in a browser or a GIS, until Ctrl-C:
   {host}/v1/maps/demo/tilejson.json           the tiles for MapLibre, Leaflet, QGroundControl
   {host}/v1/maps/demo/tiles/{{z}}/{{x}}/{{y}}.png   the tiles for QGIS (XYZ connection)
   {host}/openapi.json                         every route
-  {maps / 'demo.gpkg'}   the map itself, for QGIS""", flush=True)
+  {made}   the map itself, for QGIS""", flush=True)
         process.wait()
         raise DemoError(f"the service ended by itself with exit code {process.returncode}:\n{tail(work / 'serve.log')}")
 

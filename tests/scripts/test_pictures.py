@@ -53,17 +53,40 @@ class Clocks(unittest.TestCase):
                 self.assertEqual(bool(text.getvalue()), bool(words))
                 self.assertAlmostEqual(clock.monotonic(fake.now + fake.ahead_s), fake.now, places=6)
 
-    def test_that_are_set_back_go_on_in_the_times_that_are_told(self):
-        with FakeTime() as fake, said():
-            clock = WallClock()
-            told = []
-            for step_s in (0.0, -3600.0, -0.01, 0.0, 3700.0, -0.01):
+    def test_that_are_set_in_flight_do_not_move_the_times_that_are_told(self):
+        for step_s in (-3600.0, -0.01, 0.3, 2e8):
+            with FakeTime() as fake, said():
+                clock = WallClock()
+                before_us = clock.date_us(fake.now)
+                self.assertEqual(before_us, 1_700_000_100_000_000)
                 fake.ahead_s += step_s
-                fake.now += 1.0
+                fake.now += 2.0
                 clock.look()
-                told.append(1e-6 * clock.date_us(fake.now) - 1_700_000_000.0)
-            for actual, expected in zip(told, (101.0, 102.0, 102.99, 103.99, 205.0 - 0.01, 206.0 - 0.02)):
-                self.assertAlmostEqual(actual, expected, places=3)
+                self.assertEqual(clock.date_us(fake.now) - before_us, 2_000_000, step_s)
+
+    def test_are_set_only_where_they_jump(self):
+        for step_s, is_set in ((0.19, False), (-0.19, False), (0.21, True), (-0.21, True)):
+            with FakeTime() as fake, said() as words:
+                clock = WallClock()
+                fake.ahead_s += step_s
+                clock.look()
+                self.assertEqual((clock.was_set, bool(words.getvalue())), (is_set, is_set), step_s)
+                clock.look()
+                self.assertFalse(clock.was_set)
+
+    def test_are_not_set_by_a_pause_of_this_process_between_two_readings(self):
+        with FakeTime() as fake, said() as words:
+            clock = WallClock()
+            pauses = iter((0.0, 5.0))
+
+            def date():
+                fake.now += next(pauses, 0.0)
+                return fake.now + fake.ahead_s
+
+            with mock.patch("time.time", date):
+                clock.look()
+            self.assertEqual(words.getvalue(), "")
+            self.assertAlmostEqual(clock.ahead_s, fake.ahead_s, places=6)
 
 
 class Pictures(unittest.TestCase):

@@ -1,7 +1,8 @@
 """Makes steps for scripts/ground_station of what an autopilot tells by MAVLink and of pictures that a camera writes into
 a folder: a line of JSON for each picture.
 
-  mkdir -p frames && ffmpeg -i rtsp://CAMERA/stream -vf fps=1 frames/%06d.jpg &
+  mkdir -p frames
+  ffmpeg -nostdin -flags low_delay -i rtsp://CAMERA/stream -vf fps=1 -threads 1 "frames/$(date +%s)-%06d.jpg" &
   python3 scripts/mavlink_steps --listen 14551 --watch frames --camera level |
     python3 scripts/ground_station --map city --frame fov_deg=78 --live
 
@@ -23,7 +24,7 @@ from autopilot import Autopilot
 from clock import WallClock
 from lines import Lines
 from packets import messages
-from pictures import NewPictures
+from pictures import NewPictures, Silence
 from vehicle import Vehicle
 
 LOOK_S = 0.1       # between two looks into the folder
@@ -77,6 +78,7 @@ def follow(link, pictures, clock, options):
     vehicle = Vehicle(options.by_air, options.takeoff_agl)
     autopilot = Autopilot(options.system, options.component)
     lines = Lines(vehicle, clock, options)
+    silence = Silence()
     looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
@@ -84,7 +86,9 @@ def follow(link, pictures, clock, options):
         if time.monotonic() < looked + LOOK_S:
             continue
         clock.look()
-        for path, written in pictures():
+        new = pictures()
+        silence.look(bool(new), vehicle.heard)
+        for path, written in new:
             lines.add(path, written - options.delay)
         lines.print_due()
         looked = time.monotonic()

@@ -1,57 +1,137 @@
 """Pictures that appear in a folder."""
+import math
 import os
 import pathlib
+import sys
 import time
+from typing import NamedTuple
 
 ENDINGS = {".jpg": b"\xff\xd9", ".jpeg": b"\xff\xd9", ".png": b"IEND\xaeB`\x82"}
-QUIET_S = 1.0  # a file that ends otherwise, as some cameras' do, is taken once nothing was written for so long
+QUIET_S = 1.0    # a file that ends otherwise, as some cameras' do, is taken once nothing was written for so long
+READ_S = 10.0    # a file that is written anew sooner may be read for the line of the picture before
+LOOKS = 500      # in each call at files that were taken: a camera leaves tens of thousands
+MISSED_S = 10.0  # without a picture
+
+
+class Version(NamedTuple):
+    """Of a file that may be written anew, and when it was, by time.monotonic(). `in_doubt`: the clock was set then."""
+    date_ns: int
+    size: int
+    written: float
+    in_doubt: bool
+
+    def is_of(self, status):
+        return (self.date_ns, self.size) == (status.st_mtime_ns, status.st_size)
 
 
 class NewPictures:
-    """Those that are written after this was made. `clock`: a WallClock, by which files have their dates."""
+    """Those that are written after this was made, anew or under new names. `clock`: a WallClock, by which files have
+    their dates."""
 
     def __init__(self, folder, clock):
         self._folder = pathlib.Path(folder)
         self._clock = clock
-        self._written = {}  # of those that are not complete: date of the file, and time.monotonic() of that
-        self._known = set(os.listdir(folder))
+        self._others = set()   # names of what is no picture
+        self._started = {}     # versions that are not complete, by their names
+        self._finished = {}    # versions that were taken
+        self._to_look_at = []  # of their names, the next one last
+        self._fails = False
+        for name in self._pictures(os.listdir(folder)):
+            try:
+                self._finished[name] = self._version(name, os.stat(self._folder / name))._replace(written=-math.inf)
+            except OSError:  # removed meanwhile
+                continue
 
     def __call__(self):
         """Path and time.monotonic() of each that is complete since the last call, the oldest first."""
+        try:
+            names = self._pictures(os.listdir(self._folder))
+        except OSError as error:
+            self._say_that_it_fails(error)
+            return []
+        self._say_that_it_fails(None)
         complete = []
-        for path in self._candidates():
+        for name in self._changed(names):
             try:
-                written = self._last_written(path)
-                if self._is_whole(path) or time.monotonic() - written > QUIET_S:
-                    complete.append((written, path))
+                version, is_whole = self._look_into(name)
             except OSError:  # renamed or removed meanwhile
                 continue
-        for _, path in complete:
-            self._known.add(path.name)
-            del self._written[path.name]
-        return [(path, written) for written, path in sorted(complete)]
+            if is_whole or (version.size > 0 and time.monotonic() - version.written > QUIET_S):
+                complete.append((version.written, self._folder / name, version))
+        return [(path, written) for written, path, version in sorted(complete) if self._take(path, version)]
 
-    def _last_written(self, path):
-        """By the clock as it was set when the file was first seen with its date."""
-        date_s = path.stat().st_mtime
-        seen = self._written.get(path.name)
-        if seen is None or seen[0] != date_s:
-            seen = self._written[path.name] = (date_s, self._clock.monotonic(date_s))
-        return seen[1]
+    def _pictures(self, names):
+        new = set(names) - self._others
+        others = {name for name in new - self._finished.keys() if os.path.splitext(name)[1].lower() not in ENDINGS}
+        self._others |= others
+        return new - others
 
-    def _candidates(self):
-        """Those that were not taken yet. A camera leaves tens of thousands: only for names that are new more is done
-        than to look whether they are."""
-        paths = [self._folder / name for name in set(os.listdir(self._folder)) - self._known]
-        self._known.update(path.name for path in paths if path.suffix.lower() not in ENDINGS)
-        return [path for path in paths if path.suffix.lower() in ENDINGS]
+    def _changed(self, names):
+        """Those that are new, or were written since they were taken, as far as they are looked at now."""
+        changed = names - self._finished.keys()
+        if not self._to_look_at:
+            self._to_look_at = sorted(self._finished, reverse=True)
+        for name in self._to_look_at[-LOOKS:]:
+            try:
+                if not self._finished[name].is_of(os.stat(self._folder / name)):
+                    changed.add(name)
+            except OSError:  # removed
+                continue
+        del self._to_look_at[-LOOKS:]
+        return changed
 
-    @staticmethod
-    def _is_whole(path):
-        ending = ENDINGS[path.suffix.lower()]
-        with open(path, "rb") as file:
-            file.seek(0, 2)
-            if file.tell() < len(ending):
-                return False
-            file.seek(-len(ending), 2)
-            return file.read() == ending
+    def _look_into(self, name):
+        """As it is, and whether it has the end of a picture."""
+        ending = ENDINGS[os.path.splitext(name)[1].lower()]
+        with open(self._folder / name, "rb") as file:
+            file.seek(max(0, file.seek(0, os.SEEK_END) - len(ending)))
+            is_whole = file.read() == ending
+            self._started[name] = self._version(name, os.fstat(file.fileno()))
+        return self._started[name], is_whole
+
+    def _version(self, name, status):
+        """With the time by the clock as it was set when this version was first seen."""
+        seen = self._started.get(name)
+        if seen is not None and seen.is_of(status):
+            return seen
+        return Version(status.st_mtime_ns, status.st_size, self._clock.monotonic(1e-9 * status.st_mtime_ns),
+                       self._clock.was_set)
+
+    def _take(self, path, version):
+        """Whether it is known of which time and picture it is."""
+        before = self._finished.get(path.name)
+        self._finished[path.name] = self._started.pop(path.name)
+        if version.in_doubt:
+            print(f"{path} is left out: the clock was set while it was written", file=sys.stderr)
+            return False
+        if before is not None and version.written - before.written < READ_S:
+            print(f"{path} is left out: it was another picture {version.written - before.written:.1f} s before: give "
+                  "each a name of its own", file=sys.stderr)
+            return False
+        return True
+
+    def _say_that_it_fails(self, error):
+        """Where it is not as before. None: it does not."""
+        if self._fails != (error is not None):
+            self._fails = not self._fails
+            print(f"no pictures: {error}" if error else f"{self._folder} can be read again", file=sys.stderr)
+
+
+class Silence:
+    """Says where no picture comes though the autopilot speaks."""
+
+    def __init__(self):
+        self._last = time.monotonic()
+        self._is_told = False
+
+    def look(self, has_picture, heard):
+        """`heard`: when the autopilot was, by time.monotonic()."""
+        now = time.monotonic()
+        if has_picture:
+            if self._is_told:
+                print("pictures come again", file=sys.stderr)
+            self._last, self._is_told = now, False
+        elif not self._is_told and now - self._last > MISSED_S and now - heard <= MISSED_S:
+            self._is_told = True
+            print(f"no picture has come for {now - self._last:.0f} s though the autopilot speaks: does the camera "
+                  "write into the folder?", file=sys.stderr)

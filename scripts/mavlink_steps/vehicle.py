@@ -73,10 +73,10 @@ class Vehicle:
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
         self._velocity = None
         self._holes = []  # when each ended
-        self._heard = -math.inf
+        self.heard = -math.inf
 
     def hear(self, name, fields, came):
-        self._heard = came
+        self.heard = came
         if name == "ATTITUDE":
             self._turn(fields, came)
         elif name == "LOCAL_POSITION_NED":
@@ -106,7 +106,7 @@ class Vehicle:
 
     def agl_m(self):
         """As of the last message. Throws Unknown."""
-        height_m = self._heights.agl_m(self._heard)
+        height_m = self._heights.agl_m(self.heard)
         if height_m is None:
             raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED): give --agl, or ask the autopilot "
                           "for one of them (SET_MESSAGE_INTERVAL)")
@@ -114,7 +114,7 @@ class Vehicle:
 
     def alt_m(self):
         """Above mean sea level, as of the last message. None where it is not known."""
-        return self._heights.alt_m(self._heard)
+        return self._heights.alt_m(self.heard)
 
     def knows(self, when):
         """Whether messages of that time and later ones have come."""

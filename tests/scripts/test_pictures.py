@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlin
 
 from clock import WallClock  # noqa: E402
 from lines import Lines  # noqa: E402
-from pictures import NewPictures  # noqa: E402
+from pictures import NewPictures, Silence  # noqa: E402
 from vehicle import Vehicle  # noqa: E402
 
 
@@ -76,69 +76,146 @@ class Clocks(unittest.TestCase):
 
     def test_are_not_set_by_a_pause_of_this_process_between_two_readings(self):
         with FakeTime() as fake, said() as words:
-            clock = WallClock()
-            pauses = iter((0.0, 5.0))
+            pauses = []
 
             def date():
-                fake.now += next(pauses, 0.0)
+                fake.now += pauses.pop() if pauses else 0.0
                 return fake.now + fake.ahead_s
 
             with mock.patch("time.time", date):
+                pauses.append(5.0)
+                clock = WallClock()
+                self.assertAlmostEqual(clock.ahead_s, fake.ahead_s, places=6)
+                pauses.append(5.0)
                 clock.look()
             self.assertEqual(words.getvalue(), "")
             self.assertAlmostEqual(clock.ahead_s, fake.ahead_s, places=6)
 
 
 class Pictures(unittest.TestCase):
-    def test_are_taken_once_they_are_whole_in_the_order_they_were_written(self):
-        with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "old.jpg").write_bytes(b"\xff\xd8\xff\xd9")
-            new = NewPictures(folder, types.SimpleNamespace(monotonic=lambda date_s: date_s - 1000))
-            Path(folder, "b.JPG").write_bytes(b"\xff\xd8\xff\xd9")
-            Path(folder, "a.png").write_bytes(b"\x89PNG IEND\xaeB`\x82")
-            Path(folder, "half.jpg").write_bytes(b"\xff\xd8\xff")
-            Path(folder, "notes.txt").write_bytes(b"\xff\xd9")
-            os.utime(Path(folder, "b.JPG"), (50, 50))
-            os.utime(Path(folder, "a.png"), (60, 60))
-            self.assertEqual([(path.name, written) for path, written in new()], [("b.JPG", -950), ("a.png", -940)])
-            self.assertEqual(new(), [])
-            with open(Path(folder, "half.jpg"), "ab") as rest:
-                rest.write(b"\xd9")
-            self.assertEqual([path.name for path, _ in new()], ["half.jpg"])
-            Path(folder, "odd.jpg").write_bytes(b"\xff\xd8 and no end")
-            os.utime(Path(folder, "odd.jpg"), (70, 70))
-            self.assertEqual([path.name for path, _ in new()], ["odd.jpg"], "nothing was written for long")
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name, "frames")
+        self.folder.mkdir()
+        self.clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - 1000, was_set=False)
+        self.time = FakeTime()
+        self.time.__enter__()
+        self.addCleanup(self.time.__exit__)
 
-    def test_are_found_in_a_full_folder_by_names_alone(self):
-        with tempfile.TemporaryDirectory() as folder:
-            new = NewPictures(folder, types.SimpleNamespace(monotonic=lambda date_s: date_s))
-            for i in range(1000):
-                Path(folder, f"{i:04}.jpg").write_bytes(b"\xff\xd9")
-                Path(folder, f"{i:04}.txt").touch()
-            self.assertEqual(len(new()), 1000)
-            Path(folder, "later.jpg").write_bytes(b"\xff\xd9")
-            with mock.patch("pathlib.PurePath.suffix", new_callable=mock.PropertyMock, return_value=".jpg") as looks:
-                self.assertEqual([path.name for path, _ in new()], ["later.jpg"])
-            self.assertLess(looks.call_count, 10)
+    def write(self, name, content=b"\xff\xd8\xff\xd9", date_s=None):
+        path = Path(self.folder, name)
+        path.write_bytes(content)
+        if date_s is not None:
+            os.utime(path, (date_s, date_s))
+
+    def new(self, pictures):
+        """Names, and what was said."""
+        with said() as words:
+            return [path.name for path, _ in pictures()], words.getvalue()
+
+    def test_are_taken_once_they_are_whole_in_the_order_they_were_written(self):
+        self.write("old.jpg")
+        new = NewPictures(self.folder, self.clock)
+        self.write("b.JPG", date_s=50)
+        self.write("a.png", b"\x89PNG IEND\xaeB`\x82", date_s=60)
+        for number in range(9):
+            self.write(f"{number}.jpeg", date_s=59 - number)
+        self.write("half.jpg", b"\xff\xd8\xff", date_s=1099.5)
+        self.write("notes.txt")
+        taken = new()
+        self.assertEqual([written for _, written in taken], list(range(-950, -939)))
+        self.assertEqual([taken[at][0].name for at in (1, 9, 10)], ["8.jpeg", "0.jpeg", "a.png"])
+        self.assertEqual(new(), [])
+        self.write("half.jpg")
+        self.assertEqual(self.new(new), (["half.jpg"], ""))
+        self.write("odd.jpg", b"\xff\xd8 and no end", date_s=70)
+        self.assertEqual(self.new(new), (["odd.jpg"], ""), "nothing was written for long")
+        self.write("empty.jpg", b"", date_s=70)
+        self.assertEqual(self.new(new), ([], ""), "there is nothing in it yet")
+
+    def test_are_taken_again_where_a_camera_begins_anew_with_the_names_that_it_gave_before(self):
+        for number in range(1, 4):
+            self.write(f"{number}.jpg", date_s=50)
+        new = NewPictures(self.folder, self.clock)
+        self.assertEqual(self.new(new), ([], ""))
+        self.write("3.jpg", b"\xff\xd8 of the next flight \xff\xd9", date_s=50)
+        self.assertEqual(self.new(new), (["3.jpg"], ""), "of a file system that knows no better date")
+        for begin_s in (58, 158):
+            for number in range(1, 6):
+                self.write(f"{number}.jpg", date_s=begin_s + number)
+                self.assertEqual(self.new(new), ([f"{number}.jpg"], ""))
+                self.assertEqual(self.new(new), ([], ""))
+
+    def test_are_not_told_of_a_file_in_which_the_reader_may_find_the_next_one(self):
+        new = NewPictures(self.folder, self.clock)
+        self.write("latest.jpg", date_s=100)
+        self.assertEqual(self.new(new), (["latest.jpg"], ""))
+        for date_s in (100.5, 110.4):  # after 0.5 and 9.9 s
+            self.write("latest.jpg", date_s=date_s)
+            names, words = self.new(new)
+            self.assertEqual(names, [])
+            self.assertIn("give each a name of its own", words)
+        self.write("latest.jpg", date_s=120.5)
+        self.assertEqual(self.new(new), (["latest.jpg"], ""), "10.1 s later")
+
+    def test_in_a_full_folder_are_found_by_their_names_and_those_taken_are_looked_at_by_and_by(self):
+        new = NewPictures(self.folder, self.clock)
+        for number in range(120):
+            self.write(f"{number:03}.jpg", date_s=50)
+            self.write(f"{number:03}.txt")
+        self.assertEqual(len(new()), 120)
+        self.write("later.jpg", date_s=60)
+        for number in (10, 60, 110):
+            self.write(f"{number:03}.jpg", date_s=70)
+        with mock.patch("pictures.LOOKS", 50), mock.patch("os.stat", wraps=os.stat) as looks:
+            for names in (["010.jpg", "later.jpg"], ["060.jpg"], ["110.jpg"], []):
+                looks.reset_mock()
+                with mock.patch("os.path.splitext", wraps=os.path.splitext) as readings:
+                    self.assertEqual(sorted(self.new(new)[0]), names)
+                self.assertLessEqual(looks.call_count, 50)
+                self.assertLess(readings.call_count, 10)
 
     def test_that_were_seen_before_the_clock_was_set_have_the_time_of_the_clock_before(self):
-        with tempfile.TemporaryDirectory() as folder, FakeTime() as fake, said():
+        fake = self.time
+        with said() as words:
             clock = WallClock()
-            new = NewPictures(folder, clock)
-            odd = Path(folder, "odd.jpg")
-            odd.write_bytes(b"no end")
-            os.utime(odd, (fake.now + fake.ahead_s,) * 2)
+            new = NewPictures(self.folder, clock)
+            self.write("odd.jpg", b"no end", date_s=fake.now + fake.ahead_s)
             self.assertEqual(new(), [])
             fake.ahead_s -= 60.0
+            self.write("between.jpg", date_s=fake.now + fake.ahead_s)
             fake.now += 2.0
             clock.look()
-            later = Path(folder, "later.jpg")
-            later.write_bytes(b"\xff\xd9")
-            os.utime(later, (fake.now + fake.ahead_s,) * 2)
-            seen = new()
-            self.assertEqual([path.name for path, _ in seen], ["odd.jpg", "later.jpg"])
-            self.assertAlmostEqual(seen[0][1], 100.0, places=3)
-            self.assertAlmostEqual(seen[1][1], 102.0, places=3)
+            self.assertEqual([(path.name, written) for path, written in new()], [("odd.jpg", 100.0)])
+            self.assertIn("between.jpg is left out: the clock was set while it was written", words.getvalue())
+            clock.look()
+            self.write("later.jpg", date_s=fake.now + fake.ahead_s)
+            self.assertEqual([(path.name, written) for path, written in new()], [("later.jpg", 102.0)])
+
+    def test_are_waited_for_while_their_folder_cannot_be_read(self):
+        self.write("1.jpg", date_s=50)
+        new = NewPictures(self.folder, self.clock)
+        away = self.folder.with_name("away")
+        self.folder.rename(away)
+        names, words = self.new(new)
+        self.assertEqual(names, [])
+        self.assertIn("no pictures: [Errno 2] No such file or directory", words)
+        self.assertEqual(self.new(new), ([], ""), "it is said once")
+        away.rename(self.folder)
+        self.write("2.jpg", date_s=60)
+        self.assertEqual(self.new(new), (["2.jpg"], f"{self.folder} can be read again\n"))
+
+    def test_that_do_not_come_while_the_autopilot_speaks_are_missed(self):
+        silence = Silence()
+        for pause_s, has_picture, unheard_s, expected in (
+                (9.9, False, 0.0, ""), (0.2, False, 10.1, ""), (0.0, False, 9.9, "no picture has come for 10 s"),
+                (5.0, False, 0.0, ""), (1.0, True, 0.0, "pictures come again"), (9.9, False, 0.0, ""),
+                (0.0, True, 0.0, ""), (9.9, False, 0.0, ""), (0.2, False, 0.0, "no picture has come for 10 s")):
+            self.time.now += pause_s
+            with said() as words:
+                silence.look(has_picture, self.time.now - unheard_s)
+            self.assertEqual(words.getvalue()[:len(expected) or None], expected)
 
 
 class LinesOfPictures(unittest.TestCase):

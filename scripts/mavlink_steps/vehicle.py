@@ -4,8 +4,10 @@ import math
 
 from heights import Heights
 
-KEPT = 3000           # some minutes of telemetry
-LONGEST_HOLE_S = 2.0  # beyond it what lies between two messages is a guess
+KEPT = 3000            # some minutes of telemetry
+LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
+CARRIED_ON_S = 1.0     # by the last velocity
+ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
 
 
 class Unknown(Exception):
@@ -33,18 +35,20 @@ def _finite(*values):
     return all(map(math.isfinite, values))
 
 
-def between(history, when, what):
-    """Values at a time, between those before and after; the last ones for a while after it."""
-    if not history or when < history[0][0] - LONGEST_HOLE_S or when > history[-1][0] + LONGEST_HOLE_S:
-        raise Unknown(f"no {what} of that time")
-    after = next((i for i in range(len(history) - 1, -1, -1) if history[i][0] <= when), -1) + 1
-    if after in (0, len(history)):
-        return history[min(after, len(history) - 1)][1:]
-    (t0, *before), (t1, *then) = history[after - 1], history[after]
-    if t1 - t0 > LONGEST_HOLE_S:
-        raise Unknown(f"no {what} of that time")
-    share = (when - t0) / (t1 - t0)
-    return tuple(a + share * (b - a) for a, b in zip(before, then))
+def around(history, when):
+    """The last entry before a time, or of it, and the first one after it. None where there is none."""
+    at = next((i for i in range(len(history) - 1, -1, -1) if history[i][0] <= when), -1)
+    return history[at] if at >= 0 else None, history[at + 1] if at + 1 < len(history) else None
+
+
+def between(before, after, when, longest_s):
+    """Values at a time on the straight line between two entries. None where they lie farther apart than that."""
+    if before is None or (before[0] < when and (after is None or after[0] - before[0] > longest_s)):
+        return None
+    if before[0] == when:
+        return before[1:]
+    (t0, *values), (t1, *then) = before, after
+    return tuple(a + (when - t0) / (t1 - t0) * (b - a) for a, b in zip(values, then))
 
 
 def turned(attitude, yaw):
@@ -69,9 +73,8 @@ class Vehicle:
         self._by_air = by_air
         self._heights = Heights(takeoff_agl_m)
         self._clock = BootClock()
-        self._places = collections.deque(maxlen=KEPT)     # time, north, east
+        self._places = collections.deque(maxlen=KEPT)     # time, north, east, velocity to the north and to the east
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
-        self._velocity = None
         self._holes = []  # when each ended
         self.heard = -math.inf
 
@@ -96,8 +99,14 @@ class Vehicle:
 
     def seen_at(self, when):
         """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
-        place = between(self._places, when, "VFR_HUD" if self._by_air else "LOCAL_POSITION_NED")
-        return place, between(self._attitudes, when, "ATTITUDE")
+        attitude = between(*around(self._attitudes, when), when, ATTITUDE_HOLE_S)
+        place = self._place_at(when)
+        if place is None:
+            what = "VFR_HUD" if self._by_air else "LOCAL_POSITION_NED"
+            raise Unknown(f"no {what} of that time")
+        if attitude is None:
+            raise Unknown(f"no two ATTITUDE around that time, at most {ATTITUDE_HOLE_S:g} s apart")
+        return place, attitude
 
     def holes_before(self, when):
         """How many there were in the velocities: the movement between a place before one and a place after it is not
@@ -120,6 +129,17 @@ class Vehicle:
         """Whether messages of that time and later ones have come."""
         return all(history and history[-1][0] >= when for history in (self._places, self._attitudes))
 
+    def _place_at(self, when):
+        """None where it is not known."""
+        before, after = around(self._places, when)
+        place = between(before, after, when, LONGEST_HOLE_S)
+        if place is not None:
+            return place[:2]
+        if before is None or when - before[0] > CARRIED_ON_S:
+            return None
+        last, north, east, north_m_s, east_m_s = before
+        return north + (when - last) * north_m_s, east + (when - last) * east_m_s
+
     def _hear_of_terrain(self, height_m, is_known, came):
         # Without any height it is the answer to a question about a place of which nothing is known. Those about other
         # places cannot be told from the vehicle's own.
@@ -140,19 +160,18 @@ class Vehicle:
         self._attitudes.append((when, roll, pitch, yaw))
 
     def _move_by_air(self, airspeed, came):
-        if self._attitudes and came - self._attitudes[-1][0] <= LONGEST_HOLE_S:
+        if self._attitudes and came - self._attitudes[-1][0] <= 0.5 * ATTITUDE_HOLE_S:
             yaw = self._attitudes[-1][3]
             self._move((airspeed * math.cos(yaw), airspeed * math.sin(yaw)), came)
 
     def _move(self, velocity, when):
         if not _finite(*velocity) or (self._places and when <= self._places[-1][0]):
             return
-        last, north, east = self._places[-1] if self._places else (when, 0.0, 0.0)
+        last, north, east, *before = self._places[-1] if self._places else (when, 0.0, 0.0, 0.0, 0.0)
         if when - last > LONGEST_HOLE_S:
             self._holes.append(when)
-        elif self._velocity:
+        else:
             half_s = 0.5 * (when - last)
-            north += half_s * (self._velocity[0] + velocity[0])
-            east += half_s * (self._velocity[1] + velocity[1])
-        self._places.append((when, north, east))
-        self._velocity = velocity
+            north += half_s * (before[0] + velocity[0])
+            east += half_s * (before[1] + velocity[1])
+        self._places.append((when, north, east, *velocity))

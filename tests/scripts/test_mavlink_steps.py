@@ -5,6 +5,7 @@ import importlib.util
 import json
 import math
 import random
+import select
 import socket
 import struct
 import subprocess
@@ -142,12 +143,13 @@ class Program(unittest.TestCase):
 
     def test_makes_a_step_of_a_picture(self):
         picture = Path(self.folder.name, "1.jpg")
-        self.tell(1000)
-        time.sleep(0.3)
-        self.tell(900, system=8)
-        picture.write_bytes(b"\xff\xd8\xff\xd9")
-        time.sleep(0.2)
-        self.tell(1500)
+        began = time.monotonic()
+        while not select.select([self.program.stdout], [], [], 0.05)[0]:
+            flown_s = time.monotonic() - began
+            self.tell(1000 + round(1e3 * flown_s))
+            self.tell(900, system=8)
+            if flown_s > 0.3 and not picture.exists():
+                picture.write_bytes(b"\xff\xd8\xff\xd9")
         step = json.loads(self.program.stdout.readline())
         self.assertEqual(step["image"], str(picture))
         self.assertAlmostEqual(step["time_us"] / 1e6, picture.stat().st_mtime, places=3)

@@ -10,7 +10,7 @@ from words import said
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
-from vehicle import Unknown, Vehicle, turned  # noqa: E402
+from vehicle import BootClock, Unknown, Vehicle, turned  # noqa: E402
 
 
 def about(axis, angle):
@@ -36,6 +36,16 @@ def hud(airspeed, alt=0.0):
 
 def altitude(above_ground_m, above_sea_m=0.0):
     return {"bottom_clearance": above_ground_m, "altitude_amsl": above_sea_m}
+
+
+def turn(vehicle, came, roll=0.0, pitch=0.0, yaw=0.0):
+    vehicle.hear("ATTITUDE", {"time_boot_ms": round(1e3 * came), "roll": roll, "pitch": pitch, "yaw": yaw}, came)
+
+
+def move(vehicle, came, north=0.0, east=0.0, height_m=80.0):
+    """At a velocity."""
+    fields = {"time_boot_ms": round(1e3 * came), "z": -height_m, "vx": north, "vy": east}
+    vehicle.hear("LOCAL_POSITION_NED", fields, came)
 
 
 class Camera(unittest.TestCase):
@@ -96,16 +106,12 @@ class Flights(unittest.TestCase):
             self.assertEqual(vehicle.agl_m(), 70.0)
         self.assertEqual(words.getvalue(), "the height above ground is known now\n")
 
-    def climb(self, vehicle, height_m, came):
-        vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": round(1e3 * came), "z": -height_m, "vx": 0.0, "vy": 0.0},
-                     came)
-
     def test_are_no_longer_as_high_above_ground_as_was_told_seconds_ago(self):
         vehicle = Vehicle(takeoff_agl_m=12.0)
         with said() as words:
             vehicle.hear("ALTITUDE", altitude(35.0), 1.0)
             for came in (1.5, 2.0, 3.0, 4.0, 5.0):
-                self.climb(vehicle, 50.0 * came, came)
+                move(vehicle, came, height_m=50.0 * came)
                 self.assertEqual(vehicle.agl_m(), 35.0 if came < 3.5 else 50.0 * came + 12.0)
             self.assertEqual(words.getvalue().count("not known any more"), 1)
             vehicle.hear("ALTITUDE", altitude(36.0), 5.0)
@@ -120,7 +126,7 @@ class Flights(unittest.TestCase):
                 ("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 70.0),  # of another place, asked for
                 ("ALTITUDE", altitude(60.0), 60.0)):
             vehicle = Vehicle()
-            self.climb(vehicle, 80.0, 1.0)
+            move(vehicle, 1.0)
             vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
             vehicle.hear(name, fields, 1.1)
             self.assertEqual(vehicle.agl_m(), height_m, (name, fields))
@@ -132,7 +138,7 @@ class Flights(unittest.TestCase):
 
     def test_have_no_height_that_was_heard_long_ago(self):
         vehicle = Vehicle(by_air=True)
-        self.climb(vehicle, 80.0, 1.0)
+        move(vehicle, 1.0)
         vehicle.hear("VFR_HUD", hud(20.0), 9.0)
         with self.assertRaisesRegex(Unknown, "no height"):
             vehicle.agl_m()
@@ -149,38 +155,104 @@ class Flights(unittest.TestCase):
                 (5.0, "VFR_HUD", hud(20.0, 540.0), 540.0)):
             vehicle.hear(name, fields, came)
             self.assertEqual(vehicle.alt_m(), alt_m, (name, fields))
-        self.climb(vehicle, 80.0, 8.0)
+        move(vehicle, 8.0)
         self.assertIsNone(vehicle.alt_m(), "heard long ago")
 
-    def test_are_unknown_where_nothing_was_heard(self):
+    def unknown(self, vehicle, when, why=""):
+        with self.assertRaisesRegex(Unknown, why):
+            vehicle.seen_at(when)
+
+    def test_have_moved_nobody_knows_where_while_nothing_was_heard(self):
         vehicle = Vehicle()
-        for boot_ms in (0, 1000, 21000, 22000):
-            vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, boot_ms / 1e3)
-            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 1, "vy": 0}, boot_ms / 1e3)
-        self.assertEqual([vehicle.holes_before(when) for when in (0.0, 1.0, 20.9, 21.0, 22.0)], [0, 0, 0, 1, 1])
-        self.assertAlmostEqual(vehicle.seen_at(21.0)[0][0], 1.0, msg="nothing is guessed")
-        self.assertAlmostEqual(vehicle.seen_at(22.0)[0][0] - vehicle.seen_at(21.0)[0][0], 1.0)
-        self.assertAlmostEqual(vehicle.seen_at(0.5)[0][0], 0.5)
-        for when in (-5.0, 10.0, 25.0):
-            with self.assertRaises(Unknown):
-                vehicle.seen_at(when)
+        for came in (10.0, 11.0, 13.0, 33.0, 34.0):
+            move(vehicle, came, north=1.0)
+        for tenth in range(100, 360):
+            turn(vehicle, 0.1 * tenth)
+        self.assertEqual([vehicle.holes_before(when) for when in (10.0, 11.0, 32.9, 33.0, 34.0)], [0, 0, 0, 1, 1])
+        for when, north_m in ((10.0, 0.0), (10.5, 0.5), (12.0, 2.0), (33.0, 3.0), (34.0, 4.0)):
+            self.assertAlmostEqual(vehicle.seen_at(when)[0][0], north_m, msg=str(when))
+        for when in (9.9, 14.1, 23.0, 32.9, 35.1):
+            self.unknown(vehicle, when, "no LOCAL_POSITION_NED of that time|no two ATTITUDE")
+
+    def test_go_on_for_a_second_as_they_went_last(self):
+        vehicle = Vehicle()
+        for came in (10.0, 10.5):
+            move(vehicle, came, north=3.0, east=-4.0)
+        for tenth in range(100, 120):
+            turn(vehicle, 0.1 * tenth)
+        for when in (10.5, 11.0, 11.49):
+            (north, east), _ = vehicle.seen_at(when)
+            self.assertAlmostEqual(north, 3.0 * (when - 10.0))
+            self.assertAlmostEqual(east, -4.0 * (when - 10.0))
+        self.unknown(vehicle, 11.51, "no LOCAL_POSITION_NED of that time")
+
+    def test_have_no_attitude_of_moments_between_which_they_may_have_banked(self):
+        vehicle = Vehicle()
+        for hundredth in range(0, 500, 10):
+            move(vehicle, 10.0 + 0.01 * hundredth)
+        for came, roll in ((10.0, 0.0), (10.2, 0.1), (10.79, 0.3), (11.4, 0.5), (11.6, 0.5)):
+            turn(vehicle, came, roll=roll)
+        self.assertAlmostEqual(vehicle.seen_at(10.1)[1][0], 0.05)
+        self.assertAlmostEqual(vehicle.seen_at(10.495)[1][0], 0.2, msg="0.59 s between two")
+        for when in (9.95, 10.8, 11.1, 11.39, 11.61, 12.6):
+            self.unknown(vehicle, when, "no LOCAL_POSITION_NED" if when < 10.0 else "no two ATTITUDE around that time")
+        self.assertAlmostEqual(vehicle.seen_at(11.4)[1][0], 0.5, msg="after 0.61 s it is known again")
 
     def test_outlast_a_restart_of_the_autopilot(self):
         vehicle = Vehicle()
-        for came, boot_ms in ((100.0, 90_000), (101.0, 91_000), (103.0, 500), (104.0, 1500)):
+        for came, boot_ms in ((100.0, 90_000), (101.0, 91_000), (103.0, 500), (103.5, 1000), (104.0, 1500)):
             vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, came)
             vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 2, "vy": 0}, came)
         self.assertAlmostEqual(vehicle.seen_at(104.0)[0][0], 8.0, places=2)
 
+    def test_do_not_take_what_is_no_number(self):
+        for nothing in (math.nan, math.inf, -math.inf):
+            for message, fields in (("ATTITUDE", ("roll", "pitch", "yaw")), ("LOCAL_POSITION_NED", ("vx", "vy"))):
+                for field in fields:
+                    vehicle = Vehicle()
+                    for tenth in range(100, 111):
+                        move(vehicle, 0.1 * tenth, north=10.0)
+                        turn(vehicle, 0.1 * tenth, roll=0.2, yaw=0.3)
+                        if tenth == 105:
+                            known = {"z": -80.0, "vx": 10.0, "vy": 0.0, "roll": 0.2, "pitch": 0.0, "yaw": 0.3}
+                            vehicle.hear(message, {"time_boot_ms": 10_550, **known, field: nothing}, 10.55)
+                    for when in (10.55, 11.0):
+                        (north, east), attitude = vehicle.seen_at(when)
+                        self.assertAlmostEqual(north, 10.0 * (when - 10.0))
+                        self.assertAlmostEqual(east, 0.0)
+                        self.assertEqual(tuple(round(angle, 9) for angle in attitude), (0.2, 0.0, 0.3))
 
-    def test_by_air_do_not_go_where_the_nose_pointed_long_ago(self):
-        vehicle = Vehicle(by_air=True)
-        vehicle.hear("ATTITUDE", {"time_boot_ms": 0, "roll": 0, "pitch": 0, "yaw": 0}, 5.0)
-        for i in range(100):
-            vehicle.hear("VFR_HUD", hud(20.0), 5.0 + 0.1 * i)
-        vehicle.hear("ATTITUDE", {"time_boot_ms": 10_000, "roll": 0, "pitch": 0, "yaw": 0}, 15.0)
-        vehicle.hear("VFR_HUD", hud(20.0), 15.0)
-        self.assertEqual(vehicle.holes_before(15.0), 1)
+    def test_do_not_go_on_at_a_velocity_that_the_autopilot_lost(self):
+        vehicle = Vehicle()
+        for tenth in range(100, 200):
+            turn(vehicle, 0.1 * tenth)
+            move(vehicle, 0.1 * tenth, north=10.0 if tenth < 120 else math.nan)
+        self.unknown(vehicle, 15.0, "no LOCAL_POSITION_NED of that time")
+
+
+class FlightsByAir(unittest.TestCase):
+    def test_do_not_go_where_the_nose_pointed_long_ago(self):
+        for late_s, holes in ((0.29, 0), (0.31, 1)):
+            vehicle = Vehicle(by_air=True)
+            for came, after_s in ((5.0, 0.0), (6.5, late_s), (8.0, 0.0)):
+                turn(vehicle, came)
+                vehicle.hear("VFR_HUD", hud(20.0), came + after_s)
+            self.assertEqual(vehicle.holes_before(8.0), holes)
+
+
+class BootClocks(unittest.TestCase):
+    def test_that_drift_are_followed(self):
+        for drift in (-5e-5, 5e-5):
+            clock = BootClock()
+            for came in range(100, 3700):
+                ours = clock.ours((came - 90) * (1.0 + drift), came + (0.0 if came % 10 == 0 else 0.3))
+                self.assertLess(abs(ours - came), 0.002)
+
+    def test_are_those_of_a_restarted_autopilot_where_they_go_back_by_more_than_a_second(self):
+        for back_s, ours in ((0.99, 110.0 - 0.99), (1.01, 110.5)):
+            clock = BootClock()
+            clock.ours(10.0, 110.0)
+            self.assertAlmostEqual(clock.ours(10.0 - back_s, 110.5), ours, places=3)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 import collections
 import math
 
+from airspeed import true_airspeed
 from heights import Heights
 
 KEPT = 3000            # some minutes of telemetry
@@ -102,7 +103,7 @@ class Vehicle:
         attitude = between(*around(self._attitudes, when), when, ATTITUDE_HOLE_S)
         place = self._place_at(when)
         if place is None:
-            what = "VFR_HUD" if self._by_air else "LOCAL_POSITION_NED"
+            what = "VFR_HUD with a height above the sea" if self._by_air else "LOCAL_POSITION_NED"
             raise Unknown(f"no {what} of that time")
         if attitude is None:
             raise Unknown(f"no two ATTITUDE around that time, at most {ATTITUDE_HOLE_S:g} s apart")
@@ -160,9 +161,10 @@ class Vehicle:
         self._attitudes.append((when, roll, pitch, yaw))
 
     def _move_by_air(self, airspeed, came):
-        if self._attitudes and came - self._attitudes[-1][0] <= 0.5 * ATTITUDE_HOLE_S:
+        speed = true_airspeed(airspeed, self._heights.alt_m(came))
+        if speed is not None and self._attitudes and came - self._attitudes[-1][0] <= 0.5 * ATTITUDE_HOLE_S:
             yaw = self._attitudes[-1][3]
-            self._move((airspeed * math.cos(yaw), airspeed * math.sin(yaw)), came)
+            self._move((speed * math.cos(yaw), speed * math.sin(yaw)), came)
 
     def _move(self, velocity, when):
         if not _finite(*velocity) or (self._places and when <= self._places[-1][0]):

@@ -231,6 +231,34 @@ class Flights(unittest.TestCase):
 
 
 class FlightsByAir(unittest.TestCase):
+    def test_are_as_fast_as_the_thin_air_of_their_height_lets_them(self):
+        # ISO 2533: densities of 1.225, 1.0065 and 0.4127 kg/m^3
+        for alt_m, true in ((0.0, 20.0), (2000.0, 22.064), (10_000.0, 34.457)):
+            vehicle = Vehicle(by_air=True)
+            for tenth in range(51, 63):
+                turn(vehicle, 0.1 * tenth, yaw=0.5 * math.pi)
+                vehicle.hear("VFR_HUD", hud(20.0, alt=alt_m), 0.1 * tenth)
+            (north, east), _ = vehicle.seen_at(6.1)
+            self.assertAlmostEqual(east, true, delta=0.01)
+            self.assertAlmostEqual(north, 0.0)
+
+    def test_are_as_high_for_that_as_altitude_tells(self):
+        vehicle = Vehicle(by_air=True)
+        vehicle.hear("ALTITUDE", altitude(300.0, 2000.0), 5.0)
+        for tenth in range(51, 63):
+            turn(vehicle, 0.1 * tenth)
+            vehicle.hear("VFR_HUD", hud(20.0, alt=300.0), 0.1 * tenth)
+        self.assertAlmostEqual(vehicle.seen_at(6.1)[0][0], 22.06, places=2)
+
+    def test_are_as_fast_as_nobody_knows_where_their_height_or_airspeed_is_not_known(self):
+        for fields in (hud(20.0, alt=math.nan), hud(20.0, alt=11_001.0), hud(math.nan), hud(math.inf)):
+            vehicle = Vehicle(by_air=True)
+            for tenth in range(50, 62):
+                turn(vehicle, 0.1 * tenth)
+                vehicle.hear("VFR_HUD", fields, 0.1 * tenth)
+            with self.assertRaisesRegex(Unknown, "no VFR_HUD"):
+                vehicle.seen_at(6.0)
+
     def test_do_not_go_where_the_nose_pointed_long_ago(self):
         for late_s, holes in ((0.29, 0), (0.31, 1)):
             vehicle = Vehicle(by_air=True)

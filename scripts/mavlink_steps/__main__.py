@@ -44,7 +44,8 @@ def parse_arguments(arguments):
     parser.add_argument("--listen", type=parse_address, default=("0.0.0.0", 14551), metavar="[HOST:]PORT",
                         help="where MAVLink comes in by UDP (default: 14551)")
     parser.add_argument("--watch", required=True, metavar="FOLDER", help="folder into which the camera writes")
-    parser.add_argument("--system", type=int, help="the vehicle's system id (default: that of the first message)")
+    parser.add_argument("--system", type=int, choices=range(1, 256), metavar="ID",
+                        help="the vehicle's system id (default: that of the first message)")
     parser.add_argument("--component", type=int, default=1,
                         help="the autopilot's component id; others of the system are ignored (default: %(default)d)")
     parser.add_argument("--camera", choices=("body", "level"), required=True,
@@ -77,7 +78,7 @@ def hear(link, autopilot, vehicle):
 def follow(link, pictures, clock, options):
     vehicle = Vehicle(options.by_air, options.takeoff_agl)
     autopilot = Autopilot(options.system, options.component)
-    lines = Lines(vehicle, clock, options)
+    lines = Lines(vehicle, autopilot, clock, options)
     silence = Silence()
     looked = -math.inf
     while True:

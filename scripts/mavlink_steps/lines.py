@@ -11,10 +11,12 @@ WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
 
 
 class Lines:
-    """Pictures, and what the autopilot tells of the time at which each was taken. `clock`: a WallClock."""
+    """Pictures, and what the autopilot tells of the time at which each was taken. Positions that come of them go to its
+    `system`. `clock`: a WallClock."""
 
-    def __init__(self, vehicle, clock, options):
+    def __init__(self, vehicle, autopilot, clock, options):
         self._vehicle = vehicle
+        self._autopilot = autopilot
         self._clock = clock
         self._options = options
         self._waiting = collections.deque()  # path, time.monotonic()
@@ -62,7 +64,8 @@ class Lines:
                 "north_m": round(north_m, 3), "east_m": round(east_m, 3),
                 "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
                 "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2),
-                "camera_yaw_deg": round(math.degrees(math.remainder(yaw - heading, math.tau)), 3), "image": str(path)}
+                "camera_yaw_deg": round(math.degrees(math.remainder(yaw - heading, math.tau)), 3), "image": str(path),
+                "system": self._autopilot.system}
         alt_m = self._vehicle.alt_m()
         return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}
 

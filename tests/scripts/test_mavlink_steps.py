@@ -86,6 +86,7 @@ class Autopilots(unittest.TestCase):
         with said() as words:
             self.assertFalse(autopilot.sent(Message(8, 154, "ATTITUDE", {})))
             self.assertFalse(autopilot.sent(Message(8, 100, "VFR_HUD", {})))
+            self.assertFalse(autopilot.sent(Message(0, 1, "ATTITUDE", {})), "no position could be sent to it")
             self.assertTrue(autopilot.sent(Message(7, 1, "ATTITUDE", {})), "the system is that of an autopilot")
             self.assertFalse(autopilot.sent(Message(8, 1, "ATTITUDE", {})))
             for _ in range(3):
@@ -158,7 +159,7 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0), places=2)
         self.assertAlmostEqual(step["roll_deg"], math.degrees(0.02), places=2)
         self.assertAlmostEqual(step["pitch_deg"], math.degrees(-0.01), places=2)
-        self.assertEqual((step["agl_m"], step["alt_m"]), (120.0, 640.5))
+        self.assertEqual((step["agl_m"], step["alt_m"], step["system"]), (120.0, 640.5, 7))
 
     def test_ends_quietly_when_nobody_reads_its_steps(self):
         self.tell(1000)

@@ -228,7 +228,7 @@ class LinesOfPictures(unittest.TestCase):
         self.vehicle = Vehicle()
         self.clock = WallClock()
         self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
-        self.lines = Lines(self.vehicle, self.clock, self.options)
+        self.lines = Lines(self.vehicle, types.SimpleNamespace(system=7), self.clock, self.options)
 
     def fly(self, seconds, heard=True, roll=0.0, yaw=0.0):
         for _ in range(round(10 * seconds)):
@@ -299,6 +299,11 @@ class LinesOfPictures(unittest.TestCase):
         self.assertIn("future.jpg is left out: its time lies 3600.0 s ahead", words.getvalue())
         self.lines.add("1.jpg", self.time.now - 0.05)
         self.assertEqual([step["image"] for step in self.printed()[0]], ["1.jpg"])
+
+    def test_name_the_vehicle_to_which_positions_go(self):
+        self.fly(3.0)
+        self.lines.add("1.jpg", self.time.now - 0.05)
+        self.assertEqual(self.printed()[0][0]["system"], 7)
 
     def test_never_go_back_in_time(self):
         self.fly(3.0)

@@ -38,6 +38,20 @@ def parse_address(text):
     return host.strip("[]") or "0.0.0.0", int(port)
 
 
+def parse_number(text):
+    number = float(text)
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"'{text}': write a number")
+    return number
+
+
+def parse_delay(text):
+    delay_s = parse_number(text)
+    if delay_s < 0.0:
+        raise argparse.ArgumentTypeError(f"'{text}': no picture is written before it was taken")
+    return delay_s
+
+
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(prog="mavlink_steps", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -50,13 +64,14 @@ def parse_arguments(arguments):
                         help="the autopilot's component id; others of the system are ignored (default: %(default)d)")
     parser.add_argument("--camera", choices=("body", "level"), required=True,
                         help="body: fixed to the airframe, looking down; level: held straight down by a gimbal")
-    parser.add_argument("--camera-yaw", type=float, default=0.0, metavar="DEGREES",
+    parser.add_argument("--camera-yaw", type=parse_number, default=0.0, metavar="DEGREES",
                         help="where the picture's upper edge points, clockwise from the nose (default: 0)")
     parser.add_argument("--by-air", action="store_true", help="movements by airspeed and heading")
-    parser.add_argument("--agl", type=float, metavar="M", help="height above ground, instead of what the autopilot tells")
-    parser.add_argument("--takeoff-agl", type=float, default=0.0, metavar="M",
+    parser.add_argument("--agl", type=parse_number, metavar="M",
+                        help="height above ground, instead of what the autopilot tells")
+    parser.add_argument("--takeoff-agl", type=parse_number, default=0.0, metavar="M",
                         help="how much higher than the ground in the pictures the take-off lay (default: 0)")
-    parser.add_argument("--delay", type=float, default=0.0, metavar="S",
+    parser.add_argument("--delay", type=parse_delay, default=0.0, metavar="S",
                         help="from the capture of a picture to its file (default: 0)")
     parser.set_defaults(origin=uuid.uuid4().hex)  # sums of velocities begin anew with each start
     return parser.parse_args(arguments)

@@ -54,7 +54,7 @@ class Lines:
             attitude = (0.0, 0.0, attitude[2])
         heading = attitude[2]
         roll, pitch, yaw = turned(attitude, math.radians(self._options.camera_yaw))
-        agl_m = self._options.agl if self._options.agl is not None else self._vehicle.agl_m()
+        agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(), 2)
         if agl_m <= 0.0:
             raise Unknown(f"it was taken {agl_m:.1f} m above ground")
         time_us = self._clock.date_us(captured)
@@ -63,7 +63,7 @@ class Lines:
         step = {"time_us": time_us, "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
                 "north_m": round(north_m, 3), "east_m": round(east_m, 3),
                 "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
-                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": round(agl_m, 2),
+                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,
                 "camera_yaw_deg": round(math.degrees(math.remainder(yaw - heading, math.tau)), 3), "image": str(path),
                 "system": self._autopilot.system}
         alt_m = self._vehicle.alt_m()

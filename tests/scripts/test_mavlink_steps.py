@@ -15,6 +15,7 @@ import time
 import types
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from words import said
 
@@ -105,30 +106,57 @@ class Autopilots(unittest.TestCase):
 
 
 class Listening(unittest.TestCase):
-    def test_takes_all_that_came_during_a_long_look_into_a_folder_and_waits_for_nothing(self):
+    def setUp(self):
         spec = importlib.util.spec_from_file_location("mavlink_steps", PROGRAM / "__main__.py")
-        program = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(program)
-        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
-        self.addCleanup(ours.close)
-        self.addCleanup(theirs.close)
-        ours.setblocking(False)
+        self.program = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(self.program)
+        self.ours, self.theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(self.ours.close)
+        self.addCleanup(self.theirs.close)
+        self.ours.setblocking(False)
+
+    def test_takes_all_that_came_during_a_long_look_into_a_folder_and_waits_for_nothing(self):
         heard = []
         vehicle = types.SimpleNamespace(hear=lambda name, fields, came: heard.append(fields["time_boot_ms"]))
         for boot_ms in range(50):
-            theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
+            self.theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
         with said():
-            program.hear(ours, Autopilot(7, 1), vehicle)
+            self.program.hear(self.ours, Autopilot(7, 1), vehicle)
         self.assertEqual(heard, list(range(50)))
+
+    def test_looks_at_the_clock_before_the_pictures_and_then_whether_they_come(self):
+        class End(Exception):
+            pass
+
+        calls = []
+        clock = types.SimpleNamespace(look=lambda: calls.append("clock"))
+        silence = mock.Mock()
+        silence.look.side_effect = End
+
+        def pictures():
+            calls.append("pictures")
+            return []
+
+        options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, delay=0.0)
+        self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
+        began = time.monotonic()
+        with mock.patch.object(self.program, "Silence", lambda: silence), said(), self.assertRaises(End):
+            self.program.follow(self.ours, pictures, clock, options)
+        self.assertEqual(calls, ["clock", "pictures"])
+        (has_picture, heard), _ = silence.look.call_args
+        self.assertFalse(has_picture)
+        self.assertGreaterEqual(heard, began)
 
 
 class Program(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
+
+    def start(self, *options):
         self.program = subprocess.Popen(
-            [sys.executable, "-B", str(PROGRAM), "--listen", "127.0.0.1:0", "--watch", self.folder.name, "--camera", "body"],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            [sys.executable, "-B", str(PROGRAM), "--listen", "127.0.0.1:0", "--watch", self.folder.name,
+             "--camera", "body", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: [self.program.wait(), self.program.stdout.close(), self.program.stderr.close()])
         self.addCleanup(self.program.terminate)
         self.port = int(self.program.stderr.readline().split()[-1])
@@ -142,18 +170,27 @@ class Program(unittest.TestCase):
                          packet("ATTITUDE", boot_ms + 50, 1.0, 1.0, 2.0, system=system, component=154),
                          ("127.0.0.1", self.port))
 
-    def test_makes_a_step_of_a_picture(self):
-        picture = Path(self.folder.name, "1.jpg")
+    def step_of(self, picture):
+        """The step that is made of it, half a second after the vehicle began to fly."""
         began = time.monotonic()
         while not select.select([self.program.stdout], [], [], 0.05)[0]:
             flown_s = time.monotonic() - began
             self.tell(1000 + round(1e3 * flown_s))
             self.tell(900, system=8)
-            if flown_s > 0.3 and not picture.exists():
+            if flown_s > 0.5 and not picture.exists():
                 picture.write_bytes(b"\xff\xd8\xff\xd9")
-        step = json.loads(self.program.stdout.readline())
+        return json.loads(self.program.stdout.readline())
+
+    def check_time(self, step, picture, delay_s):
+        date_s = picture.stat().st_mtime - delay_s
+        self.assertAlmostEqual(step["time_us"] / 1e6, date_s, places=3)
+
+    def test_makes_a_step_of_a_picture(self):
+        self.start()
+        picture = Path(self.folder.name, "1.jpg")
+        step = self.step_of(picture)
         self.assertEqual(step["image"], str(picture))
-        self.assertAlmostEqual(step["time_us"] / 1e6, picture.stat().st_mtime, places=3)
+        self.check_time(step, picture, 0.0)
         self.assertAlmostEqual(step["north_m"], 2.0 * step["east_m"], places=2)
         self.assertGreater(step["north_m"], 1.0)
         self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0), places=2)
@@ -161,7 +198,35 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(step["pitch_deg"], math.degrees(-0.01), places=2)
         self.assertEqual((step["agl_m"], step["alt_m"], step["system"]), (120.0, 640.5, 7))
 
+    def test_tells_the_time_and_the_height_that_it_was_told(self):
+        self.start("--delay", "0.25", "--agl", "90.5")
+        picture = Path(self.folder.name, "1.jpg")
+        step = self.step_of(picture)
+        self.check_time(step, picture, 0.25)
+        self.assertEqual(step["agl_m"], 90.5)
+
+    def test_outlasts_a_folder_that_is_gone_for_a_moment(self):
+        self.start()
+        folder = Path(self.folder.name)
+        away = folder.with_name(folder.name + ".away")
+        folder.rename(away)
+        try:
+            self.assertIn("no pictures: [Errno 2]", self.program.stderr.readline())
+        finally:
+            away.rename(folder)
+        self.assertIn("can be read again", self.program.stderr.readline())
+        self.assertEqual(self.step_of(folder / "1.jpg")["image"], str(folder / "1.jpg"))
+
+    def test_refuses_what_is_no_number_delay_or_system(self):
+        for option, value in (("--agl", "nan"), ("--takeoff-agl", "inf"), ("--camera-yaw", "x"), ("--delay", "-0.1"),
+                              ("--delay", "nan"), ("--system", "0"), ("--system", "256")):
+            ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera", "body",
+                                    option, value], stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual(ended.returncode, 2)
+            self.assertIn(f"argument {option}: ", ended.stderr)
+
     def test_ends_quietly_when_nobody_reads_its_steps(self):
+        self.start()
         self.tell(1000)
         self.assertIn("system 7", self.program.stderr.readline())
         self.program.stdout.close()
@@ -173,6 +238,7 @@ class Program(unittest.TestCase):
         self.assertEqual(self.program.stderr.read(), "")
 
     def test_says_why_a_picture_is_left_out(self):
+        self.start()
         Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")
         self.assertIn("1.jpg is left out: no LOCAL_POSITION_NED of that time", self.program.stderr.readline())
 

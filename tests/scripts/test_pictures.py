@@ -230,14 +230,14 @@ class LinesOfPictures(unittest.TestCase):
         self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
         self.lines = Lines(self.vehicle, types.SimpleNamespace(system=7), self.clock, self.options)
 
-    def fly(self, seconds, heard=True, roll=0.0, yaw=0.0):
+    def fly(self, seconds, heard=True, roll=0.0, yaw=0.0, height_m=9.0):
         for _ in range(round(10 * seconds)):
             self.time.now += 0.1
             if heard:
                 boot_ms = round(1e3 * self.time.now)
                 self.vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": roll, "pitch": 0.1, "yaw": yaw},
                                   self.time.now)
-                self.vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": -9, "vx": 10, "vy": 0},
+                self.vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": -height_m, "vx": 10, "vy": 0},
                                   self.time.now)
 
     def printed(self):
@@ -294,11 +294,48 @@ class LinesOfPictures(unittest.TestCase):
 
     def test_are_not_kept_back_by_a_picture_of_the_future(self):
         self.fly(3.0)
+        for ahead_s in (3600.0, 0.51):
+            with said() as words:
+                self.lines.add("future.jpg", self.time.now + ahead_s)
+            self.assertIn(f"future.jpg is left out: its time lies {ahead_s:.1f} s ahead", words.getvalue())
         with said() as words:
-            self.lines.add("future.jpg", self.time.now + 3600.0)
-        self.assertIn("future.jpg is left out: its time lies 3600.0 s ahead", words.getvalue())
+            self.lines.add("0.jpg", self.time.now + 0.49)
+        self.assertEqual(words.getvalue(), "")
+        self.fly(1.0)
+        self.assertEqual([step["image"] for step in self.printed()[0]], ["0.jpg"])
         self.lines.add("1.jpg", self.time.now - 0.05)
         self.assertEqual([step["image"] for step in self.printed()[0]], ["1.jpg"])
+
+    def test_wait_for_what_the_autopilot_tells_of_the_time_after_them(self):
+        self.fly(3.0)
+        self.lines.add("1.jpg", self.time.now + 0.01)
+        self.assertEqual(self.printed(), ([], ""))
+        self.fly(0.1)
+        self.assertEqual(len(self.printed()[0]), 1)
+
+    def test_wait_no_longer_than_half_a_second_for_it(self):
+        for delay_s in (0.0, 2.0):
+            self.options.delay = delay_s
+            self.fly(3.0)
+            self.lines.add("1.jpg", self.time.now + 0.01)
+            self.time.now += delay_s + 0.5
+            self.assertEqual(self.printed(), ([], ""))
+            self.time.now += 0.02
+            steps, words = self.printed()
+            self.assertEqual(steps, [])
+            self.assertIn("1.jpg is left out: no ", words)
+
+    def test_are_taken_above_ground(self):
+        for told_m, height_m in ((100.0, 100.0), (0.01, 0.01), (0.004, None), (0.0, None), (-3.0, None), (None, 9.0)):
+            self.options.agl = told_m
+            self.fly(1.0)
+            self.lines.add("1.jpg", self.time.now - 0.05)
+            steps, words = self.printed()
+            self.assertEqual([step["agl_m"] for step in steps], [] if height_m is None else [height_m])
+            self.assertEqual("above ground" in words, height_m is None)
+        self.fly(1.0, height_m=-0.5)
+        self.lines.add("1.jpg", self.time.now - 0.05)
+        self.assertEqual(self.printed(), ([], "1.jpg is left out: it was taken -0.5 m above ground\n"))
 
     def test_name_the_vehicle_to_which_positions_go(self):
         self.fly(3.0)

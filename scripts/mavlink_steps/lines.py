@@ -60,7 +60,8 @@ class Lines:
         time_us = self._clock.date_us(captured)
         if time_us <= self._last_us:
             raise Unknown("it was not taken after the one before it")
-        step = {"time_us": time_us, "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
+        step = {"time_us": time_us, "monotonic_s": round(captured, 6),
+                "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
                 "north_m": round(north_m, 3), "east_m": round(east_m, 3),
                 "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
                 "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,

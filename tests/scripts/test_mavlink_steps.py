@@ -184,6 +184,7 @@ class Program(unittest.TestCase):
     def check_time(self, step, picture, delay_s):
         date_s = picture.stat().st_mtime - delay_s
         self.assertAlmostEqual(step["time_us"] / 1e6, date_s, places=3)
+        self.assertAlmostEqual(step["monotonic_s"], date_s - (time.time() - time.monotonic()), places=2)
 
     def test_makes_a_step_of_a_picture(self):
         self.start()

@@ -306,6 +306,17 @@ class LinesOfPictures(unittest.TestCase):
         self.lines.add("1.jpg", self.time.now - 0.05)
         self.assertEqual([step["image"] for step in self.printed()[0]], ["1.jpg"])
 
+    def test_tell_when_they_were_taken_by_the_monotonic_clock_too(self):
+        self.fly(3.0)
+        self.time.ahead_s += 3600.0
+        with said():
+            self.clock.look()
+        captured = self.time.now - 0.05
+        self.lines.add("1.jpg", captured)
+        ((step,), _) = self.printed()
+        self.assertAlmostEqual(step["monotonic_s"], captured, places=5)
+        self.assertAlmostEqual(1e-6 * step["time_us"], captured + 1_700_000_000.0, places=3)
+
     def test_wait_for_what_the_autopilot_tells_of_the_time_after_them(self):
         self.fly(3.0)
         self.lines.add("1.jpg", self.time.now + 0.01)

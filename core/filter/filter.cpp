@@ -112,14 +112,16 @@ void Filter::begin_step() {
                [this](RandomStream& random) { return uniform_draw(region_, region_.poses, random); });
 }
 
-bool Filter::keep_within_region() {
+double Filter::keep_within_region() {
   Particles& p = state_.particles;
+  double lost = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!region_.keeps({p.east_m[i], p.north_m[i]})) p.weight[i] = 0.0;
+    if (!region_.keeps({p.east_m[i], p.north_m[i]})) lost += std::exchange(p.weight[i], 0.0);
   }
-  if (normalise(p.weight)) return true;
+  // Those that lag behind a vehicle that has left are no belief.
+  if (lost <= 0.5 && normalise(p.weight)) return 1.0 - lost;
   start_uniformly(region_.poses);
-  return false;
+  return 0.0;
 }
 
 Correction Filter::correct(std::span<const double> log_likelihoods) {

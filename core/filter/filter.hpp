@@ -78,10 +78,10 @@ class Filter {
   /// The same where a search tells more about a belief that has just begun; no further reset.
   void restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
 
-  /// Moves the particles; those that the region does not keep lose their weight. Returns false where none was left and
-  /// the belief became uniform over the region.
+  /// Moves the particles; those that the region does not keep lose their weight. Returns the share of the weight that
+  /// it keeps: 0 where that was less than half, and the belief became uniform over the region.
   template <MotionModel Motion>
-  bool predict(const Motion& motion) {
+  double predict(const Motion& motion) {
     begin_step();
     Particles& particles = state_.particles;
     for_ranges(particles.size(), threads_, [&](std::size_t first, std::size_t last) {
@@ -115,7 +115,7 @@ class Filter {
 
  private:
   void begin_step();
-  bool keep_within_region();
+  double keep_within_region();
   void resample();
   void roughen(std::span<const std::size_t> ancestors);
   /// Adds noise to two columns of a share of the particles, drawn at random.

@@ -23,9 +23,9 @@ bool is_borne_out(const TrackSettings& settings, const TrackerState& state) {
 bool has_converged(const TrackSettings& settings, const TrackerState& state, const Cluster& best,
                    const TrackEstimate& estimate) {
   return best.weight >= kConvergedWeight && best.sigma_m() <= kConvergedSigmaM &&
-         estimate.measurement != Measurement::kRejected && !state.last_view.stands_still &&
-         state.claim.is_supported() && is_borne_out(settings, state) && estimate.doubt <= kMaxDoubt &&
-         estimate.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
+         estimate.measurement != Measurement::kRejected && estimate.measurement != Measurement::kRepeated &&
+         !state.last_view.stands_still && state.claim.is_supported() && is_borne_out(settings, state) &&
+         estimate.doubt <= kMaxDoubt && estimate.since_accepted_s.value_or(kStaleAfterS) < kStaleAfterS;
 }
 
 }  // namespace

@@ -14,12 +14,17 @@ constexpr int kOpenLooks = 2;              // times as old a look that bore the 
 constexpr double kLookRadiusM = 60.0;      // less than a block, from which on streets repeat
 constexpr double kMaxLookRadiusM = 150.0;  // where as much was flown since the last look: odometry may be all wrong
 const Angle kLookHeading = Angle::degrees(15.0);
+const Angle kNearHeading = Angle::degrees(3.0);  // as kNearM below
+const Angle kMaxNearHeading = Angle::degrees(6.0);
 
-/// Probability of the places within this distance of a belief.
-double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zone, double radius_m) {
+/// Probability of the poses within this distance and angle of a belief.
+double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zone, double radius_m, Angle angle) {
   double near = 0.0;
   for (const FixMode& mode : fix.modes) {
-    if (distance_m(on_grid(mode.pose, zone).position, belief.mean.position) <= radius_m) near += mode.weight;
+    const GridPose pose = on_grid(mode.pose, zone);
+    const bool is_near = distance_m(pose.position, belief.mean.position) <= radius_m &&
+                         angular_distance(pose.heading, belief.mean.heading) <= angle;
+    if (is_near) near += mode.weight;
   }
   return near;
 }
@@ -33,9 +38,13 @@ Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& z
   using Outcome = Look::Outcome;
   if (!fix.complete) return Outcome::kOpen;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
-  if (probability_near(fix, belief, zone, std::min(near_m, kMaxNearM)) > kMinProbability) return Outcome::kBorneOut;
+  const Angle turned = std::max(kNearHeading, kSigmas * Angle::radians(std::sqrt(belief.covariance[2][2])));
+  const double borne_out =
+      probability_near(fix, belief, zone, std::min(near_m, kMaxNearM), std::min(turned, kMaxNearHeading));
+  if (borne_out > kMinProbability) return Outcome::kBorneOut;
   const bool found = fix.status != FixStatus::kNoFix && fix.probability > kMinProbability;
-  const bool beside = found && probability_near(fix, belief, zone, near_m) < kMaxShareBeside * fix.probability;
+  const bool beside =
+      found && probability_near(fix, belief, zone, near_m, kLookHeading) < kMaxShareBeside * fix.probability;
   return beside ? Outcome::kBeside : Outcome::kOpen;
 }
 

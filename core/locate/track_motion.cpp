@@ -57,7 +57,7 @@ AcceptanceRegion StepMotion::region() const {
   return region;
 }
 
-bool StepMotion::move(Filter& filter) {
+double StepMotion::move(Filter& filter) {
   const bool coasted = std::exchange(learned_.coasts, coasts());
   if (told_.odometry) return follow_odometry(filter, coasted);
   const auto& planar = vehicle_.planar;
@@ -71,7 +71,7 @@ void StepMotion::begin_anew() {
 }
 
 /// Where the step before told no motion, the drift of the particles was all of their velocity: they draw a new one.
-bool StepMotion::follow_odometry(Filter& filter, bool coasted) {
+double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
   const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk);
@@ -86,7 +86,7 @@ bool StepMotion::follow_odometry(Filter& filter, bool coasted) {
 }
 
 /// On with the velocity that odometry told, if any did.
-bool StepMotion::coast(Filter& filter, bool begins) const {
+double StepMotion::coast(Filter& filter, bool begins) const {
   ConstantVelocityMotion motion{told_.seconds};
   motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_m_s());
   if (begins) motion.joins = learned_.velocity.value_or(BodyVelocity{});
@@ -94,7 +94,7 @@ bool StepMotion::coast(Filter& filter, bool begins) const {
 }
 
 template <MotionModel Motion>
-bool StepMotion::predict(Filter& filter, const Motion& motion) const {
+double StepMotion::predict(Filter& filter, const Motion& motion) const {
   const double range = vehicle_.scale_range;
   if (range == 0.0) return filter.predict(motion);
   const ScaleWalk scale_walk{told_.seconds, kScaleWalkShare * range, flight_.max_log_scale};

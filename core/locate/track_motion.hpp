@@ -46,8 +46,8 @@ class StepMotion {
   /// Where particles live, with the drift of new ones.
   AcceptanceRegion region() const;
 
-  /// Moves the particles. False where the belief left the region and began anew. Throws as OdometryMotion does.
-  bool move(Filter& filter);
+  /// Moves the particles; returns what Filter::predict() does. Throws as OdometryMotion does.
+  double move(Filter& filter);
   /// The belief is thrown away, and what was learned with it; a drift that was found stays.
   void begin_anew();
 
@@ -60,10 +60,10 @@ class StepMotion {
  private:
   bool coasts() const { return !told_.odometry && !vehicle_.planar; }
   Wind wind() const;
-  bool follow_odometry(Filter& filter, bool coasted);
-  bool coast(Filter& filter, bool begins) const;
+  double follow_odometry(Filter& filter, bool coasted);
+  double coast(Filter& filter, bool begins) const;
   template <MotionModel Motion>
-  bool predict(Filter& filter, const Motion& motion) const;
+  double predict(Filter& filter, const Motion& motion) const;
 
   const VehicleNoise& vehicle_;
   const AcceptanceRegion& flight_;

@@ -34,6 +34,19 @@ void require_in_order(const TrackerState& before, const StepInput& step) {
   }
 }
 
+/// Told in another unit, times would let a claim outlast all its limits.
+void require_possible_speed(const TrackerState& before, const StepInput& step) {
+  constexpr double kFastestMS = 1000.0;
+  constexpr double kRoundingM = 1.0;  // of positions taken at nearly the same time
+  if (!before.started || !step.odometry) return;
+  const double moved_m = distance_m(*step.odometry);
+  const double seconds = 1e-6 * static_cast<double>(step.time_us - before.time_us);
+  if (!(moved_m > kRoundingM + kFastestMS * seconds)) return;
+  throw InvalidInput("impossible-speed",
+                     fmt::format("the step moves by {:.1f} m in {:g} s: time_us counts microseconds, movements metres",
+                                 moved_m, seconds));
+}
+
 }  // namespace
 
 std::optional<double> TrackerState::since_accepted_s(std::int64_t now_us) const {
@@ -52,6 +65,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
 
 StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
   require_in_order(before, step);
+  require_possible_speed(before, step);
   return Step(*this, before, step, limits).run();
 }
 

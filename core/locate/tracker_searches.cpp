@@ -82,7 +82,7 @@ void Tracker::Step::search_if_due() {
 
 bool Tracker::Step::wants_search() const {
   // Nothing has spoken for the belief for long, be it that nothing could.
-  const bool stale = state_.since_accepted_s(input_.time_us).value_or(0.0) >= kStaleAfterS;
+  const bool stale = state_.since_accepted_s(input_.time_us).value_or(kStaleAfterS) >= kStaleAfterS;
   if (filter_.doubt() > kMaxDoubt || stale) return true;
   if (state_.claim.outweighs_chance()) return !state_.claim.confirmed;
   return state_.claim.log_odds == 0.0 && outcome_.measurement != Measurement::kUseless;

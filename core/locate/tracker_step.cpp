@@ -16,6 +16,7 @@ namespace {
 constexpr double kWidenedM = 4.0;
 
 constexpr double kLongestGapS = 600.0;  // after it the belief is thrown away
+constexpr double kLeastKept = 0.99;     // of the weight: what leaves the region may be where the vehicle is
 
 ToldMotion told_motion(const TrackerState& before, const StepInput& input) {
   if (!before.started) return {input.odometry, input.covariance, 0.0, 0};
@@ -76,7 +77,12 @@ void Tracker::Step::move() {
     state_.recent.clear();
     return;
   }
-  if (!motion_.move(filter_)) forget_support();
+  const double kept = motion_.move(filter_);
+  if (kept == 0.0) {
+    forget_support();
+  } else if (kept < kLeastKept) {
+    state_.claim = {};
+  }
   state_.claim.fly(motion_.way_m());
   // Only where the odometry tells how the ground below goes on, and the frames how large it is.
   if (input_.odometry && motion_.covers_ground() && settings_.vehicle.scale_range <= 0.0) {

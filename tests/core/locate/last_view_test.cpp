@@ -151,11 +151,29 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
     step.features = last.features;
     const TrackEstimate estimate = advance(tracker, step);
     EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
+    EXPECT_FALSE(estimate.converged) << "step " << i;
     EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
     EXPECT_FALSE(estimate.drifts) << "step " << i;
   }
   const TrackEstimate seeing = fly(tracker, flight, 1);
   EXPECT_NE(seeing.measurement, Measurement::kRepeated);
+}
+
+TEST_F(Track, ClaimsNoPlaceThatAMovementCountedTwiceHasLedTo) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  for (int i = 0; i < 20; ++i) {
+    StepInput step = flight.step();
+    step.sequence = 10 + 2 * i;
+    const auto claims_rightly = [&](const TrackEstimate& estimate) {
+      return !estimate.converged || error_m(estimate, flight.pose()) < 15.0;
+    };
+    EXPECT_TRUE(claims_rightly(advance(tracker, step))) << "step " << i;
+    ++step.sequence;
+    step.time_us += 300'000;
+    EXPECT_FALSE(advance(tracker, step).converged) << "step " << i;
+  }
 }
 
 TEST_F(Track, ClaimsNothingWhereTheCameraHasStoppedThoughItsPicturesChangeByNoise) {

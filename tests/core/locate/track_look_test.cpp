@@ -68,6 +68,16 @@ TEST_F(TrackLook, IsOpenAlongASingleStraightRoad) {
   }
 }
 
+TEST_F(TrackLook, BearsOutNoPlaceWhereTheVehicleHeadsElsewhere) {
+  const auto turned = [&](double degrees) {
+    return look_from({truth_.position, truth_.heading + Angle::degrees(degrees)}).outcome;
+  };
+  EXPECT_EQ(turned(2.0), Look::Outcome::kBorneOut);
+  EXPECT_EQ(turned(-2.0), Look::Outcome::kBorneOut);
+  EXPECT_EQ(turned(5.0), Look::Outcome::kOpen);
+  EXPECT_EQ(turned(-8.0), Look::Outcome::kOpen);
+}
+
 TEST_F(TrackLook, IsOpenBeyondTheMap) { EXPECT_EQ(look_from(beside(5000.0)).outcome, Look::Outcome::kOpen); }
 
 TEST(LookAge, CountsTimeAndWay) {

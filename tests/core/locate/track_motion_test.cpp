@@ -32,7 +32,7 @@ TEST(StepMotion, FollowsOdometryAndRemembersTheVelocity) {
   StepMotion motion(vehicle, kFlight, {Odometry{30.0, 40.0, {}}, OdometryCovariance{}, 2.0}, {});
   Filter filter = filter_at(motion, {{500.0, 500.0}, Angle()});
   const double north_m = filter.particles().north_m[7];
-  EXPECT_TRUE(motion.move(filter));
+  EXPECT_EQ(motion.move(filter), 1.0);
   EXPECT_NEAR(filter.particles().north_m[7] - north_m, 30.0, 0.1) << "but for the heading of the draw";
   EXPECT_EQ(motion.learned().velocity, (BodyVelocity{15.0, 20.0}));
   EXPECT_EQ(motion.speed_m_s(), 25.0);

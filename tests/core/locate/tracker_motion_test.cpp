@@ -1,9 +1,11 @@
 // How a track moves where odometry does not tell all of it, or nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <optional>
 
+#include "core/filter/clusters.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 
 namespace roadfix {
@@ -71,6 +73,26 @@ TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
     }
   }
   EXPECT_GT(claims, 2);
+}
+
+TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGroundAround) {
+  Flight flight(map_, start_, 1);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 10).converged);
+  const TrackerState before = state_;
+  StepInput hover = flight.step(false);
+  hover.odometry = Odometry{};
+  const Cluster belief = clusters_of(before.filter.particles).front();
+  const GridPoint at = belief.mean.position;
+  const GridBox box = map_.geometry.box();
+  const double to_rim_m = std::min({at.east_m - box.min.east_m, box.max.east_m - at.east_m,
+                                    at.north_m - box.min.north_m, box.max.north_m - at.north_m});
+  for (const double sigmas : {1.0, 20.0}) {
+    TrackSettings ending = settings();  // so far from the belief
+    ending.beyond_map_m = sigmas * belief.sigma_m() - to_rim_m;
+    state_ = before;
+    EXPECT_EQ(advance(Tracker(view_, ending), hover).converged, sigmas > 10.0) << sigmas;
+    EXPECT_EQ(state_.filter.resets, before.filter.resets) << sigmas;
+  }
 }
 
 TEST_F(Track, FollowsFramesWithoutOdometryAndKeepsNoWindOfThem) {

@@ -127,6 +127,23 @@ TEST_F(Track, ClaimsNoPlaceAmongManyThatFitAlike) {
       [](int i, const TrackEstimate& estimate) { EXPECT_FALSE(estimate.converged) << "step " << i; });
 }
 
+TEST_F(Track, FindsAVehicleThatWasToldToBeWhereTheMapShowsNothing) {
+  RoadGrid with_a_hole = map_;
+  for (int row = 0; row < with_a_hole.cells.rows(); ++row) {
+    for (int col = 500; col < with_a_hole.cells.cols(); ++col) with_a_hole.cells.at(col, row) = kUnobserved;
+  }
+  const MapView view = view_of(with_a_hole);
+  TrackSettings wrong = settings();
+  wrong.prior.circle = GeoCircle{view.zone.unproject({start_.position.east_m + 700.0, start_.position.north_m}), 100.0};
+  const Tracker tracker(view, wrong);
+  const GridPose truth{{600'500.0, 6'399'400.0}, Angle::degrees(60.0)};
+  Flight flight(map_, truth, 5);
+  flight.step_m = 2.0;
+  const TrackEstimate last = fly(tracker, flight, 20);
+  EXPECT_TRUE(last.converged);
+  EXPECT_LT(error_m(last, flight.pose()), 12.0);
+}
+
 TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);

@@ -256,6 +256,8 @@ TEST_F(Track, RefusesWhatItCannotUseAndNamesIt) {
   };
   EXPECT_EQ(refusal([](StepInput& s) { s.sequence = 0; }), "step-late");
   EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'000'000; }), "time-backwards");
+  EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'001'000; }), "impossible-speed") << "milliseconds";
+  EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'000'001; }), "impossible-speed") << "seconds";
   EXPECT_EQ(refusal([](StepInput& s) { s.odometry->forward_m = std::numeric_limits<double>::quiet_NaN(); }),
             "odometry-not-finite");
   EXPECT_EQ(refusal([](StepInput& s) {
@@ -263,6 +265,12 @@ TEST_F(Track, RefusesWhatItCannotUseAndNamesIt) {
             }),
             "covariance-not-positive");
   EXPECT_EQ(refusal([](StepInput& s) { s.features->cells = {}; }), "feature-map-empty");
+  EXPECT_EQ(refusal([](StepInput& s) {
+              s.time_us = 1'000'001;
+              s.odometry->forward_m = 0.9;
+            }),
+            "no error")
+      << "two frames at nearly the same time";
   EXPECT_EQ(refusal([](StepInput&) {}), "no error");
 }
 

@@ -1,8 +1,10 @@
 // The operator's console: the maps, a fix for a picture at hand, whether a place can give a fix, and tracks. All of it
 // is what the HTTP interface offers to any program.
+import { hashOf, shownBy } from './address.js';
 import { Answer } from './answer.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
 import { Places } from './places.js';
+import { queryOf } from './question.js';
 import { attempt, element, LastQuestion, request } from './show.js';
 import { askAgain } from './tiles.js';
 import { Tracks } from './tracks.js';
@@ -119,32 +121,15 @@ function enableChosen(form) {
   }
 }
 
-function questionOf(form) {
-  const { picture, what, prior, scale_percent: percent, ...numbers } = Object.fromEntries(form);
-  if (numbers.focal_px) delete numbers.fov_deg;
-  const told = Object.entries(numbers).filter(([, value]) => value !== '');
-  const query = new URLSearchParams([['kind', what === 'cells' ? 'feature_map' : 'frame'], ...told]);
-  if (what === 'exif') query.set('exif', true);
-  if (percent) query.set('scale_range', percent / 100);
-  if (prior === 'circle') {
-    const { lat, lng } = view.getCenter().wrap();
-    query.set('lat', lat);
-    query.set('lon', lng);
-  }
-  return query;
-}
-
-/// Of what the address names: /#map=NAME or /#track=ID.
 function openAddress() {
-  const named = new URLSearchParams(location.hash.slice(1));
-  if (named.get('map')) wishMap(named.get('map'));
-  if (named.get('track')) tracks.follow(named.get('track'));
+  const { map, track } = shownBy(location.hash);
+  if (map) wishMap(map);
+  if (track) tracks.follow(track);
 }
 
 /// Names in the address what the page shows, so that loading it again shows the same.
 function keepAddress() {
-  const [name, value] = by('tracks').value ? ['track', by('tracks').value] : ['map', by('maps').value];
-  history.replaceState(null, '', `#${new URLSearchParams([[name, value]])}`);
+  history.replaceState(null, '', hashOf({ map: by('maps').value, track: by('tracks').value }));
 }
 
 function follow(id) {
@@ -187,7 +172,7 @@ by('tracks').addEventListener('change', () => follow(by('tracks').value));
 by('ask').addEventListener('submit', (event) => {
   event.preventDefault();
   const form = new FormData(event.target);
-  answer.ask(`${mapUrl()}/fix?${questionOf(form)}`, form.get('picture'));
+  answer.ask(`${mapUrl()}/fix?${queryOf(form, view.getCenter())}`, form.get('picture'));
 });
 by('ask').addEventListener('input', () => {
   enableChosen(by('ask'));

@@ -34,6 +34,16 @@ await run({
     assert.ok(!isOld());
     assert.deepEqual(view.moved, [37, 38]);
   },
+  async 'what is no fix gives hints, drawn faint, and no place to read off'() {
+    service.answers = { '/fix': { ...fix, status: 'no_fix', pose: null, reason: 'too little road', modes: [mode, { ...mode, weight: 0.5 }] } };
+    view.moved = null;
+    await answer.ask('/fix', picture('a.png'));
+    assert.match(output.textContent, /^no fix\ntoo little road/);
+    assert.match(output.textContent, /hints\n2, not to be flown on/);
+    assert.doesNotMatch(output.textContent, /lat, lon|37\.0/);
+    assert.deepEqual(colours(), [RED, RED]);
+    assert.equal(view.moved, null);
+  },
   async 'a fix says the day and the zone of its time'() {
     await ask();
     const date = new Date();

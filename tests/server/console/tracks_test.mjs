@@ -5,6 +5,13 @@ import { colours, drawn, GREEN, load, node, RED, run, service, view, YELLOW } fr
 const { Tracks } = await load('tracks.js');
 let now = 1_000_000;
 Date.now = () => now;
+/// Of the last question.
+let endPatience;
+AbortSignal.timeout = () => {
+  const patience = new AbortController();
+  endPatience = () => patience.abort(new DOMException('', 'TimeoutError'));
+  return patience.signal;
+};
 
 const cluster = (lat, weight) => ({ pose: { lat, lon: 38, heading_deg: 0 }, sigma_m: [3, 2], ellipse_heading_deg: 0, weight });
 const converged = {
@@ -57,6 +64,16 @@ await run({
     await tracks.look();
     assert.ok(!isOld());
   },
+  async 'a connection that hangs is given up in time, and the track asked for anew'() {
+    service.answers = { '/v1/tracks/one': (url, { signal }) => new Promise((give, fail) => { signal.addEventListener('abort', () => fail(signal.reason)); }) };
+    const asked = tracks.look();
+    endPatience();
+    await asked;
+    assert.match(output.textContent, /gives no answer/);
+    answer(track('one', converged));
+    await tracks.look();
+    assert.ok(!isOld());
+  },
   async 'an estimate grows old also while an answer is awaited'() {
     service.answers = { '/v1/tracks/one': () => new Promise(() => {}) };
     tracks.look();
@@ -80,14 +97,18 @@ await run({
     assert.match(details.textContent, /0 s ago/);
     assert.deepEqual(colours(), [GREEN, YELLOW]);
   },
-  async 'an ended track is an old one for good'() {
-    answer(ended);
-    await tracks.look();
-    assert.match(output.textContent, /the track has ended/);
-    answer(track('one', converged));
-    await tracks.look();
-    assert.ok(isOld());
-    assert.deepEqual(colours(), [RED, RED]);
+  async 'an ended track is an old one for good, also one that the service knows of no more'() {
+    for (const end of [ended, { status: 404, title: 'Not Found', code: 'track-not-found' }]) {
+      answer(track('one', converged));
+      await tracks.follow('one');
+      answer(end);
+      await tracks.look();
+      assert.match(output.textContent, /the track has ended/);
+      answer(track('one', converged));
+      await tracks.look();
+      assert.ok(isOld());
+      assert.deepEqual(colours(), [RED, RED]);
+    }
   },
   async 'another track begins without what was lost of the one before, nor its late answer'() {
     let late;

@@ -35,7 +35,7 @@ async function drawLayer() {
 /// Draws the chosen map as it is now; gives what the service says of it.
 async function drawMap() {
   const url = mapUrl();
-  const signal = mapQuestions.next();
+  const signal = mapQuestions.next(PATIENCE_MS);
   const [info, tileset] = await Promise.all([request(url, { signal }), request(`${url}/tilejson.json`, { signal })]);
   if (tiles) tiles.remove();
   tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {

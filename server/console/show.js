@@ -24,11 +24,13 @@ export async function request(url, options, send = fetch) {
 export class LastQuestion {
   #last = new AbortController();
 
-  /// For request(); ends what is asked with the signals before it.
-  next() {
+  /// For request(); ends what is asked with the signals before it, and where a patience is told, itself after that.
+  next(patienceMs) {
     this.#last.abort();
-    this.#last = new AbortController();
-    return this.#last.signal;
+    const asked = new AbortController();
+    this.#last = asked;
+    if (patienceMs) setTimeout(() => asked.abort(new DOMException('no answer came in time', 'TimeoutError')), patienceMs);
+    return asked.signal;
   }
 }
 

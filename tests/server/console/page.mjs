@@ -69,7 +69,7 @@ class Node {
   querySelector(selector) { return this.children.find(({ className }) => `.${className}` === selector) ?? null; }
   insertRow() { const row = new Node(); this.append(row); return row; }
   insertCell() { return this.insertRow(); }
-  addEventListener() {}
+  addEventListener(name, act) { this.listeners[name] = act; }
   scrollIntoView() { this.revealed = true; }
   add(option) { this.options.push(option); option.remove = () => { this.options = this.options.filter((one) => one !== option); }; }
 }

@@ -1,0 +1,86 @@
+// The page as a whole, from its first list of maps on: node main_test.mjs FOLDER/OF/THE/PAGE
+import assert from 'node:assert/strict';
+import { drawn, load, node, run, service, view } from './page.mjs';
+
+const parts = {};
+const by = (id) => (parts[id] ??= node());
+const button = {};
+const fields = { what: { value: 'gsd' }, prior: { value: 'map' }, radius_m: { value: '1000' }, picture: node() };
+Object.assign(by('ask'), { elements: fields, querySelector: () => button, querySelectorAll: () => [] });
+Object.assign(document, { getElementById: by, hidden: false });
+
+const circle = { remove() {} };
+const tileLayer = L.tileLayer;
+Object.assign(L, {
+  map: () => ({ setView: () => view }), control: { scale: () => ({ addTo() {} }) }, circle: () => circle,
+  tileLayer: (url, options) => Object.assign(tileLayer(url, options), { options }),
+});
+Object.assign(view, { on() {}, attributionControl: { setPrefix() {} }, fitBounds(box) { view.box = box; } });
+
+const acts = {};
+globalThis.window = { addEventListener(name, act) { acts[name] = act; } };
+globalThis.location = { hash: '#map=town' };
+globalThis.history = { replaceState(state, title, hash) { location.hash = hash; } };
+let endPatience;
+globalThis.setTimeout = (act) => { endPatience = act; };
+
+const settled = () => new Promise(setImmediate);
+const description = (name, version = '1') => ({ name, version, bbox: [38, 37, 39, 38], area_km2: 12, cell_m: 2, epsg: 32637, sources: [] });
+const listed = (name, version = '1') => ({ name, version, status: 'ready', bbox: [38, 37, 39, 38] });
+service.answers = {
+  '/v1/maps': { maps: [listed('city'), listed('town')] },
+  '/v1/maps/city': description('city'), '/v1/maps/city/tilejson.json': { maxzoom: 16, attribution: '' },
+  '/v1/maps/town': description('town'), '/v1/maps/town/tilejson.json': { maxzoom: 16, attribution: '' },
+};
+const tiles = () => [...drawn].filter(({ kind }) => kind === 'tiles').map(({ at }) => at);
+const hangs = (url, { signal }) => new Promise((give, fail) => { signal.addEventListener('abort', () => fail(signal.reason)); });
+
+await load('main.js');
+await settled();
+
+await run({
+  'the page opens the map of its address'() {
+    assert.deepEqual(tiles(), ['/v1/maps/town/tiles/{z}/{x}/{y}.png?version=1']);
+    assert.match(by('about').textContent, /12\.0 km² in cells of 2 m, EPSG:32637/);
+    assert.deepEqual(view.box, [[37, 38], [38, 39]]);
+    assert.equal(button.disabled, false);
+  },
+  async 'another map that is chosen takes its place, and the address names it'() {
+    by('maps').value = 'city';
+    by('maps').listeners.change();
+    assert.deepEqual(tiles(), [], 'the roads of the map before leave at once');
+    await settled();
+    assert.deepEqual(tiles(), ['/v1/maps/city/tiles/{z}/{x}/{y}.png?version=1']);
+    assert.equal(location.hash, '#map=city');
+  },
+  async 'a map whose description hangs is given up in time, and opened by a later look at the list'() {
+    service.answers['/v1/maps/town'] = hangs;
+    by('maps').value = 'town';
+    by('maps').listeners.change();
+    await settled();
+    assert.match(by('about').textContent, /^opening/);
+    endPatience();
+    await settled();
+    assert.match(by('about').textContent, /gives no answer\nno answer came in time/);
+    service.answers['/v1/maps/town'] = description('town');
+    await acts.focus();
+    assert.deepEqual(tiles(), ['/v1/maps/town/tiles/{z}/{x}/{y}.png?version=1']);
+  },
+  async 'a map that was written anew is drawn anew where it is'() {
+    view.box = null;
+    service.answers['/v1/maps'] = { maps: [listed('town', '2')] };
+    service.answers['/v1/maps/town'] = description('town', '2');
+    await acts.focus();
+    assert.deepEqual(tiles(), ['/v1/maps/town/tiles/{z}/{x}/{y}.png?version=2']);
+    assert.equal(view.box, null);
+  },
+  async 'a service that does not answer is said to be away, until it answers again'() {
+    const answers = service.answers;
+    service.answers = null;
+    await acts.focus();
+    assert.match(by('trouble').textContent, /gives no answer/);
+    service.answers = answers;
+    await acts.focus();
+    assert.equal(by('trouble').textContent, '');
+  },
+});

@@ -1,0 +1,45 @@
+#include "core/locate/odometry_noise.hpp"
+
+#include <gtest/gtest.h>
+
+namespace roadfix {
+namespace {
+
+/// Of the variances forward, to the right (m) and of the turn (degrees).
+void expect_sigmas(const OdometryCovariance& covariance, double metres, double degrees) {
+  const double turn = Angle::degrees(degrees).radians();
+  const OdometryCovariance expected{
+      {{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      EXPECT_NEAR(covariance[row][column], expected[row][column], 1e-12) << row << ", " << column;
+    }
+  }
+}
+
+TEST(OdometryNoise, IsFivePercentAnd30CentimetresOrHalfADegree) {
+  const VehicleNoise unsaid;
+  expect_sigmas(covariance_of({0.0, 0.0, {}}, unsaid), 0.3, 0.5);
+  expect_sigmas(covariance_of({30.0, -40.0, Angle::degrees(-20.0)}, unsaid), 0.3 + 2.5, 0.5 + 1.0);
+}
+
+TEST(OdometryNoise, IsTheShareThatIsTold) {
+  VehicleNoise vehicle;
+  vehicle.odometry_share = 0.2;
+  expect_sigmas(covariance_of({0.0, 100.0, Angle::degrees(10.0)}, vehicle), 0.3 + 20.0, 0.5 + 2.0);
+}
+
+TEST(OdometryNoise, IsHalfOfWhatLostStepsMayHaveMoved) {
+  const OdometryCovariance of_one{{{1.0, 0.5, 0.0}, {0.5, 4.0, 0.0}, {0.0, 0.0, 0.01}}};
+  const auto [odometry, covariance] = with_lost_steps({6.0, 8.0, Angle::degrees(10.0)}, of_one, 2.0);
+  EXPECT_DOUBLE_EQ(odometry.forward_m, 18.0);
+  EXPECT_DOUBLE_EQ(odometry.right_m, 24.0);
+  EXPECT_DOUBLE_EQ(odometry.turn.degrees(), 30.0);
+  EXPECT_DOUBLE_EQ(covariance[0][0], 3.0 * 1.0 + 10.0 * 10.0);
+  EXPECT_DOUBLE_EQ(covariance[0][1], 3.0 * 0.5);
+  EXPECT_DOUBLE_EQ(covariance[1][1], 3.0 * 4.0 + 10.0 * 10.0);
+  EXPECT_DOUBLE_EQ(covariance[2][2], 3.0 * 0.01 + 2.0 * 0.3 * 0.3);
+}
+
+}  // namespace
+}  // namespace roadfix

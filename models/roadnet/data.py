@@ -117,6 +117,13 @@ def place_of(path):
     return path.stem.removesuffix("_pre").removesuffix("_post")
 
 
+def read_picture(path, flags):
+    picture = cv2.imread(str(path), flags)
+    if picture is None:
+        raise ValueError(f"{path}: this cannot be read as a picture")
+    return picture
+
+
 def load_pairs(options, root):
     """All pairs of a set, in the order of their names, as (training, held-out)."""
     images, masks = Path(root) / options.images, Path(root) / options.masks
@@ -126,9 +133,9 @@ def load_pairs(options, root):
     places = {place: number for number, place in enumerate(sorted({place_of(p) for p in paths}))}
     for path in paths:
         index = places[place_of(path)]
-        image = cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
-        mask = cv2.imread(str(by_stem[path.stem]), cv2.IMREAD_GRAYSCALE)
-        if mask is None or mask.shape != image.shape[:2]:
+        image = cv2.cvtColor(read_picture(path, cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        mask = read_picture(by_stem[path.stem], cv2.IMREAD_GRAYSCALE)
+        if mask.shape != image.shape[:2]:
             raise ValueError(f"{path}: picture and mask differ in size")
         wanted = options.hold_out_every > 0 and index % options.hold_out_every == options.hold_out_every // 2
         (held_out if wanted else training).append(Pair(options, path.stem, image, mask))

@@ -123,6 +123,15 @@ class Parts(unittest.TestCase):
             for one, other in zip(crops[0][17], crops[1][17]):
                 np.testing.assert_array_equal(one, other)
 
+    def test_a_picture_or_mask_that_cannot_be_read_is_named(self):
+        options = data.SetOptions("own", "pairs/images", "pairs/masks", 1.0)
+        for broken in ("pairs/images/1.png", "pairs/masks/1.png"):
+            with tempfile.TemporaryDirectory() as place:
+                draw_pairs(Path(place) / "pairs", count=2, size=32)
+                (Path(place) / broken).write_bytes(b"\x89PNG")
+                with self.assertRaisesRegex(ValueError, f"{broken}: .* cannot be read"):
+                    data.load_pairs(options, place)
+
     def test_the_band_round_a_centreline_is_ignored_and_its_middle_is_road(self):
         mask = np.zeros((60, 60), np.uint8)
         mask[28:32] = 255

@@ -209,8 +209,8 @@ void add_serve_command(CLI::App& app) {
       ->delimiter(',');
   command
       ->add_option("--server-name", o.names,
-                   "Name by which requests may call a service that listens on this machine alone, beside localhost; "
-                   "repeatable")
+                   "Name or address by which requests may call the service, beside localhost and --host; repeatable. "
+                   "Where others may call it (--host) and none is told, any will do")
       ->delimiter(',');
   command->add_option("--access-log", o.service.http.access_log,
                       "Write a JSON line per request to this file, or to - for standard error");

@@ -26,7 +26,7 @@ bool is_this_machine(const std::string& name) {
 }  // namespace
 
 ServedNames::ServedNames(const std::string& host, const std::vector<std::string>& others)
-    : any_(!is_this_machine(lower_case(host))) {
+    : any_(others.empty() && !is_this_machine(lower_case(host))), others_{lower_case(host)} {
   for (const std::string& name : others) {
     if (name.empty() || name.find_first_of("/?#@* \t") != std::string::npos || name_of(name) != lower_case(name)) {
       throw InvalidInput("bad-server-name",

@@ -25,16 +25,19 @@ TEST(ServeCommand, TakesOptionsFromTheEnvironmentAndAFile) {
   EXPECT_EQ(limits["cells"], 555);
 }
 
-TEST(ServeCommand, AnswersOnItsOwnMachineToItsOwnNamesAlone) {
+TEST(ServeCommand, AnswersToItsOwnNamesAlone) {
   const testing::TemporaryFolder folder;
-  const testing::ServiceProcess service(folder.path(), {"--server-name", "maps.example.org,roadfix.lan"});
-  httplib::Client client = testing::client_of(service);
-  const auto status = [&](const char* host) {
-    return client.Get("/v1/tracks", httplib::Headers{{"Host", host}})->status;
-  };
-  EXPECT_EQ(status("localhost:8080"), 200);
-  EXPECT_EQ(status("roadfix.lan"), 200);
-  EXPECT_EQ(status("evil.example"), 421);
+  for (const char* listens : {"127.0.0.1", "0.0.0.0"}) {
+    const testing::ServiceProcess service(folder.path(),
+                                          {"--host", listens, "--server-name", "maps.example.org,roadfix.lan"});
+    httplib::Client client = testing::client_of(service);
+    const auto status = [&](const char* host) {
+      return client.Get("/v1/tracks", httplib::Headers{{"Host", host}})->status;
+    };
+    EXPECT_EQ(status("localhost:8080"), 200) << listens;
+    EXPECT_EQ(status("roadfix.lan"), 200) << listens;
+    EXPECT_EQ(status("evil.example"), 421) << listens;
+  }
 }
 
 TEST(ServeCommand, SaysWhichSettingCannotBeUsed) {

@@ -34,6 +34,22 @@ TEST(ServedNames, AreAnyWhereOthersMayCall) {
   }
 }
 
+TEST(ServedNames, AreTheOnesToldAlsoWhereOthersMayCall) {
+  for (const char* own : {"0.0.0.0", "::", "10.0.0.1", "Roadfix.lan"}) {
+    const ServedNames names(own, {"maps.example.org", "10.0.0.2"});
+    for (const char* host :
+         {"localhost:8080", "127.0.0.1:8080", "[::1]:8080", "", "maps.example.org", "10.0.0.2:8080"}) {
+      EXPECT_EQ(answer_to(names, host), "no error") << own << ": " << host;
+    }
+    for (const char* host : {"evil.example", "10.0.0.3", "maps.example.org.evil.example"}) {
+      EXPECT_EQ(answer_to(names, host), "host-not-served") << own << ": " << host;
+    }
+  }
+  for (const char* host : {"10.0.0.1:8080", "10.0.0.1"}) {
+    EXPECT_EQ(answer_to({"10.0.0.1", {"maps.example.org"}}, host), "no error") << "where it listens";
+  }
+}
+
 TEST(ServedNames, HaveNoPortAndNoScheme) {
   for (const char* name : {"", "a:80", "http://a", "a/", "*"}) {
     EXPECT_EQ(code_of([&] { ServedNames("127.0.0.1", {name}); }), "bad-server-name") << name;

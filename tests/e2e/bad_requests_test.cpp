@@ -252,7 +252,7 @@ TEST_F(BadRequests, ThatAreNotHttpGetAProblemAndTheDoor) {
               StartsWith("HTTP/1.1 414"));
   std::string large = "GET / HTTP/1.1\r\n";
   while (large.size() < 200'000) large += "X: " + std::string(8000, 'x') + "\r\n";
-  EXPECT_THAT(raw(large + "\r\n"), StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(raw(large + "\r\n"), AllOf(StartsWith("HTTP/1.1 431"), HasSubstr("head-too-large")));
   EXPECT_EQ(raw(""), "");
 }
 

@@ -298,7 +298,7 @@ TEST_F(NeuralDetector, RefusesAMaskOfAnotherSize) {
   const NeuralRoadDetector detector(model(tiny_description()));
   GroundImage image = random_image(32, 32);
   image.observed = cv::Mat(16, 16, CV_8UC1, cv::Scalar(255));
-  EXPECT_THROW(detector.detect(image, 2.0, 1), InvalidInput);
+  EXPECT_EQ(testing::code_of([&] { detector.detect(image, 2.0, 1); }), "image-shape");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
 
@@ -89,7 +89,7 @@ TEST(Localizability, LooksAtLargeFootprintsInCoarserCellsThanThoseOfAFineMap) {
 
 TEST(Localizability, RefusesAFootprintOfNoSize) {
   const MapView view = view_of(testing::street_map(21, square(200)));
-  EXPECT_THROW(localizability(view, centre_of(view, 0.0)), InvalidInput);
+  EXPECT_EQ(testing::code_of([&] { localizability(view, centre_of(view, 0.0)); }), "footprint-out-of-range");
 }
 
 }  // namespace

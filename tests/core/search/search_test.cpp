@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/grid/resample.hpp"
-#include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/random_cells.hpp"
 #include "tests/support/random_pose.hpp"
 #include "tests/support/street_map.hpp"
@@ -252,7 +252,7 @@ TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   source.request_stop();
   options = {};
   options.stop = source.get_token();
-  EXPECT_THROW(search(reader_of(map), 2.0, window, region, options), Interrupted);
+  EXPECT_EQ(testing::code_of([&] { search(reader_of(map), 2.0, window, region, options); }), "search-stopped");
 }
 
 TEST(Search, OnAMapWithoutObservedGroundThereIsNoMode) {

@@ -52,6 +52,7 @@ TEST(Problem, SaysWhatIsAllowedAndWhenToComeBack) {
 TEST(Problem, KeepsTheTextOfUnexpectedErrorsFromTheClient) {
   const auto response = of(std::runtime_error("secret path"));
   EXPECT_EQ(response.status, 500);
+  EXPECT_EQ(body(response)["code"], "internal-error");
   EXPECT_EQ(response.body.find("secret"), std::string::npos);
   EXPECT_EQ(of(std::bad_alloc()).status, 503);
 }

@@ -256,7 +256,9 @@ TEST(MapRegistry, SaysOfAFolderThatItMayNotReadThatItMayNot) {
   }
 }
 
-TEST(MapRegistry, RefusesAFolderThatIsNotThere) { EXPECT_THROW(MapRegistry("/no/such/folder", kCache), NotFound); }
+TEST(MapRegistry, RefusesAFolderThatIsNotThere) {
+  EXPECT_EQ(code_of([] { MapRegistry("/no/such/folder", kCache); }), "maps-folder-not-found");
+}
 
 }  // namespace
 }  // namespace roadfix::server

@@ -1,5 +1,5 @@
 // The OpenAPI document and the routes say the same, in both directions.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,14 @@
 #include "server/api/position_answer.hpp"
 #include "server/api/track_request.hpp"
 #include "server/service.hpp"
+#include "tests/support/json_schema.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix {
 namespace {
 
 using nlohmann::json;
+using ::testing::IsEmpty;
 
 class OpenApi : public ::testing::Test {
  protected:
@@ -44,10 +46,7 @@ class OpenApi : public ::testing::Test {
                                  pictures_, tracks_,   steps_,  search_threads_};
   const http::Router router_ = server::make_router(service_);
 
-  const json& resolved(const json& node) const {
-    if (!node.contains("$ref")) return node;
-    return document_.at(json::json_pointer(node["$ref"].get<std::string>().substr(1)));
-  }
+  const json& resolved(const json& node) const { return testing::resolved(document_, node); }
 
   /// Names of an operation's parameters that are in `place`, those of its path included.
   std::set<std::string> parameters(const json& path, const json& operation, const std::string& place) const {
@@ -61,34 +60,13 @@ class OpenApi : public ::testing::Test {
     return names;
   }
 
-  /// What this document uses of JSON Schema to describe members.
-  void check(const json& schema, const json& value, const std::string& where) const {
-    const json& s = resolved(schema);
-    if (s.contains("properties") && value.is_object()) {
-      const json required = s.value("required", json::array());
-      for (const json& name : required) {
-        EXPECT_TRUE(value.contains(name.get<std::string>())) << where << " lacks " << name;
-      }
-      for (const auto& [name, member] : value.items()) {
-        ASSERT_TRUE(s["properties"].contains(name)) << where << "." << name << " is not described";
-        check(s["properties"][name], member, where + "." + name);
-      }
-    }
-    if (s.contains("items") && value.is_array()) {
-      for (const json& element : value) check(s["items"], element, where + "[]");
-    }
-    if (s.contains("enum")) {
-      EXPECT_NE(std::find(s["enum"].begin(), s["enum"].end(), value), s["enum"].end()) << where;
-    }
-  }
-
   int check_examples(const json& holder, const std::string& where) const {
     int examples = 0;
     const json contents = holder.value("content", json::object());
     for (const auto& [type, content] : contents.items()) {
       if (!content.contains("example")) continue;
       ++examples;
-      check(content.at("schema"), content["example"], where);
+      EXPECT_THAT(testing::breaches(document_, content.at("schema"), content["example"]), IsEmpty()) << where;
     }
     return examples;
   }

@@ -6,13 +6,10 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
-#include <optional>
 #include <set>
 #include <thread>
-#include <vector>
 
-#include "server/api/web_mercator.hpp"
-#include "tests/e2e/service_fixture.hpp"
+#include "tests/e2e/described_service.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace roadfix {
@@ -30,20 +27,8 @@ std::string lower(std::string name) {
   return name;
 }
 
-class ResponseHeaders : public ::testing::Test {
+class ResponseHeaders : public testing::DescribedService {
  protected:
-  ResponseHeaders() {
-    testing::write_map_file(folder_ / "town.gpkg", town_.roads, 2.0);
-    service_.emplace(folder_.path(), std::vector<std::string>{"--max-client-tracks", "1", "--request-time", "600"});
-    client_.emplace(testing::client_of(*service_));
-    document_ = testing::json_of(client_->Get("/openapi.json"));
-  }
-
-  const json& resolved(const json& node) const {
-    if (!node.contains("$ref")) return node;
-    return document_.at(json::json_pointer(node["$ref"].get<std::string>().substr(1)));
-  }
-
   void expect_described(const char* operation_id, int status, const httplib::Result& answer) {
     ASSERT_TRUE(answer) << operation_id;
     ASSERT_EQ(answer->status, status) << operation_id << " " << answer->body;
@@ -60,23 +45,6 @@ class ResponseHeaders : public ::testing::Test {
     }
   }
 
-  const json& response(const std::string& operation_id, int status) const {
-    for (const auto& [path, item] : document_.at("paths").items()) {
-      for (const auto& [method, operation] : item.items()) {
-        if (method == "parameters" || operation.at("operationId") != operation_id) continue;
-        const json& responses = operation.at("responses");
-        const std::string key = std::to_string(status);
-        return resolved(responses.contains(key) ? responses[key] : responses.at("default"));
-      }
-    }
-    throw std::runtime_error("no operation " + operation_id);
-  }
-
-  const testing::Town town_;
-  const testing::TemporaryFolder folder_;
-  std::optional<testing::ServiceProcess> service_;
-  std::optional<httplib::Client> client_;
-  json document_;
   std::set<std::string> sent_;
 };
 
@@ -92,22 +60,17 @@ TEST_F(ResponseHeaders, AreDescribedWhereTheyAreSent) {
   expect_described("getLocalizabilityTileJson", 200, client_->Get("/v1/maps/town/localizability/tilejson.json"));
   expect_described("getLocalizabilityTile", 204, client_->Get("/v1/maps/town/localizability/tiles/16/0/0.png"));
 
-  const api::MercatorPixel pixel = api::mercator_pixel(town_.place, 16);
-  const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
-                           std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
-  const auto tile = client_->Get(path);
-  expect_described("getTile", 200, tile);
-  expect_described("getTile", 304, client_->Get(path, {{"If-None-Match", tile->get_header_value("ETag")}}));
+  const std::string path = "/v1/maps/town/tiles/" + tile();
+  const auto shown = client_->Get(path);
+  expect_described("getTile", 200, shown);
+  expect_described("getTile", 304, client_->Get(path, {{"If-None-Match", shown->get_header_value("ETag")}}));
   expect_described("getTile", 204, client_->Get("/v1/maps/town/tiles/16/0/0.png"));
 
-  const std::string place =
-      "lat=" + std::to_string(town_.place.lat_deg) + "&lon=" + std::to_string(town_.place.lon_deg);
-  expect_described("getWindow", 200, client_->Get("/v1/maps/town/window?width_m=100&height_m=100&" + place));
+  expect_described("getWindow", 200, client_->Get("/v1/maps/town/window?width_m=100&height_m=100&" + place()));
   expect_described("detectRoads", 200, client_->Post("/v1/detect?gsd_m=2", town_.seen(), "image/png"));
-  const std::string fix = "/v1/maps/town/fix?cell_m=2&radius_m=300&" + place;
+  const std::string fix = "/v1/maps/town/fix?cell_m=2&radius_m=300&" + place();
   expect_described("findFix", 200, client_->Post(fix + "&format=gps_input", town_.seen(), "image/png"));
-  const std::string empty = testing::text_of(encode_feature_map(CellArray(128, 128, kNoRoad)));
-  expect_described("findFix", 204, client_->Post(fix + "&format=command_int", empty, "image/png"));
+  expect_described("findFix", 204, client_->Post(fix + "&format=command_int", nothing(), "image/png"));
 
   const json track{{"map", "town"}, {"start", "uniform"}, {"particles", 200}};
   const auto begun = client_->Post("/v1/tracks", track.dump(), "application/json");

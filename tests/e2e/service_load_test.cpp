@@ -52,6 +52,24 @@ TEST(ServiceLoad, AnswersARequestInFlightWhenItIsAskedToStop) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+TEST(ServiceLoad, EndsAtOnceAtTheSecondSignal) {
+  const testing::TemporaryFolder folder;
+  testing::ServiceProcess service(folder.path(), {"--body-time", "600"});
+  testing::RawConnection slow(service.port());
+  slow.send(
+      "POST /v1/detect?gsd_m=1 HTTP/1.1\r\nHost: localhost\r\nContent-Type: image/png\r\nContent-Length: 9\r\n\r\n");
+  httplib::Client client = testing::client_of(service);
+  const auto has_a_thread = [&] {
+    return client.Get("/metrics")->body.find("roadfix_connections 2\n") != std::string::npos;
+  };
+  ASSERT_TRUE(eventually(has_a_thread)) << "the request, and who asks for the metrics";
+  service.send_signal(SIGTERM);
+  service.send_signal(SIGINT);
+  const int status = service.wait();
+  ASSERT_TRUE(WIFEXITED(status)) << status;
+  EXPECT_THAT(WEXITSTATUS(status), ::testing::AnyOf(128 + SIGTERM, 128 + SIGINT)) << "it did not wait for the body";
+}
+
 class ServiceStop : public ::testing::TestWithParam<int> {};
 
 TEST_P(ServiceStop, IsAtOnceWhenNothingIsInFlight) {

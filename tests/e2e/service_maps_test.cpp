@@ -17,6 +17,7 @@ namespace {
 
 using nlohmann::json;
 using testing::eventually;
+using ::testing::HasSubstr;
 
 TEST(ServiceMaps, NoticesMapsThatAppearChangeBreakAndLeave) {
   const testing::TemporaryFolder folder;
@@ -28,6 +29,7 @@ TEST(ServiceMaps, NoticesMapsThatAppearChangeBreakAndLeave) {
     return maps.empty() ? "none" : maps[0]["status"].get<std::string>();
   };
   EXPECT_EQ(status(), "none");
+  EXPECT_THAT(client.Get("/metrics")->body, HasSubstr("roadfix_maps_unreadable 0\n"));
 
   testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
   EXPECT_TRUE(eventually([&] { return status() == "ready"; }));
@@ -44,6 +46,7 @@ TEST(ServiceMaps, NoticesMapsThatAppearChangeBreakAndLeave) {
 
   std::ofstream(folder / "broken.gpkg") << "no map at all";
   EXPECT_TRUE(eventually([&] { return status() == "unreadable"; })) << "the broken one is listed, first by name";
+  EXPECT_THAT(client.Get("/metrics")->body, HasSubstr("roadfix_maps_unreadable 1\n"));
   EXPECT_EQ(testing::refusal(client.Get("/v1/maps/broken")), "503 map-unreadable");
   EXPECT_EQ(client.Get("/v1/maps/town")->status, 200) << "the other one is served";
 

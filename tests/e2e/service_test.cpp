@@ -6,11 +6,13 @@
 
 #include "server/api/web_mercator.hpp"
 #include "tests/e2e/served_town.hpp"
+#include "tests/e2e/tile_at.hpp"
 
 namespace roadfix {
 namespace {
 
 using nlohmann::json;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 class Service : public testing::ServedTown {};
@@ -53,9 +55,7 @@ TEST_F(Service, ServesTilesThatClientsMayCache) {
   const json description = testing::json_of(tilejson);
   EXPECT_EQ(description["attribution"], "CC0");
   EXPECT_THAT(description["tiles"][0].get<std::string>(), HasSubstr("/v1/maps/town/tiles/{z}/{x}/{y}.png?version="));
-  const api::MercatorPixel pixel = api::mercator_pixel(town->place, 16);
-  const std::string path = "/v1/maps/town/tiles/16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
-                           std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
+  const std::string path = "/v1/maps/town/tiles/" + testing::tile_at(town->place);
   const auto tile = client_.Get(path);
   ASSERT_EQ(tile->status, 200);
   EXPECT_EQ(tile->get_header_value("Content-Type"), "image/png");
@@ -163,6 +163,15 @@ TEST_F(Service, CountsWhatItDoes) {
   EXPECT_EQ(testing::json_of(client_.Post("/v1/maps/town/fix?cell_m=2", nothing, "image/png"))["status"], "no_fix");
   EXPECT_THAT(client_.Get("/metrics")->body, HasSubstr("roadfix_answers_total{kind=\"fix\",status=\"no_fix\"}"));
   EXPECT_FALSE(testing::json_of(client_.Get("/healthz"))["version"].get<std::string>().empty());
+}
+
+TEST_F(Service, TellsHowLargeItsCachesAre) {
+  client_.Post("/v1/maps/town/fix?cell_m=2", town->seen(), "image/png");
+  client_.Get("/v1/maps/town/tiles/" + testing::tile_at(town->place));
+  const std::string filled = client_.Get("/metrics")->body;
+  for (const char* cache : {"map", "search", "picture"}) {
+    EXPECT_THAT(filled, ContainsRegex("roadfix_" + std::string(cache) + "_cache_bytes [1-9]"));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "tests/e2e/tracks_fixture.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/sqlite_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -104,6 +105,35 @@ TEST_F(Tracks, EndWhenNothingComes) {
   EXPECT_EQ(testing::refusal(client.Get(("/v1/tracks/" + idle).c_str())), "410 track-ended");
   EXPECT_EQ(testing::refusal(send(client, idle, flight(1)[0])), "410 track-ended");
   EXPECT_TRUE(testing::json_of(client.Get("/v1/tracks"))["tracks"].empty());
+}
+
+TEST_F(Tracks, TellHowLongTheyWereSilentAndWhenTheyEnd) {
+  const std::vector<Request> steps = flight(2);
+  std::string id;
+  const auto track_of = [&](httplib::Client& client) {
+    json track = testing::json_of(client.Get("/v1/tracks/" + id));
+    EXPECT_EQ(testing::json_of(client.Get("/v1/tracks"))["tracks"][0]["stale"], track["stale"]);
+    return track;
+  };
+  {
+    const auto running = service({"--track-idle", "1000"});
+    httplib::Client client = client_of(*running);
+    id = begin(client);
+    send(client, id, steps[0]);
+    EXPECT_TRUE(eventually([&] { return track_of(client)["silent_s"] > 0.05; }));
+    const json track = track_of(client);
+    EXPECT_NEAR(track["silent_s"].get<double>() + track["expires_in_s"].get<double>(), 1000.0, 1.0);
+    EXPECT_EQ(track["stale"], false);
+  }
+  testing::open_sqlite(folder_ / "tracks.sqlite").execute("UPDATE tracks SET touched_us = touched_us - 61000000");
+  const auto running = service({"--track-idle", "1000"});
+  httplib::Client client = client_of(*running);
+  const json silent = track_of(client);
+  EXPECT_GE(silent["silent_s"], 61.0);
+  EXPECT_EQ(silent["stale"], true);
+  EXPECT_NEAR(silent["expires_in_s"].get<double>(), 1000.0, 60.0) << "all of it again";
+  send(client, id, steps[1]);
+  EXPECT_EQ(track_of(client)["stale"], false);
 }
 
 TEST_F(Tracks, RefuseStepsOverAMapThatWasReplaced) {

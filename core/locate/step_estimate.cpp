@@ -8,6 +8,7 @@
 #include "core/locate/track_geometry.hpp"
 
 namespace roadfix {
+
 TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, const Filter& filter,
                           const StepOutcome& outcome) {
   const TrackSettings& settings = tracker.settings();

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/line_boxes.hpp"
 
 namespace roadfix {
@@ -39,23 +37,10 @@ Core core_of(std::span<const GridBox> boxes) {
   return core;
 }
 
-/// W,S,E,N in degrees, rounded outwards; in letters where it has none. Not by UtmZone: a stray road may have led to a
-/// zone far from all others.
+/// In letters where it has none.
 std::string extent_around(const GridBox& box, UtmZone zone) {
-  constexpr int kPointsOfASide = 21;
-  const GdalMessages messages;
-  const TransformationPtr to_earth = transformation(utm_reference(zone), wgs84_reference(), "the roads");
-  double west = 0.0;
-  double south = 0.0;
-  double east = 0.0;
-  double north = 0.0;
-  if (to_earth->TransformBounds(box.min.east_m, box.min.north_m, box.max.east_m, box.max.north_m, &west, &south, &east,
-                                &north, kPointsOfASide) == FALSE) {
-    return "W,S,E,N";
-  }
-  const auto down = [](double degrees) { return std::floor(degrees * 1e4) / 1e4; };
-  const auto up = [](double degrees) { return std::ceil(degrees * 1e4) / 1e4; };
-  return fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", down(west), down(south), up(east), up(north));
+  const std::optional<OGREnvelope> degrees = box_on_earth(box, zone);
+  return degrees ? extent_text(*degrees) : "W,S,E,N";
 }
 
 std::string sides(const GridBox& box) {

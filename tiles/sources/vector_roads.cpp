@@ -10,6 +10,7 @@
 
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/line_coverage.hpp"
+#include "tiles/sources/roads_elsewhere.hpp"
 #include "tiles/sources/stated_extent.hpp"
 
 namespace roadfix {
@@ -107,11 +108,18 @@ std::vector<std::string> files_read(std::vector<std::string> paths, const Vector
   return paths;
 }
 
+RoadNetwork network_on_ground(const std::vector<std::string>& paths, const VectorOptions& options,
+                              const RoadRules& rules, UtmZone zone) {
+  RoadNetwork network = read_road_network(paths, options, rules, zone);
+  if (!options.extent.empty()) require_roads_on_ground(network, paths.front(), options.extent, zone);
+  return network;
+}
+
 class RoadVectors final : public CellSource {
  public:
   RoadVectors(const std::vector<std::string>& paths, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
               double cell_m)
-      : RoadVectors(read_road_network(paths, options, rules, zone), cell_m) {
+      : RoadVectors(network_on_ground(paths, options, rules, zone), cell_m) {
     const Certainty certainty;
     summary_.method =
         fmt::format("drawn roads {} elsewhere {}; {}", certainty.on_road, certainty.elsewhere, rules.describe());

@@ -12,7 +12,8 @@
 namespace roadfix {
 
 /// Cells whose centre the source covers are observed: `Certainty` of the share that a road covers. Reads all lines into
-/// memory at once.
+/// memory at once. Throws what read_road_network throws, and InvalidInput "source-without-roads" where all roads lie
+/// beside the stated extent.
 std::unique_ptr<CellSource> open_road_vectors(const std::vector<std::string>& paths, const VectorOptions& options,
                                               const RoadRules& rules, UtmZone zone, double cell_m);
 

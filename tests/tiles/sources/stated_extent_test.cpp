@@ -14,7 +14,9 @@
 namespace roadfix {
 namespace {
 
+using ::testing::AllOf;
 using testing::at;
+using testing::code_of;
 using testing::degrees;
 using testing::extent_around_centre;
 using testing::feature;
@@ -22,6 +24,7 @@ using ::testing::HasSubstr;
 using testing::kCentre;
 using testing::kZone;
 using testing::message_of;
+using ::testing::Not;
 
 class StatedExtent : public testing::VectorRoads {
  protected:
@@ -69,6 +72,22 @@ TEST_F(StatedExtent, OfAnExtentFileWhatIsInAPolygonAndNotInItsHolesIsKnown) {
   EXPECT_TRUE(is_observed(result.at(60, 100)));
   EXPECT_FALSE(is_observed(result.at(100, 100))) << "in the hole";
   EXPECT_FALSE(is_observed(result.at(40, 100))) << "outside";
+}
+
+TEST_F(StatedExtent, ThatHoldsNoneOfTheRoadsIsRefusedAndSaidWhereTheyLie) {
+  const std::string path = geojson({road(0, 0), road(300, 0)});
+  const LatLon place = kZone.unproject(kCentre);
+  const auto refusal = [&](double lon, double lat) {
+    const VectorOptions options{
+        .crs = "", .layer = "", .extent = fmt::format("{},{},{},{}", lon, lat, lon + 0.02, lat + 0.02)};
+    EXPECT_EQ(code_of([&] { open_road_vectors({path}, options, RoadRules(), kZone, 2.0); }), "source-without-roads");
+    return message_of([&] { open_road_vectors({path}, options, RoadRules(), kZone, 2.0); });
+  };
+  EXPECT_THAT(refusal(place.lon_deg + 1.0, place.lat_deg),
+              AllOf(HasSubstr("none of its 2 roads lies in --extent 38"), HasSubstr("they lie in 37.8619,37.9420,"),
+                    Not(HasSubstr("swapped"))));
+  EXPECT_THAT(refusal(place.lat_deg - 0.01, place.lon_deg - 0.01), HasSubstr("latitude and longitude may be swapped"));
+  EXPECT_THAT(refusal(-60.0, 38.0), HasSubstr("they lie in 37.8619,37.9420,")) << "on the other side of the Earth";
 }
 
 TEST_F(StatedExtent, MayHaveArcs) {

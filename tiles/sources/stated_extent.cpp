@@ -4,7 +4,9 @@
 #include <ogrsf_frmts.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
@@ -56,17 +58,23 @@ OGRSpatialReference crs_of_extent(const VectorFile& file, OGRLayer& layer) {
                                  file.path(), layer.GetName()));
 }
 
+/// Of digits and what separates them, and no file.
+bool looks_like_numbers(const std::string& extent) {
+  std::error_code none;
+  return extent.find_first_not_of("0123456789.,;+- ") == std::string::npos && !std::filesystem::exists(extent, none);
+}
+
 }  // namespace
 
 std::optional<OGREnvelope> box_in_degrees(const std::string& extent) {
   OGREnvelope box;
   int used = 0;
-  if (std::sscanf(extent.c_str(), "%lf,%lf,%lf,%lf%n", &box.MinX, &box.MinY, &box.MaxX, &box.MaxY, &used) != 4 ||
-      static_cast<std::size_t>(used) != extent.size()) {
-    return std::nullopt;
-  }
+  const bool four =
+      std::sscanf(extent.c_str(), "%lf,%lf,%lf,%lf%n", &box.MinX, &box.MinY, &box.MaxX, &box.MaxY, &used) == 4 &&
+      static_cast<std::size_t>(used) == extent.size();
+  if (!four && !looks_like_numbers(extent)) return std::nullopt;
   box.MaxX = eastern_side_deg(box.MinX, box.MaxX);
-  if (!(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
+  if (!four || !(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
     throw InvalidInput(
         "extent-unreadable",
         fmt::format("--extent {}: write west,south,east,north in degrees, west and south first", extent));

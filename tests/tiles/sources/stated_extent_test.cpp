@@ -112,6 +112,14 @@ TEST_F(StatedExtent, WithoutGroundOrReferenceSystemIsRefusedForWhatItIs) {
   EXPECT_THAT(refusal(nullptr, {"POLYGON((0 0,1 0,1 1,0 0))"}), HasSubstr("layer 'drawn' has no reference system"));
 }
 
+TEST_F(StatedExtent, OfTooFewNumbersIsNoFileThatIsMissing) {
+  for (const char* extent : {"38.26,37.75,38.28", "38.26 37.75 38.28 37.77", "38,26,37,75,38,28,37,77"}) {
+    EXPECT_THAT(message_of([&] { centre_of_roads({"roads.gpkg"}, {.crs = "", .layer = "", .extent = extent}); }),
+                HasSubstr("write west,south,east,north"))
+        << extent;
+  }
+}
+
 TEST_F(StatedExtent, MayCoverThePolygonsOfAnOsmosisFilter) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
   VectorOptions options;

@@ -11,17 +11,20 @@ namespace {
 std::optional<std::string> note_on_colours(const RasterFile& file) {
   GDALDataset& dataset = file.dataset();
   int bands = 0;
+  int named = 0;
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
     const GDALColorInterp meaning = dataset.GetRasterBand(i)->GetColorInterpretation();
-    if (meaning == GCI_RedBand || meaning == GCI_GreenBand || meaning == GCI_BlueBand) return std::nullopt;
+    named += meaning == GCI_RedBand || meaning == GCI_GreenBand || meaning == GCI_BlueBand ? 1 : 0;
     bands += meaning == GCI_AlphaBand ? 0 : 1;
   }
-  if (bands <= 3) return std::nullopt;
+  if (named >= 3 || bands < 3 || (named == 0 && bands == 3)) return std::nullopt;
+  const std::string unsaid = named == 0
+                                 ? fmt::format("nothing says which of its {} bands are red, green and blue", bands)
+                                 : fmt::format("not all of red, green and blue are named among its {} bands", bands);
   return fmt::format(
-      "{}: nothing says which of its {} bands are red, green and blue, so the first three are taken for them in this "
-      "order. If others are, name them (gdal_edit.py -colorinterp_3 red -colorinterp_2 green -colorinterp_1 blue) and "
-      "use --replace",
-      file.path(), bands);
+      "{}: {}, so the first three are taken for them in this order. If others are, name them (gdal_edit.py "
+      "-colorinterp_3 red -colorinterp_2 green -colorinterp_1 blue) and use --replace",
+      file.path(), unsaid);
 }
 
 std::optional<std::string> note_on_alpha(RasterFile& file) {
@@ -45,6 +48,16 @@ std::optional<std::string> note_on_alpha(RasterFile& file) {
 }
 
 }  // namespace
+
+bool looks_like_heights(const RasterFile& file) { return file.channels() == 1 && !file.holds_integers(); }
+
+std::optional<std::string> note_on_likely_heights(const RasterFile& file) {
+  if (!looks_like_heights(file)) return std::nullopt;
+  return fmt::format(
+      "{}: it has one band of real numbers, as heights have, and they are taken for brightness. If they are heights, "
+      "take it out of the map (roadfix remove) and ingest the orthophoto itself",
+      file.path());
+}
 
 std::vector<std::string> notes_on_bands(RasterFile& file) {
   std::vector<std::string> notes;

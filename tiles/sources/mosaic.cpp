@@ -10,6 +10,7 @@
 
 #include "core/detect/blank_ground.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/collar.hpp"
 #include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/georeference.hpp"
@@ -48,18 +49,19 @@ struct Content {
       : path(file.path()),
         channels(file.channels()),
         integers(file.holds_integers()),
-        bytes(file.declared_range().has_value()) {}
+        bytes(file.declared_range().has_value()),
+        like_heights(looks_like_heights(file)) {}
 
   std::string_view values() const {
     if (!integers) return "real numbers";
     return bytes ? "bytes" : "integers of more than 8 bits";
   }
-  bool looks_like_heights() const { return channels == 1 && !integers; }
 
   std::string path;
   int channels;
   bool integers;
   bool bytes;
+  bool like_heights;
 };
 
 /// One range of values serves them all.
@@ -74,7 +76,7 @@ void require_same_values(const Content& first, const Content& other) {
 /// A model of heights beside an orthophoto would hide it, as the first by name.
 void require_no_heights_beside_colours(const Content& first, const Content& other) {
   for (const auto& [heights, colours] : {std::pair{&first, &other}, {&other, &first}}) {
-    if (!heights->looks_like_heights() || colours->channels < 3) continue;
+    if (!heights->like_heights || colours->channels < 3) continue;
     throw InvalidInput("imagery-mixed",
                        fmt::format("{} has colours, but {} has one band of real numbers, as heights have: ingest the "
                                    "orthophoto itself; if both are imagery, one by one",

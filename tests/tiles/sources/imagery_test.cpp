@@ -178,6 +178,24 @@ TEST(Imagery, OfMoreBandsThanColoursWithoutNamesGetsANote) {
               ::testing::ElementsAre(::testing::HasSubstr("which of its 4 bands are red, green and blue")));
   EXPECT_THAT(notes(3, {GCI_GrayIndex, kNone, kNone}), ::testing::IsEmpty());
   EXPECT_THAT(notes(4, {GCI_BlueBand, GCI_GreenBand, GCI_RedBand, kNone}), ::testing::IsEmpty());
+  EXPECT_THAT(notes(3, {kNone, GCI_RedBand, GCI_GreenBand}),
+              ::testing::ElementsAre(::testing::HasSubstr("not all of red, green and blue are named")))
+      << "near infrared first";
+}
+
+TEST(Imagery, OfRealNumbersInOneBandIsSaidToLookLikeHeights) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto notes = [&](GDALDataType type, double scale) {
+    const RasterSpec spec{
+        .width = 256, .height = 256, .type = type, .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}}};
+    const std::string path =
+        write_raster(folder / "a.tif", spec, [=](int, int col, int row) { return scale * (700 + col + row); });
+    return open_imagery({path}, {}, kZone, 2.0, detector)->summary().notes;
+  };
+  EXPECT_THAT(notes(GDT_Float32, 1.0), ::testing::ElementsAre(::testing::HasSubstr("as heights have")));
+  EXPECT_THAT(notes(GDT_UInt16, 1.0), ::testing::IsEmpty());
+  EXPECT_THAT(notes(GDT_Float32, 0.0005), ::testing::ElementsAre(::testing::HasSubstr("as those of probabilities")));
 }
 
 /// Nine control points of a raster of 1 m, the one in the middle `east_m` off.

@@ -29,6 +29,12 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Val
         "stands for no road here, take the mark away (gdal_edit.py -unsetnodata) and use --replace",
         path));
   }
+  if (sampled.high <= 0.0) {
+    notes.push_back(fmt::format(
+        "{}: every value that was looked at is 0, so that all of its ground becomes no road. If it should hold roads, "
+        "look at its values (gdalinfo -stats), and ingest the right ones with --replace",
+        path));
+  }
   if (integers && sampled.high > 0.0 && sampled.high < kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: its largest value is {:g} of {:g}, so that no road is surer than {:.0f} %. If it stands for certain, "

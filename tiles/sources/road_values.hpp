@@ -10,9 +10,9 @@
 
 namespace roadfix {
 
-/// `sampled` are the least and the largest value, `range` what becomes no road and road. Notes for the user: a mask
-/// without "no road", values that end far below the range. Throws InvalidInput "road-values-out-of-range" for negative
-/// values and for floats above 1.
+/// `sampled` are the least and the largest value, `range` what becomes no road and road. Notes for the user: a raster
+/// without any road, a mask without "no road", values that end far below the range. Throws InvalidInput
+/// "road-values-out-of-range" for negative values and for floats above 1.
 std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
                                               const ValueRange& range, bool integers);
 

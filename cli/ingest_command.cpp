@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,6 +24,7 @@
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/sources/temporary_files.hpp"
+#include "tiles/store/map_reader.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -34,6 +37,21 @@ void note_twins(MapWriter& writer, const std::string& source, const std::string&
                "it is the same content, take it out: roadfix remove {} {}\n",
                source, twin, shell_word(map), shell_word(source));
   }
+}
+
+/// A newer version mostly has a newer file name, and would count beside the older one.
+std::optional<std::string> note_on_nothing_replaced(const std::string& map, const std::string& source) {
+  constexpr std::size_t kNamed = 8;
+  if (!std::filesystem::exists(map)) return std::nullopt;
+  std::set<std::string> names;
+  const MapReader reader(map);
+  for (const SourceStatus& status : reader.info().sources) names.insert(status.record.name);
+  if (names.empty() || names.contains(source)) return std::nullopt;
+  const auto last = std::next(names.begin(), std::min(std::ssize(names), std::ptrdiff_t{kNamed}));
+  return fmt::format(
+      "--replace replaces nothing: the map has no source '{}', it has '{}'{}. If this is a newer version of one of "
+      "them, take the older one out (roadfix remove); with its --name it would have been replaced",
+      source, fmt::join(names.begin(), last, "', '"), last == names.end() ? "" : " and others");
 }
 
 /// Of the source, and of those beside it, for which it may be the other side.
@@ -71,6 +89,9 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   std::ranges::move(describe_source(record, summary.told, arguments.told,
                                     MapWriter::records_of(arguments.map, record.name), arguments.options.replace),
                     std::back_inserter(summary.notes));
+  if (arguments.options.replace) {
+    if (auto note = note_on_nothing_replaced(arguments.map, record.name)) summary.notes.push_back(std::move(*note));
+  }
   print_notes(request.files, summary);
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {

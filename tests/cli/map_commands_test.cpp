@@ -265,6 +265,20 @@ TEST_F(MapCommands, ADryRunRefusesWhatTheIngestWouldRefuse) {
   EXPECT_THAT(roadfix(ingest + " --cell 4 --dry-run").err, HasSubstr("[map-settings-differ]"));
 }
 
+TEST_F(MapCommands, IngestSaysThatNothingIsReplacedWhereTheNewerVersionHasAnotherName) {
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
+  const std::string newer = folder / "roads_2024.geojson";
+  std::filesystem::copy_file(lines, newer);
+  const std::string into = " --replace --dry-run --map " + (folder / "n.gpkg").string();
+  EXPECT_THAT(roadfix("ingest " + lines + into).err, Not(HasSubstr("replaces nothing"))) << "of a new map";
+  ASSERT_EQ(roadfix("ingest " + lines + " --map " + (folder / "n.gpkg").string()).code, 0);
+  const ProgramResult result = roadfix("ingest " + newer + into);
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the map has no source 'roads_2024', it has 'roads'. If"));
+  EXPECT_THAT(roadfix("ingest " + newer + " --name roads" + into).err, Not(HasSubstr("replaces nothing")));
+}
+
 TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
   const ProgramResult mistyped = roadfix("ingset a.tif --map " + path.string());
   EXPECT_EQ(mistyped.code, 2);

@@ -102,9 +102,12 @@ PlannedSource plan_source(const SourceRequest& request, const MapSettings& setti
       refuse_several_zones(request, error);
     }
     throw;
-  } catch (const LimitExceeded&) {
+  } catch (const LimitExceeded& error) {
     if (planned.cells) print_notes(request.files, planned.cells->summary());  // of what makes it so large, for one
-    throw;
+    if (request.files.paths.size() < 2) throw;
+    throw LimitExceeded(error.code(), fmt::format("{}. Where the files of {} lie far apart, ingest those of each place "
+                                                  "as a source of its own",
+                                                  error.what(), request.files.location));
   }
 }
 

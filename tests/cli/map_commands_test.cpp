@@ -279,6 +279,21 @@ TEST_F(MapCommands, IngestSaysThatNothingIsReplacedWhereTheNewerVersionHasAnothe
   EXPECT_THAT(roadfix("ingest " + newer + " --name roads" + into).err, Not(HasSubstr("replaces nothing")));
 }
 
+TEST_F(MapCommands, IngestOfAFolderOfDistantPlacesProposesASourceForEach) {
+  const auto write_roads = [&](const std::string& name, double lat) {
+    std::ofstream(folder / name) << nlohmann::json{{"type", "LineString"},
+                                                   {"coordinates", {{38.0, lat}, {39.0, lat}, {39.0, lat + 0.1}}}};
+  };
+  std::filesystem::create_directory(folder / "cities");
+  write_roads("cities/a.geojson", 1.0);
+  write_roads("cities/b.geojson", 70.0);
+  const ProgramResult result =
+      roadfix("ingest " + (folder / "cities").string() + " --map " + (folder / "n.gpkg").string());
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, ::testing::AllOf(HasSubstr("ingest those of each place as a source of its own"),
+                                           HasSubstr("[source-too-large]")));
+}
+
 TEST_F(MapCommands, AMistypedSubcommandIsNamed) {
   const ProgramResult mistyped = roadfix("ingset a.tif --map " + path.string());
   EXPECT_EQ(mistyped.code, 2);

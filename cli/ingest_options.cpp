@@ -93,6 +93,14 @@ void refuse_without_effect(const IngestArguments& a, std::span<const SourceReque
   if (lines == std::ssize(requests)) {
     refuse(!a.collar.empty(), "--nodata-color", "lines have no collar");
   }
+  if (std::ranges::none_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; })) {
+    constexpr const char* kRoads = "it is about finding roads in imagery, and these are roads already";
+    const DetectorChoice usual;
+    refuse(a.detector.name != usual.name, "--detector", kRoads);
+    refuse(a.detector.model != usual.model, "--model", kRoads);
+    refuse(a.detector.orientations != usual.orientations, "--orientations", kRoads);
+    refuse(a.detector.tree != usual.tree, "--tree-...", kRoads);
+  }
   if (lines > 0) return;
   refuse(!a.vectors.extent.empty(), "--extent",
          "it says what ground lines cover, and these are pixels. To ingest a part of them, cut them before "

@@ -43,7 +43,8 @@ void add_ingest_options(CLI::App& command, IngestArguments& arguments);
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source);
 
 /// Throws InvalidInput "option-without-effect" for what is said of lines where all sources are pixels, and the other
-/// way round: who gives --extent for imagery would get all of it.
+/// way round: who gives --extent for imagery would get all of it. So for what is said of a detector where none is
+/// imagery.
 void refuse_without_effect(const IngestArguments& arguments, std::span<const SourceRequest> requests);
 
 }  // namespace roadfix::cli

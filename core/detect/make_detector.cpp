@@ -19,6 +19,10 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
     if (!choice.model.empty()) {
       throw InvalidInput("model-without-network", "A model was named for the tree detector, which needs none.");
     }
+    if (choice.orientations != DetectorChoice().orientations) {
+      throw InvalidInput("option-without-effect",
+                         "--orientations does nothing with the tree detector, which has no network: leave it out.");
+    }
     return std::make_unique<TreeRoadDetector>(choice.tree);
   }
   const auto model = choice.model.empty() ? default_model() : choice.model;
@@ -26,6 +30,10 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
   if (!model) {
     throw InvalidInput("model-missing",
                        "No weights of the road network were found. Name them with --model FILE.onnx or ROADFIX_MODEL.");
+  }
+  if (choice.tree != TreeDetectorOptions()) {
+    throw InvalidInput("option-without-effect",
+                       "--tree-... does nothing with the neural detector: give --detector tree, or leave it out.");
   }
   return std::make_unique<NeuralRoadDetector>(*model, NeuralOptions{choice.orientations});
 }

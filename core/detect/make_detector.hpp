@@ -24,8 +24,8 @@ struct DetectorChoice {
 /// "auto": neural where `model` is named or default_model() finds one, else the tree.
 inline constexpr std::array<const char*, 3> kDetectorNames{"auto", "neural", "tree"};
 
-/// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network" and those
-/// of the detectors' constructors.
+/// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network",
+/// "option-without-effect" (of the other detector) and those of the detectors' constructors.
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice);
 
 }  // namespace roadfix

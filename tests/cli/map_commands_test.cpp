@@ -248,6 +248,9 @@ TEST_F(MapCommands, IngestRefusesOptionsThatDoNothingWithItsSources) {
   std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";
   EXPECT_THAT(roadfix("ingest " + lines + " --nodata-color white --map " + (folder / "n.gpkg").string()).err,
               HasSubstr("[option-without-effect]"));
+  for (const char* option : {"--detector tree", "--orientations 8", "--model net.onnx", "--tree-alpha 0.3"}) {
+    EXPECT_THAT(roadfix(ingest + " " + lines + " " + option).err, HasSubstr("[option-without-effect]")) << option;
+  }
   EXPECT_EQ(roadfix(ingest + " " + lines + " --width 6 --nodata-color white").code, 0) << "one for each";
 }
 

@@ -91,6 +91,15 @@ TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
   EXPECT_EQ(refusal({"tree", model(), 1, {}}), "model-without-network");
 }
 
+TEST_F(MakeDetector, WhatIsSaidOfTheOtherDetectorIsRefused) {
+  TreeDetectorOptions denser;
+  denser.trees_per_km2 = 5000;
+  EXPECT_EQ(refusal({"neural", model(), 1, denser}), "option-without-effect");
+  EXPECT_EQ(refusal({"auto", model(), 1, denser}), "option-without-effect");
+  EXPECT_EQ(refusal({"tree", {}, 1, denser}), "accepted");
+  EXPECT_EQ(refusal({"tree", {}, 8, {}}), "option-without-effect");
+}
+
 TEST_F(MakeDetector, TheShippedWeightsFitTheirDescription) {
   if (!default_model()) GTEST_SKIP() << "models/roadnet.onnx is not there";
   DetectorChoice choice;

@@ -20,7 +20,7 @@ constexpr int kShifts = 2 * kMaxShift + 1;
 constexpr int kSide = kTileCells / kStep;
 
 /// Of a tile, in squares of kStep cells: their observed share, the mean of their probabilities, unobserved cells
-/// counting 0, and of the squares of these means.
+/// counting 0, and the squares of the means of what was observed, weighted by that share like the others.
 struct Planes {
   cv::Mat1f seen;
   cv::Mat1f road;
@@ -38,7 +38,8 @@ struct Planes {
     }
     cv::resize(observed, seen, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
     cv::resize(probable, road, {kSide, kSide}, 0.0, 0.0, cv::INTER_AREA);
-    road2 = road.mul(road);
+    constexpr double kOneCell = 1.0 / (kStep * kStep);
+    cv::divide(road.mul(road), cv::max(seen, kOneCell), road2);
   }
 };
 

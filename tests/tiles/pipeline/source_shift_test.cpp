@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -91,6 +92,17 @@ TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
   ASSERT_TRUE(shift);
   EXPECT_EQ(shift->east_m, -24.0);
   EXPECT_EQ(shift->north_m, 0.0);
+}
+
+TEST(SourceShift, HasACorrelationOfOneAtMostWhereSquaresWereObservedInPart) {
+  SharedEvidence striped = shared_evidence(12, -8);
+  for (SharedEvidence::Tile& tile : striped.tiles) {
+    for (int row = 0; row < kTileCells; row += 2) std::ranges::fill(tile.own.row(row), kUnobserved);
+  }
+  const auto shift = shift_of(striped, kCellM);
+  ASSERT_TRUE(shift);
+  EXPECT_GT(shift->correlation, 0.9);
+  EXPECT_LE(shift->correlation, 1.0);
 }
 
 /// The source observed the west of the town, the others the east, and both a strip of so many columns.

@@ -27,11 +27,22 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+/// As spreadsheets write a field that holds a comma.
+void refuse_quotes(std::string_view text, int line) {
+  if (text.find('"') == std::string_view::npos) return;
+  refuse(line, "it has quotes, which are not understood: write fields without them, and without commas");
+}
+
 /// The cells of a line by the names of their columns; empty where there is no such column or the line leaves it empty.
 class Row {
  public:
   Row(const std::vector<std::string_view>& names, std::string_view text, int line)
-      : names_(names), cells_(split(text, ',')), line_(line) {}
+      : names_(names), cells_(split(text, ',')), line_(line) {
+    while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();
+    if (cells_.size() <= names_.size()) return;
+    refuse(fmt::format("it has {} fields, and the header {}: numbers have a point, not a comma, before their decimals",
+                       cells_.size(), names_.size()));
+  }
 
   std::string_view text(std::string_view name) const {
     const auto found = std::ranges::find(names_, name);
@@ -118,7 +129,9 @@ std::vector<std::string_view> names_in(std::string_view header) {
   std::vector<std::string_view> names = split(header, ',');
   const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
   for (const std::string_view name : {"file", "lat", "lon", "heading_deg"}) {
-    if (!has(name)) refuse(1, fmt::format("the column '{}' is missing", name));
+    if (has(name)) continue;
+    refuse(1, fmt::format("the column '{}' is missing{}", name,
+                          header.find(';') == std::string_view::npos ? "" : "; columns are separated by commas"));
   }
   if (!has("gsd_m") && !has("agl_m")) refuse(1, "there is neither a column 'gsd_m' nor 'agl_m'");
   return names;
@@ -134,6 +147,7 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
     ++line;
     if (row.ends_with('\r')) row.remove_suffix(1);
     if (row.empty()) continue;
+    refuse_quotes(row, line);
     if (!names) {
       names = names_in(row);
     } else {

@@ -34,10 +34,20 @@ TEST(FramesCsv, KnowsTheTimeWhereThereIsOne) {
 }
 
 TEST(FramesCsv, TakesNoCellBeyondTheHeaderForAColumnThatIsNotThere) {
-  const auto frames = parse_frames_csv("file,lat,lon,heading_deg,gsd_m\na,1,1,0,1,12,13\n");
+  const auto frames = parse_frames_csv("file,lat,lon,heading_deg,gsd_m\na,1,1,0,1,,\n");
   EXPECT_EQ(frames.at(0).sequence, "");
   EXPECT_FALSE(frames.at(0).time_s);
   EXPECT_FALSE(frames.at(0).camera);
+}
+
+TEST(FramesCsv, OfAnotherSpreadsheetThanCanBeReadIsRefusedForWhatItIs) {
+  const auto told = [](const char* text, const char* what) {
+    EXPECT_THAT([=] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(what))) << text;
+  };
+  told("file;lat;lon;heading_deg;gsd_m\na;1;1;0;1\n", "columns are separated by commas");
+  told("file,lat,lon,heading_deg,gsd_m\n\"a, b\",1,1,0,1\n", "line 2: it has quotes");
+  told("\"file\",\"lat\",\"lon\",\"heading_deg\",\"gsd_m\"\n", "line 1: it has quotes");
+  told("file,lat,lon,heading_deg,gsd_m\na,1,5,1,5,0,0,5\n", "it has 8 fields, and the header 5");
 }
 
 TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {

@@ -101,6 +101,11 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
+      if (std::ranges::all_of(methods, [](const auto& method) { return method.second == nullptr; })) {
+        options.left_out(fmt::format("{}: keypoints are compared with the imagery of a map, and '{}' has none",
+                                     describe(set), set.map));
+        continue;
+      }
       const std::vector<Query> queries = queries_of(set, i, map, maps.at(set.from), options);
       if (queries.empty()) continue;
       for (const std::string& name : manifest.methods) {

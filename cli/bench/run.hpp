@@ -18,7 +18,7 @@ struct BenchOptions {
   FixOptions fix;
   std::filesystem::path pictures;  ///< folder for a picture of every query and method; empty = none
   std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;
-  std::function<void(const std::string& why)> left_out;  ///< told of each set for whose queries there is no place
+  std::function<void(const std::string& why)> left_out;  ///< told of each set that cannot be asked
 };
 
 /// Of the sets of queries that could be asked. Throws IoFailure "picture-unwritable", Interrupted "bench-stopped" when

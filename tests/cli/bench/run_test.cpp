@@ -142,6 +142,19 @@ TEST_F(BenchRun, AsksTheOtherSetsWhereAFootprintFitsNowhere) {
   EXPECT_EQ(results[0].outcomes.size(), 3U);
 }
 
+TEST_F(BenchRun, SaysThatKeypointsCannotBeComparedWithAMapWithoutImagery) {
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  const auto results = bench::run(parse_manifest(R"({
+    "maps": [{"name": "drawn", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "drawn", "image": null, "count": 2, "footprint_m": [300, 300]}],
+    "methods": ["sift", "orb"]})",
+                                                 folder.path()),
+                                  options);
+  EXPECT_TRUE(results.empty());
+  EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("'drawn' has none")));
+}
+
 TEST_F(BenchRun, LooksAtNothingThatIsPaintedWithoutBeingMarked) {
   cv::Mat picture = cv::imread(folder / "town.png");
   picture.colRange(0, 320).setTo(cv::Scalar::all(255));

@@ -40,6 +40,11 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
                        fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestM, kLargestM));
   }
   const GridPoint place = map.zone.project(query.position);
+  if (!map.extent.empty() && !contains({place, query.radius_m}, nearest(map.extent, place))) {
+    throw InvalidInput(
+        "prior-outside-map",
+        fmt::format("the place lies outside the map {}: check it; latitude and longitude may be swapped", map.name));
+  }
   const RoadGrid ground = around(map, place, query.footprint_m);
   const double cell_m = ground.geometry.cell_m;
   const int cells = std::max(1, static_cast<int>(std::lround(query.footprint_m / cell_m)));

@@ -87,6 +87,14 @@ TEST(Localizability, LooksAtLargeFootprintsInCoarserCellsThanThoseOfAFineMap) {
   EXPECT_LE(max_cells, 8192 * 8192 + 1);
 }
 
+TEST(Localizability, OfAPlaceOutsideTheMapIsRefusedWithoutAWordOfPriors) {
+  const MapView view = view_of(testing::street_map(21, square(200)));
+  LocalizabilityQuery far = centre_of(view, 200.0);
+  far.position.lon_deg += 0.1;
+  EXPECT_EQ(testing::code_of([&] { localizability(view, far); }), "prior-outside-map");
+  EXPECT_EQ(testing::message_of([&] { localizability(view, far); }).find("the place lies outside the map"), 0U);
+}
+
 TEST(Localizability, RefusesAFootprintOfNoSize) {
   const MapView view = view_of(testing::street_map(21, square(200)));
   EXPECT_EQ(testing::code_of([&] { localizability(view, centre_of(view, 0.0)); }), "footprint-out-of-range");

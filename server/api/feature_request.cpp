@@ -72,7 +72,13 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
   const Fields& fields = content.fields;
   constexpr Range kPosition{-1e6, 1e6};
   ToldScale told;
-  if (fields.has("cell_m") || !is_feature_map(content.image)) told.cell_m = fields.number("cell_m", kFeatureCell);
+  const bool tells_itself = is_feature_map(content.image);
+  if (!fields.has("cell_m") && !content.image.empty() && !tells_itself) {
+    throw InvalidField("missing-parameter", "cell_m",
+                       "'cell_m' is missing, the size of a feature map's cells. If this is a camera's picture, add "
+                       "kind=frame, and gsd_m, or agl_m with one of fov_deg and focal_px, or exif=true");
+  }
+  if (fields.has("cell_m") || !tells_itself) told.cell_m = fields.number("cell_m", kFeatureCell);
   told.nadir_col = fields.optional_number("nadir_col", kPosition);
   told.nadir_row = fields.optional_number("nadir_row", kPosition);
   return feature_map_of(given_picture(content, limits), told);

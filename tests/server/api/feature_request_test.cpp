@@ -1,6 +1,6 @@
 #include "server/api/feature_request.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
@@ -12,6 +12,7 @@
 #include "tests/server/api/request_fixture.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/drone_jpeg.hpp"
+#include "tests/support/encoded.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -43,6 +44,15 @@ TEST(FeatureRequest, ExpectsThatACameraMayLeanAsFarAsItSaysNothingOfIt) {
 TEST(FeatureRequest, TakesThePlaceOfTheNadirInOtherPicturesForExact) {
   EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}}), 0.0);
   EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"gsd_m", 0.5}}), 0.0);
+}
+
+TEST(FeatureRequest, SaysOfAPictureWithoutAWordHowAFrameIsSent) {
+  Content content;
+  content.image = testing::encoded(".png", cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(90)));
+  EXPECT_THAT(testing::message_of([&] {
+                features_of(content, {NoRoads(), 2.0}, Limits{});
+              }),
+              ::testing::HasSubstr("add kind=frame, and gsd_m"));
 }
 
 TEST(FeatureRequest, TakesWhatItIsToldOfTheNadir) {

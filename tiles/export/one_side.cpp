@@ -70,8 +70,9 @@ void require_one_side(const UtmZone& zone, const GridGeometry& region) {
     if (const auto option = option_for(zone, region, side)) options.push_back(*option);
   }
   throw InvalidInput("region-across-antimeridian",
-                     fmt::format("the region lies on both sides of 180 degrees, where Web-Mercator ends: export each "
-                                 "side by itself ({}), or as .tif or .png",
+                     fmt::format("the cells of the region lie on both sides of 180 degrees, where Web-Mercator ends "
+                                 "(those of a box that ends there do, since the meridian leans across them): export "
+                                 "each side by itself ({}), or as .tif or .png",
                                  options.empty() ? "--bbox" : fmt::format("{}", fmt::join(options, " and "))));
 }
 

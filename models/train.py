@@ -30,6 +30,9 @@ def arguments():
                         help="learn too what the mean of these networks says of the crops before augmentation, in any "
                              "orientation: one network that answers like several in all of them")
     parser.add_argument("--trust", default=0.5, type=float, help="share of the loss that is the teacher's, the rest is the labels' (%(default)s)")
+    parser.add_argument("--align", default=0.0, type=float, metavar="WEIGHT",
+                        help="learn too from a second picture of each crop's ground, and that a part of it agrees with the "
+                             "crop at its own place alone; weight of that loss (%(default)s)")
     parser.add_argument("--steps", default=3000, type=int)
     parser.add_argument("--minutes", default=0.0, type=float, help="stop after this time if the steps are not done; 0 = no limit")
     parser.add_argument("--batch", default=8, type=int)
@@ -77,7 +80,7 @@ def main():
     sets += own_sets(options.pairs)
     if not sets:
         raise SystemExit(f"no pairs found below {options.data}; name your own with --pairs DIR=GSD_M")
-    train(Crops(sets, options.data, options.gsd, options.size, options.seed, options.ramp * options.batch), options)
+    train(Crops(sets, options.data, options.gsd, options.size, options.seed, options.ramp * options.batch, options.align > 0), options)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from . import augment
 
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 MAX_TILT_DEG = 15.0  # of a camera that is not gimballed
+WILDER = 1.6  # chance of each change of the second of two pictures of one ground, against that of the first
 FILL = 118  # grey that stands for "not seen", close to the mean that the network subtracts
 
 
@@ -44,6 +45,7 @@ class Level:
     image: np.ndarray
     label: np.ndarray
     weight: np.ndarray
+    another_day: np.ndarray | None = None  # a second picture of the same ground
 
 
 class Pair:
@@ -112,9 +114,9 @@ def read_sets(manifest, root):
     return found
 
 
-def place_of(path):
+def place_of(stem):
     """Pictures of one place on several days (NAME_pre, NAME_post) are held out together."""
-    return path.stem.removesuffix("_pre").removesuffix("_post")
+    return stem.removesuffix("_pre").removesuffix("_post")
 
 
 def read_picture(path, flags):
@@ -130,9 +132,9 @@ def load_pairs(options, root):
     by_stem = {p.stem: p for p in masks.iterdir() if p.suffix.lower() in EXTENSIONS}
     training, held_out = [], []
     paths = sorted(p for p in images.iterdir() if p.suffix.lower() in EXTENSIONS and p.stem in by_stem)
-    places = {place: number for number, place in enumerate(sorted({place_of(p) for p in paths}))}
+    places = {place: number for number, place in enumerate(sorted({place_of(p.stem) for p in paths}))}
     for path in paths:
-        index = places[place_of(path)]
+        index = places[place_of(path.stem)]
         image = cv2.cvtColor(read_picture(path, cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
         mask = read_picture(by_stem[path.stem], cv2.IMREAD_GRAYSCALE)
         if mask.shape != image.shape[:2]:
@@ -140,6 +142,17 @@ def load_pairs(options, root):
         wanted = options.hold_out_every > 0 and index % options.hold_out_every == options.hold_out_every // 2
         (held_out if wanted else training).append(Pair(options, path.stem, image, mask))
     return training, held_out
+
+
+def join_days(pairs):
+    """Gives each picture the one that shows its place on another day."""
+    places = {}
+    for pair in pairs:
+        places.setdefault(place_of(pair.name), []).append(pair)
+    for days in places.values():
+        for pair, other in zip(days, days[1:] + days[:1]):
+            for level, same in zip(pair.levels, other.levels):
+                level.another_day = same.image if other is not pair and same.image.shape == level.image.shape else None
 
 
 def oblique(size, tilt, distance):
@@ -153,7 +166,7 @@ def oblique(size, tilt, distance):
 
 def warp(level, gsd_m, size, angle, flip, centre, view):
     """A square of `size` pixels of `gsd_m` round `centre` (in the level's pixels), turned by `angle` and seen through the
-    homography `view` of its pixels."""
+    homography `view` of its pixels: picture, label, weight, and the picture of another day or, without one, the same."""
     step = gsd_m / level.gsd_m
     cos, sin = math.cos(angle) * step, math.sin(angle) * step
     matrix = np.array([[cos * flip, -sin, 0.0], [sin * flip, cos, 0.0]])
@@ -161,22 +174,26 @@ def warp(level, gsd_m, size, angle, flip, centre, view):
     matrix[:, 2] = np.array(centre) - matrix[:, :2] @ np.array([middle, middle])
     matrix = np.vstack([matrix, [0.0, 0.0, 1.0]]) @ view
     how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    image = cv2.warpPerspective(level.image, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
+    days = [cv2.warpPerspective(picture, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
+            for picture in (level.image, level.another_day) if picture is not None]
     label = cv2.warpPerspective(level.label, matrix, (size, size), flags=how, borderValue=0)
     weight = cv2.warpPerspective(level.weight, matrix, (size, size), flags=how, borderValue=0)
-    return image, label.astype(np.float32) / 255, (weight > 191).astype(np.float32)
+    return days[0], label.astype(np.float32) / 255, (weight > 191).astype(np.float32), days[-1]
 
 
 class Crops:
     """Endless augmented crops; crop number i of a seed is always the same one. Augmentation reaches its full strength
     at crop number `ramp`. A crop is a picture with what was seen of it, the same without the augmentation of its colours and
-    objects, label and weight: uint8, channels first, pictures 0 to 255 and the rest 0 or 1 (labels 0 to 255)."""
+    objects, label and weight; with `twice` also a second picture of this ground, of another day where there is one, with what
+    was seen of it and the weight there. uint8, channels first, pictures 0 to 255 and the rest 0 or 1 (labels 0 to 255)."""
 
-    def __init__(self, sets, root, gsd_m, size, seed, ramp=1):
-        self.gsd_m, self.size, self.seed, self.ramp = gsd_m, size, seed, ramp
+    def __init__(self, sets, root, gsd_m, size, seed, ramp=1, twice=False):
+        self.gsd_m, self.size, self.seed, self.ramp, self.twice = gsd_m, size, seed, ramp, twice
         self.pairs, self.held_out, shares = [], [], []
         for options in sets:
             training, held_out = load_pairs(options, root)
+            if twice:
+                join_days(training)
             if training and options.share > 0:
                 self.pairs.append(training)
                 shares.append(options.share)
@@ -191,10 +208,15 @@ class Crops:
     def __getitem__(self, index):
         rng = np.random.default_rng([self.seed, index])
         chosen = int(rng.choice(len(self.pairs), p=self.shares))
-        image, label, weight = self.crop(chosen, self.size, rng)
-        changed, kept, seen = augment.apply(image, label, weight, self.gsd_m, rng, min(1.0, 0.2 + index / self.ramp))
+        image, label, weight, another = self.crop(chosen, self.size, rng)
+        strength = min(1.0, 0.2 + index / self.ramp)
+        changed, kept, seen = augment.apply(image, label, weight, self.gsd_m, rng, strength)
         clean = image, ~augment.weight_is_unseen(image, weight)
-        return tuple(channels_first(x) for x in (changed, seen, *clean, label * 255, kept))
+        parts = [changed, seen, *clean, label * 255, kept]
+        if self.twice:
+            changed, kept, seen = augment.apply(another, label, weight, self.gsd_m, rng, WILDER * strength)
+            parts += [changed, seen, kept]
+        return tuple(map(channels_first, parts))
 
     def crop(self, chosen, size, rng):
         """A tile that is much smaller than the crop is joined with three others into one."""

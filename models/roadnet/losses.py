@@ -10,6 +10,12 @@ def to_cells(label, weight):
     return road, (seen >= 0.5).float()
 
 
+def share_of_road(label, weight):
+    """Of the labelled cells of each picture; labels 0 to 255."""
+    road, seen = to_cells(label / 255, weight.float())
+    return (road * seen).sum((1, 2, 3)) / seen.sum((1, 2, 3)).clamp(min=1)
+
+
 def road_loss(logits, label, weight, missing=0.05):
     """Cross-entropy plus soft Dice over the cells with a label. `missing` is the share of background that may be an
     unlabelled road: the target there is that much above 0, so that a confident right road costs little."""
@@ -31,10 +37,10 @@ def distillation_loss(logits, taught, picture):
     return (entropy * seen).sum() / seen.sum().clamp(min=1)
 
 
-def taught_in_a_random_orientation(teacher, picture, generator):
-    """The teacher's logits of a picture turned by quarters or flipped, turned back. The mean over many crops is what the
-    teacher says on the mean of all eight orientations, for the price of one."""
+def in_a_random_orientation(network, picture, generator):
+    """A network's logits of a picture turned by quarters or flipped, turned back. The mean over many crops is what it
+    says on the mean of all eight orientations, for the price of one."""
     quarters, flip = (int(torch.randint(n, (), generator=generator)) for n in (4, 2))
     turned = torch.rot90(picture.flip(3) if flip else picture, quarters, (2, 3))
-    back = torch.rot90(teacher(turned.contiguous(memory_format=torch.channels_last)), -quarters, (2, 3))
+    back = torch.rot90(network(turned.contiguous(memory_format=torch.channels_last)), -quarters, (2, 3))
     return back.flip(3) if flip else back

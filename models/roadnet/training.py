@@ -7,8 +7,9 @@ from pathlib import Path
 import torch
 from torch.utils.data import DataLoader, Sampler
 
+from .alignment import alignment_loss, random_footprint
 from .checkpoints import read_network
-from .losses import distillation_loss, road_loss, taught_in_a_random_orientation
+from .losses import distillation_loss, in_a_random_orientation, road_loss, share_of_road
 from .metrics import evaluate_pairs
 from .network import RoadNet
 from .normalise import network_input
@@ -66,11 +67,20 @@ def require_same_run(state, checkpoint, wanted):
                              "or begin anew with --restart")
 
 
+def told(logits, label, weight, taught, picture, trust):
+    """The loss of the labels and, where there is one, of the teacher."""
+    loss = road_loss(logits, label / 255, weight.float())
+    if taught is None:
+        return loss
+    return (1 - trust) * loss + trust * distillation_loss(logits, taught, picture)
+
+
 class Run:
     """A network in training, its average and its optimizer, and how they are kept in a checkpoint."""
 
     def __init__(self, options, crops):
         self.device = torch.device(options.device)
+        self.precision = torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16)
         self.identity = {"gsd_m": crops.gsd_m, "seed": options.seed, "widths": tuple(options.widths)}
         self.checkpoint = Path(options.out) / "checkpoint.pt"
         start = read_network([options.begin_with]) if options.begin_with else RoadNet(options.widths)
@@ -101,19 +111,30 @@ class Run:
         save(self.checkpoint, **states, step=self.step, **self.identity)
 
     def loss(self, crops, options):
-        """Of the labels and, where there is one, of the teacher."""
-        changed, seen, clean, clean_seen, label, weight = (part.to(self.device, non_blocking=True) for part in crops)
+        """Of the labels and, where there are such, of the teacher and of frames."""
+        changed, seen, clean, clean_seen, label, weight, *frames = (part.to(self.device, non_blocking=True) for part in crops)
+        generator = torch.Generator().manual_seed(options.seed + self.step)
+        taught = None
+        if self.teacher:
+            with torch.no_grad():
+                taught = self.in_any_orientation(self.teacher, network_input(clean, clean_seen), generator)
         picture = network_input(changed, seen).contiguous(memory_format=torch.channels_last)
-        half = torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16)
-        with half:
+        with self.precision:
             logits = self.model(picture).float()
-        loss = road_loss(logits, label / 255, weight.float())
-        if not self.teacher:
+        loss = told(logits, label, weight, taught, picture, options.trust)
+        if not frames:
             return loss
-        turns = torch.Generator().manual_seed(options.seed + self.step)
-        with half, torch.no_grad():
-            taught = taught_in_a_random_orientation(self.teacher, network_input(clean, clean_seen), turns).float()
-        return (1 - options.trust) * loss + options.trust * distillation_loss(logits, taught, picture)
+        footprint = random_footprint(logits.shape[-1], generator)
+        changed, visible, weight, label = (part[footprint.pixels()] for part in (*frames, label))
+        picture = network_input(changed, visible)
+        found = self.in_any_orientation(self.model, picture, generator)
+        taught = None if taught is None else taught[footprint.cells()]
+        loss = (loss + told(found, label, weight, taught, picture, options.trust)) / 2
+        return loss + options.align * alignment_loss(found, visible, logits, seen, footprint, share_of_road(label, weight))
+
+    def in_any_orientation(self, network, picture, generator):
+        with self.precision:
+            return in_a_random_orientation(network, picture, generator).float()
 
     def learn(self, crops, rate, options):
         self.model.train()

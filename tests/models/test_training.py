@@ -98,7 +98,7 @@ class Training(unittest.TestCase):
     def test_a_killed_run_ends_as_if_it_had_not_been_killed(self):
         teacher = self.folder / "teacher/checkpoint.pt"
         self.train("pairs", "teacher", "--steps", 10)
-        options = ("--steps", 20, "--report", 1, "--teacher", teacher)
+        options = ("--steps", 20, "--report", 1, "--teacher", teacher, "--align", 0.5)
         self.train("pairs", "whole", *options)
         self.kill_after(13, *self.command("pairs", "killed", *options))
         self.assertIn("at step 10", self.train("pairs", "killed", *options))
@@ -179,7 +179,7 @@ class Parts(unittest.TestCase):
 
         picture, turns = torch.randn(1, 1, 8, 8), torch.Generator().manual_seed(1)
         for _ in range(100):
-            answer = losses.taught_in_a_random_orientation(teacher, picture, turns)
+            answer = losses.in_a_random_orientation(teacher, picture, turns)
             torch.testing.assert_close(answer, torch.nn.functional.avg_pool2d(picture, 2))
         self.assertEqual(len({tuple(values) for values in asked}), 8)
 

@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""The loss of frames that agree with the map of their place alone, on streets drawn here.
+
+Skips (exit 77) where torch or OpenCV for Python is not installed.
+"""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+try:
+    import cv2
+    import numpy as np
+    import torch
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "models"))
+
+from roadnet import alignment, data  # noqa: E402
+
+FOOTPRINT = alignment.Footprint(row=11, col=5, side=40)
+
+
+def streets(count, side=64):
+    """Logits of `count` places, each of a few streets."""
+    rng = np.random.default_rng(3)
+    places = np.full((count, 1, side, side), -4, np.float32)
+    for place in places[:, 0]:
+        for _ in range(5):
+            ends = rng.integers(0, side, 4).tolist()
+            cv2.line(place, ends[:2], ends[2:], 3.0, 3)
+    return torch.from_numpy(places)
+
+
+def all_pixels(logits):
+    return torch.ones(len(logits), 1, *(2 * side for side in logits.shape[-2:]))
+
+
+def loss(frames, maps, seen=None, mapped=None, footprint=FOOTPRINT, road=0.1):
+    seen, mapped = (all_pixels(of) if mask is None else mask for of, mask in ((frames, seen), (maps, mapped)))
+    return alignment.alignment_loss(frames, seen, maps, mapped, footprint, torch.full((len(frames),), road))
+
+
+class Alignment(unittest.TestCase):
+    def setUp(self):
+        self.maps = streets(6)
+        self.frames = self.maps[FOOTPRINT.cells()].clone()
+
+    def test_the_correlation_is_pearsons_over_the_cells_that_both_observed(self):
+        torch.manual_seed(1)
+        frame, maps = torch.rand(1, 1, 5, 4), torch.rand(1, 2, 8, 7)
+        seen, mapped = ((torch.rand_like(values) < 0.8).float() for values in (frame, maps))
+        found = alignment.correlation(frame, seen, maps, mapped)
+        self.assertEqual(found.shape, (1, 2, 4, 4))
+        for place in np.ndindex(2, 4, 4):
+            here = np.s_[0, place[0], place[1]:place[1] + 5, place[2]:place[2] + 4]
+            both = (seen[0, 0] * mapped[here]).bool()
+            expected = np.corrcoef(frame[0, 0][both], maps[here][both])[0, 1]
+            self.assertAlmostEqual(found[(0, *place)].item(), expected, 4)
+
+    def test_the_true_shift_wins_against_others_other_orientations_and_other_places(self):
+        self.assertLess(loss(self.frames, self.maps).item(), 0.05)
+        self.assertLess(loss(self.frames, self.maps, footprint=alignment.Footprint(12, 4, 40)).item(), 0.1)
+        for wrong in (self.frames.roll(1, 0), self.frames.rot90(1, (2, 3)), self.maps[..., :40, 20:60]):
+            self.assertGreater(loss(wrong, self.maps).item(), 3.0)
+
+    def test_its_gradient_makes_frame_and_map_agree(self):
+        torch.manual_seed(1)
+        frames, maps = ((part + 8 * torch.randn_like(part)).requires_grad_() for part in (self.frames, self.maps))
+        steps = torch.optim.Adam([frames, maps], 0.3)
+        losses = []
+        for _ in range(20):
+            losses.append(loss(frames, maps))
+            steps.zero_grad()
+            losses[-1].backward()
+            self.assertTrue(torch.isfinite(frames.grad).all() and torch.isfinite(maps.grad).all())
+            steps.step()
+        self.assertLess(losses[-1].item(), 0.7 * losses[0].item())
+
+    def test_cells_that_were_not_observed_do_not_count(self):
+        for hidden, part, name in ((self.frames, np.s_[..., :12], "seen"), (self.maps, np.s_[..., :20, :], "mapped")):
+            mask, other = all_pixels(hidden), hidden.clone()
+            other[part] = 9.0
+            cells = torch.ones_like(hidden)
+            cells[part] = 0
+            mask = cells.repeat_interleave(2, 2).repeat_interleave(2, 3)
+            pairs = [(of, self.maps) if name == "seen" else (self.frames, of) for of in (hidden, other)]
+            one, two = (loss(*pair, **{name: mask}).item() for pair in pairs)
+            self.assertAlmostEqual(one, two, 4)
+
+    def test_frames_that_show_no_road_or_whose_place_was_hardly_observed_do_not_count(self):
+        wrong = self.frames.roll(1, 0).requires_grad_()
+        self.assertEqual(loss(wrong, self.maps, road=0.01).item(), 0.0)
+        nothing = loss(wrong, self.maps, mapped=0 * all_pixels(self.maps))
+        nothing.backward()
+        self.assertEqual(nothing.item(), 0.0)
+        self.assertTrue((wrong.grad == 0).all())
+
+    def test_a_footprint_lies_in_its_map_and_fits_the_network(self):
+        generator = torch.Generator().manual_seed(1)
+        for _ in range(100):
+            footprint = alignment.random_footprint(96, generator)
+            self.assertTrue(footprint.side % 8 == 0 and 0.55 * 96 <= footprint.side <= 0.8 * 96)
+            self.assertTrue(0 <= min(footprint.row, footprint.col) and max(footprint.row, footprint.col) + footprint.side <= 96)
+
+
+class TwoPictures(unittest.TestCase):
+    def test_of_a_crop_are_two_days_of_one_place_in_one_geometry(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for part in ("images", "masks"):
+                (Path(folder) / part).mkdir()
+            mask = np.zeros((160, 160), np.uint8)
+            cv2.line(mask, (20, 10), (140, 150), 255, 9)
+            for place in "abc":
+                for day, value in (("pre", 40), ("post", 210)):
+                    picture = np.full((160, 160, 3), value, np.uint8)
+                    picture[mask > 0] = 125
+                    cv2.imwrite(f"{folder}/images/{place}_{day}.png", picture)
+                    cv2.imwrite(f"{folder}/masks/{place}_{day}.png", mask)
+            crops = data.Crops([data.SetOptions("own", "images", "masks", 1.0)], folder, 1.0, 96, 3, 10 ** 9, twice=True)
+            changed, _, clean, _, label, _, another, *_ = crops[4]
+            self.assertEqual([part.shape for part in (changed, another)], [(3, 96, 96)] * 2)
+            *_, later = crops.crop(0, 96, np.random.default_rng(1))
+            first, _, _, again = crops.crop(0, 96, np.random.default_rng(1))
+            np.testing.assert_array_equal(later, again)
+            self.assertEqual({*np.unique(first)} & {40, 210} | {*np.unique(again)} & {40, 210}, {40, 210})
+            np.testing.assert_array_equal(first == 125, again == 125)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -115,9 +115,12 @@ int SearchLevels::spread_level() const {
   return level;
 }
 
+PoseRegion SearchLevels::wide_region(const Level& level) const {
+  return region_.grown(0.71 * level.cell_m(), level.bins.step());
+}
+
 bool SearchLevels::within_region(const Level& level, const LatticePose& pose) const {
-  const PoseRegion wide = region_.grown(0.71 * level.cell_m(), level.bins.step());
-  return wide.contains(level.pose_of(pose));
+  return wide_region(level).contains(level.pose_of(pose));
 }
 
 std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,

@@ -41,6 +41,9 @@ class SearchLevels {
   /// The coarsest one whose scores spread as those do that calibrations are learned from.
   int spread_level() const;
 
+  /// With a step of the level's lattice around, so that each pose of the region has one of the lattice beside it.
+  PoseRegion wide_region(const Level& level) const;
+  /// The wide region.
   bool within_region(const Level& level, const LatticePose& pose) const;
   /// Those that are apart from every better one, best first: up to `keep` from within the region, and as many others.
   std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,

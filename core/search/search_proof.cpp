@@ -11,15 +11,15 @@ namespace {
 /// All but the feature map and the map.
 BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, const SearchOptions& options,
                              const std::vector<LatticePose>& candidates) {
-  const PoseRegion& region = levels.region();
+  const PoseRegion wide = levels.wide_region(level);
   BoundedSearch bounded;
   bounded.bins = level.bins;
-  bounded.headings = bins_within(level.bins, region);
-  bounded.positions = GridGeometry::covering(region.box, level.cell_m());
-  bounded.eligible = cells_within(bounded.positions, region);
+  bounded.headings = bins_within(level.bins, wide);
+  bounded.positions = GridGeometry::covering(wide.box, level.cell_m());
+  bounded.eligible = cells_within(bounded.positions, wide);
   bounded.threads = options.threads;
   for (const LatticePose& pose : candidates) {
-    if (region.contains(level.pose_of(pose))) bounded.known = std::max(bounded.known, pose.score);
+    if (wide.contains(level.pose_of(pose))) bounded.known = std::max(bounded.known, pose.score);
   }
   return bounded;
 }

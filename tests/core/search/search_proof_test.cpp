@@ -76,5 +76,23 @@ TEST(SearchProof, IsByMeansOfItsOwnFinestCellsWhateverWasKept) {
   EXPECT_EQ(again.proof->bound, fresh.proof->bound);
 }
 
+TEST(SearchProof, IsOverThePosesBesideARegionThatHoldsNone) {
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 300, 300});
+  const GridPoint corner = map.geometry.point_at({150.0, 150.0});  // of cells of 4 m too
+  std::mt19937_64 random(15);
+  const FeatureMap seen = observed_at(map, {corner, Angle::degrees(40.0)}, 150, 150, 2.0, {0.2, 0.2}, random);
+  PoseRegion region = all_poses_in(grown({corner, corner}, 0.1));
+  region.heading_half_width = Angle();
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  for (double heading = 39.0; heading < 41.0; heading += 0.23) {
+    region.heading = Angle::degrees(heading);
+    const SearchResult found = search(reader_of(map), 2.0, seen, region, options);
+    EXPECT_TRUE(found.proof->complete);
+    EXPECT_GE(found.proof->headings, 2);
+    EXPECT_GT(found.proof->best_score, 0.5) << heading;
+  }
+}
+
 }  // namespace
 }  // namespace roadfix

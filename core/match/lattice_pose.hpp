@@ -1,6 +1,8 @@
 // A pose on the lattice of one cell size.
 #pragma once
 
+#include <tuple>
+
 #include "core/grid/geometry.hpp"
 #include "core/match/heading_bins.hpp"
 
@@ -13,6 +15,11 @@ struct LatticePose {
   double score = 0.0;
   int scale = 0;
 };
+
+/// A total order of poses at one scale: which of equal ones is the best does not depend on which thread was first.
+inline bool is_better(const LatticePose& a, const LatticePose& b) {
+  return std::tie(b.score, a.bin, a.cell.row, a.cell.col) < std::tie(a.score, b.bin, b.cell.row, b.cell.col);
+}
 
 /// The middle of its cell.
 inline GridPose grid_pose_of(const LatticePose& pose, double cell_m, const HeadingBins& bins) {

@@ -89,7 +89,7 @@ std::vector<BlockScan::Row> BlockScan::rows_of(const BlockTile& tile) const {
 
 /// What a sector's headings cover of the map, and what they need of it.
 void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const {
-  const double goal = best_;
+  const double goal = floor_;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     Row& row = rows[r];
     const int block_row = tile.row + static_cast<int>(r);
@@ -131,13 +131,13 @@ void BlockScan::scan_row(std::size_t heading, int col, int row, const Row& known
       narrow(sums, turned, partial->at(turned, i));
     }
     double bound = problem_.bound_of(sums);
-    if (bound <= best_) continue;
+    if (bound <= floor_) continue;
     const int block_col = col + static_cast<int>(i);
     if (ground.is_worth_its_time()) {
       narrow(sums, turned, ground.sums.below(turned.runs, block_col, row));
       bound = problem_.bound_of(sums);
       ++ground.tried;
-      if (bound <= best_) {
+      if (bound <= floor_) {
         ++ground.excluded;
         continue;
       }

@@ -35,9 +35,9 @@ struct BlockScanResult {
 
 class BlockScan {
  public:
-  /// `best`: what a pose has to exceed; may grow while the scan runs.
-  BlockScan(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& best)
-      : problem_(problem), headings_(headings), best_(best) {}
+  /// `floor`: what a pose has to exceed; may grow while the scan runs.
+  BlockScan(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& floor)
+      : problem_(problem), headings_(headings), floor_(floor) {}
 
   std::vector<BlockTile> tiles() const;
   /// As in BlockScanResult.
@@ -50,7 +50,7 @@ class BlockScan {
   using PerBlock = std::array<T, BoundMap::kRun>;
   struct Row {
     SectorRun run;
-    PerBlock<double> needed{};  ///< of the cross sum, for a score above the best
+    PerBlock<double> needed{};  ///< of the cross sum, for a score above the floor
     PerBlock<bool> eligible{};
     bool excluded = true;  ///< in every block
   };
@@ -72,7 +72,7 @@ class BlockScan {
 
   const BoundProblem& problem_;
   const HeadingSectors& headings_;
-  const std::atomic<double>& best_;
+  const std::atomic<double>& floor_;
 };
 
 }  // namespace roadfix

@@ -1,8 +1,5 @@
 #include "core/proof/block_visit.hpp"
 
-#include <algorithm>
-#include <map>
-
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
 
@@ -13,7 +10,7 @@ constexpr int kQuarterCells = kBlockCells / 2;  // along an edge
 
 }  // namespace
 
-std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<const BoundNode> nodes) const {
+std::optional<LatticePose> BlockVisit::best_pose(std::size_t heading, std::span<const BoundNode> nodes) const {
   const FeatureMap turned = problem_.rotator.rotated(problem_.heading(heading));
   const PackedFootprint above(above_base(turned, problem_.base));
   std::vector<Part> parts = parts_of(nodes);
@@ -24,9 +21,7 @@ std::vector<LatticePose> BlockVisit::best_poses(std::size_t heading, std::span<c
 
 std::vector<BlockVisit::Part> BlockVisit::parts_of(std::span<const BoundNode> nodes) {
   std::vector<Part> parts;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    parts.push_back({i, kBlockCells * nodes[i].col, kBlockCells * nodes[i].row, nodes[i].sums});
-  }
+  for (const BoundNode& node : nodes) parts.push_back({kBlockCells * node.col, kBlockCells * node.row, node.sums});
   return parts;
 }
 
@@ -53,39 +48,31 @@ std::vector<BlockVisit::Part> BlockVisit::surviving(std::vector<Part> parts, con
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& part = parts[i];
     part.sums.cross_max = static_cast<double>(products[i]);
-    if (problem_.bound_of(part.sums) > best_) result.push_back(part);
+    if (problem_.bound_of(part.sums) > floor_) result.push_back(part);
   }
   return result;
 }
 
-std::vector<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFootprint& footprint,
-                                             std::span<const Part> quarters) const {
+std::optional<LatticePose> BlockVisit::best_of(std::size_t heading, const PackedFootprint& footprint,
+                                               std::span<const Part> quarters) const {
   std::vector<PlaneCell> places;
-  std::vector<std::size_t> owners;
   for (const Part& part : quarters) {
     for (int i = 0; i < kQuarterCells * kQuarterCells; ++i) {
       const PlaneCell place{part.col + i % kQuarterCells, part.row + i / kQuarterCells};
-      if (!problem_.cell_eligible(place.col, place.row)) continue;
-      places.push_back(place);
-      owners.push_back(part.node);
+      if (problem_.cell_eligible(place.col, place.row)) places.push_back(place);
     }
   }
   std::vector<MatchSums> sums(places.size());
   match_sums(problem_.map.exact(), footprint, places, sums);
   const LatticeIndex origin = problem_.map.geometry().origin;
-  std::map<std::size_t, LatticePose> best;
+  std::optional<LatticePose> best;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double score = score_of(sums[i], problem_.search.cells);
-    if (score <= 0.0) continue;
-    LatticePose& pose = best[owners[i]];
-    if (score <= pose.score) continue;
-    pose = {{origin.col + places[i].col, origin.row + places[i].row}, problem_.search.headings[heading], score};
+    const LatticePose pose{{origin.col + places[i].col, origin.row + places[i].row},
+                           problem_.search.headings[heading],
+                           score_of(sums[i], problem_.search.cells)};
+    if (pose.score > floor_ && (!best || is_better(pose, *best))) best = pose;
   }
-  std::vector<LatticePose> poses;
-  for (const auto& [node, pose] : best) {
-    if (pose.score > best_) poses.push_back(pose);
-  }
-  return poses;
+  return best;
 }
 
 }  // namespace roadfix

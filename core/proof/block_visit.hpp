@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,16 +13,15 @@ namespace roadfix {
 
 class BlockVisit {
  public:
-  /// `best`: what a pose has to exceed; may grow meanwhile.
-  BlockVisit(const BoundProblem& problem, const std::atomic<double>& best) : problem_(problem), best_(best) {}
+  /// `floor`: what a pose has to exceed; may grow meanwhile.
+  BlockVisit(const BoundProblem& problem, const std::atomic<double>& floor) : problem_(problem), floor_(floor) {}
 
-  /// The best pose of each node that has one above the best. All nodes are of this heading. Thread-safe.
-  std::vector<LatticePose> best_poses(std::size_t heading, std::span<const BoundNode> nodes) const;
+  /// The best pose of these nodes, by is_better(), if it exceeds the floor. All are of this heading. Thread-safe.
+  std::optional<LatticePose> best_pose(std::size_t heading, std::span<const BoundNode> nodes) const;
 
  private:
-  /// Positions of a node that are left: side x side cells from (col, row) on.
+  /// Positions that are left: side x side cells from (col, row) on.
   struct Part {
-    std::size_t node = 0;
     int col = 0;
     int row = 0;
     BlockSums sums;
@@ -30,11 +30,11 @@ class BlockVisit {
   static std::vector<Part> parts_of(std::span<const BoundNode> nodes);
   static std::vector<Part> quarters(std::span<const Part> parts);
   std::vector<Part> surviving(std::vector<Part> parts, const PackedFootprint& above, int side) const;
-  std::vector<LatticePose> best_of(std::size_t heading, const PackedFootprint& footprint,
-                                   std::span<const Part> quarters) const;
+  std::optional<LatticePose> best_of(std::size_t heading, const PackedFootprint& footprint,
+                                     std::span<const Part> quarters) const;
 
   const BoundProblem& problem_;
-  const std::atomic<double>& best_;
+  const std::atomic<double>& floor_;
 };
 
 }  // namespace roadfix

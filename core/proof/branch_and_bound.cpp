@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "core/proof/block_scan.hpp"
 #include "core/proof/block_visit.hpp"
@@ -25,18 +28,18 @@ class BranchAndBound {
         deadline_(deadline),
         problem_(search),
         headings_(problem_),
-        best_(search.known),
-        block_scan_(problem_, headings_, best_),
-        block_visit_(problem_, best_) {}
+        floor_(search.known),
+        block_scan_(problem_, headings_, floor_),
+        block_visit_(problem_, floor_) {}
 
   BoundedResult run() {
     const bool scanned = headings_.turn(deadline_) && scan();
     result_.complete = scanned && visit();
     constexpr double kHighestScore = 1.0;
-    result_.bound = std::max(best_.load(), result_.complete ? 0.0 : scanned ? highest_left_ : kHighestScore);
+    const double best = result_.better ? result_.better->score : search_.known;
+    result_.bound = std::max(best, result_.complete ? 0.0 : scanned ? highest_left_ : kHighestScore);
     if (!result_.complete) result_.excluded_share = excluded_share();
-    std::ranges::sort(result_.poses, std::ranges::greater{}, &LatticePose::score);
-    return std::move(result_);
+    return result_;
   }
 
  private:
@@ -72,10 +75,10 @@ class BranchAndBound {
 
   /// Best first, until nothing can be better than what was found; false if time was over before.
   bool visit() {
-    std::erase_if(nodes_, [&](const BoundNode& node) { return static_cast<double>(node.bound) <= best_; });
+    std::erase_if(nodes_, [&](const BoundNode& node) { return static_cast<double>(node.bound) <= floor_; });
     std::ranges::sort(nodes_, higher);
     std::size_t next = 0;
-    while (next < nodes_.size() && static_cast<double>(nodes_[next].bound) > best_) {
+    while (next < nodes_.size() && static_cast<double>(nodes_[next].bound) > floor_) {
       highest_left_ = static_cast<double>(nodes_[next].bound);
       if (deadline_.over()) return false;
       const std::size_t end = std::min(next + kBatch, nodes_.size());
@@ -88,8 +91,7 @@ class BranchAndBound {
     return true;
   }
 
-  /// Adds the best pose of each node that has one better than what is known; false if time was over before all were
-  /// looked into.
+  /// False if time was over before all were looked into.
   bool look_into(const std::vector<BoundNode>& nodes) {
     std::map<std::int32_t, std::vector<BoundNode>> of_heading;
     for (const BoundNode& node : nodes) of_heading[node.heading].push_back(node);
@@ -101,19 +103,24 @@ class BranchAndBound {
         return;
       }
       const auto& [heading, members] = tasks[static_cast<std::size_t>(t)];
-      const std::vector<LatticePose> poses = block_visit_.best_poses(static_cast<std::size_t>(heading), members);
-      const std::lock_guard lock(mutex_);
-      result_.poses.insert(result_.poses.end(), poses.begin(), poses.end());
-      for (const LatticePose& pose : poses) best_ = std::max(best_.load(), pose.score);
+      const auto best = block_visit_.best_pose(static_cast<std::size_t>(heading), members);
+      if (best) take_if_better(*best);
     });
     return complete;
+  }
+
+  void take_if_better(const LatticePose& pose) {
+    const std::lock_guard lock(mutex_);
+    if (result_.better && !is_better(pose, *result_.better)) return;
+    result_.better = pose;
+    floor_ = std::nextafter(pose.score, 0.0);  // its equals may be better
   }
 
   const BoundedSearch& search_;
   const Deadline& deadline_;
   BoundProblem problem_;
   HeadingSectors headings_;
-  std::atomic<double> best_;
+  std::atomic<double> floor_;  ///< what a pose has to exceed
   BlockScan block_scan_;
   BlockVisit block_visit_;
   std::mutex mutex_;
@@ -126,7 +133,7 @@ class BranchAndBound {
 }  // namespace
 
 BoundedResult search_with_bound(const BoundedSearch& search, const Deadline& deadline) {
-  if (search.headings.empty() || search.positions.cols <= 0 || search.positions.rows <= 0) return {};
+  assert(!search.headings.empty() && search.positions.cols > 0 && search.positions.rows > 0);
   return BranchAndBound(search, deadline).run();
 }
 

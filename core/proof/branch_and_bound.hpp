@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
@@ -20,8 +21,8 @@ struct BoundedSearch {
   const BoundMap* map = nullptr;
   const FeatureMap* features = nullptr;  ///< in cells of the map, not constant
   HeadingBins bins{2};
-  std::vector<int> headings;                       ///< bins to search, ascending
-  GridGeometry positions;                          ///< cells of which the centres are searched
+  std::vector<int> headings;                       ///< bins to search, ascending; at least one
+  GridGeometry positions;                          ///< cells of which the centres are searched; not empty
   std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all; from several threads
   FootprintCells cells;                            ///< of `features`
   double known = 0.0;                              ///< score of the best pose known so far
@@ -29,8 +30,9 @@ struct BoundedSearch {
 };
 
 struct BoundedResult {
-  /// Poses that score more than what was known when they were looked at, best first.
-  std::vector<LatticePose> poses;
+  /// The best pose, if it scores more than what was known; of equal ones (and, before `complete`, of those that were
+  /// looked at) the first by is_better().
+  std::optional<LatticePose> better;
   /// No pose of the region scores more than this: the best score known or found if `complete`.
   double bound = 0.0;
   bool complete = true;         ///< false if time was over before

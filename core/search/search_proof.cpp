@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "core/proof/branch_and_bound.hpp"
 
@@ -46,20 +47,22 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const Deadline deadline = end_of_proof(options);
   SearchProof proof{
       level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), 0.0, 0.0, true, 0.0};
+  std::optional<LatticePose> better;
   for (int scale = -largest; scale <= largest; ++scale) {
     const LevelFeatures features = level.at_scale(scale);
     bounded.features = &features.map;
     bounded.cells = features.cells;
-    BoundedResult found = search_with_bound(bounded, deadline);
-    for (LatticePose& pose : found.poses) {
-      pose.scale = scale;
-      bounded.known = std::max(bounded.known, pose.score);
+    const BoundedResult found = search_with_bound(bounded, deadline);
+    if (found.better) {
+      better = found.better;
+      better->scale = scale;
+      bounded.known = better->score;
     }
-    candidates.insert(candidates.end(), found.poses.begin(), found.poses.end());
     proof.bound = std::max(proof.bound, found.bound);
     proof.complete = proof.complete && found.complete;
     proof.excluded_share += found.excluded_share;
   }
+  if (better) candidates.push_back(*better);
   proof.best_score = bounded.known;
   proof.excluded_share /= proof.scales;
   return proof;

@@ -56,7 +56,8 @@ class BoundedCase {
   BoundedCase(const BoundedCase&) = delete;
   BoundedCase& operator=(const BoundedCase&) = delete;
 
-  double brute_force() const {
+  /// The first of the best poses, with a score of 0 if there is none.
+  LatticePose brute_force() const {
     const int margin = 2 * footprint_reach(features_);
     const MapPlane plane(padded(map_.cells, margin));
     std::vector<PlaneCell> places;
@@ -66,11 +67,16 @@ class BoundedCase {
       }
     }
     std::vector<MatchSums> sums(places.size());
-    double best = 0.0;
+    LatticePose best;
     for (const int bin : search.headings) {
       const PackedFootprint footprint = footprint_at(features_, search.bins.heading(bin));
       match_sums(plane, footprint, places, sums);
-      for (const MatchSums& s : sums) best = std::max(best, score_of(s, search.cells));
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const LatticeIndex cell{positions_.origin.col + places[i].col - margin,
+                                positions_.origin.row + places[i].row - margin};
+        const LatticePose pose{cell, bin, score_of(sums[i], search.cells)};
+        if (pose.score > 0.0 && is_better(pose, best)) best = pose;
+      }
     }
     return best;
   }
@@ -117,16 +123,23 @@ class BoundedCase {
   std::unique_ptr<BoundMap> bound_map_;
 };
 
+inline void expect_same(const LatticePose& found, const LatticePose& expected) {
+  EXPECT_EQ(found.score, expected.score);
+  EXPECT_EQ(found.cell, expected.cell);
+  EXPECT_EQ(found.bin, expected.bin);
+}
+
 /// A pose just better than what is known must survive all bounds; the best one must end the search.
 inline void expect_brute_force_agrees(const BoundedCase& given) {
   if (given.search.features->cells.observed_count() == 0) return;
-  const double best = given.brute_force();
+  const LatticePose best = given.brute_force();
   BoundedSearch search = given.search;
-  search.known = std::nextafter(best, 0.0);
+  search.known = std::nextafter(best.score, 0.0);
   const BoundedResult found = search_with_bound(search, Deadline({}, {}));
   EXPECT_TRUE(found.complete);
-  EXPECT_EQ(found.bound, best);
-  EXPECT_EQ(found.poses.empty() ? 0.0 : found.poses.front().score, best);
+  EXPECT_EQ(found.bound, best.score);
+  ASSERT_EQ(found.better.has_value(), best.score > 0.0);
+  if (found.better) expect_same(*found.better, best);
 }
 
 }  // namespace roadfix::testing

@@ -11,6 +11,7 @@ namespace roadfix {
 namespace {
 
 using testing::all_poses_in;
+using testing::grid_city;
 using testing::observed_at;
 using testing::pose_within;
 using testing::reader_of;
@@ -91,6 +92,27 @@ TEST(SearchProof, IsOverThePosesBesideARegionThatHoldsNone) {
     EXPECT_TRUE(found.proof->complete);
     EXPECT_GE(found.proof->headings, 2);
     EXPECT_GT(found.proof->best_score, 0.5) << heading;
+  }
+}
+
+// Where streets meet at right angles many poses fit alike, and a proof goes from one to the next.
+TEST(SearchProof, LeadsToTheSameAnswerWithAnyNumberOfThreads) {
+  const RoadGrid map = grid_city({2.0, {150'000, -2'000'000}, 160, 160}, 60.0);
+  const PoseRegion region = all_poses_in(map.geometry.box());
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  for (const std::uint64_t seed : {10U, 11U}) {
+    std::mt19937_64 random(seed);
+    const FeatureMap seen = observed_at(map, pose_within(region.box, 100.0, random), 70, 70, 2.0, {0.3, 0.5}, random);
+    options.threads = 1;
+    const SearchResult one = search(reader_of(map), 2.0, seen, region, options);
+    for (int run = 0; run < 3; ++run) {
+      options.threads = 4;
+      const SearchResult four = search(reader_of(map), 2.0, seen, region, options);
+      EXPECT_EQ(four.background.rivals, one.background.rivals);
+      EXPECT_EQ(four.modes.at(0).pose.position, one.modes.at(0).pose.position);
+      EXPECT_EQ(four.modes.at(0).score, one.modes.at(0).score);
+    }
   }
 }
 

@@ -83,6 +83,15 @@ TEST(PlanarMotion, CarriesParticlesWithTheirWind) {
   EXPECT_NEAR(end.north_m, -2.0, 1e-12);
 }
 
+std::string refusal(const Odometry& odometry, const OdometryCovariance& covariance) {
+  try {
+    const OdometryMotion motion(odometry, covariance);
+  } catch (const InvalidInput& error) {
+    return error.code();
+  }
+  return "taken";
+}
+
 TEST(OdometryMotion, MovesInTheBodyFrame) {
   const ParticleState end =
       moved(OdometryMotion({10.0, 2.0, Angle::degrees(30.0)}, {}), {0.0, 0.0, Angle::degrees(90.0).radians()});
@@ -103,20 +112,30 @@ TEST(OdometryMotion, SpreadsAsItsCovarianceSays) {
   EXPECT_NEAR(m.covariance[0][2], -0.03, 0.1 * tolerance);
 }
 
+TEST(OdometryMotion, SpreadsHeadingsAsToldHoweverLittleIsKnownOfThePlace) {
+  for (const double place_m : {1.0, 300.0, 1e5}) {
+    const double turn = Angle::degrees(1.0).radians();
+    const double shared = 0.6 * place_m * turn;
+    const Scatter m = scatter(OdometryMotion(
+        {}, {{{place_m * place_m, 0.0, 0.0}, {0.0, place_m * place_m, shared}, {0.0, shared, turn * turn}}}));
+    const double tolerance = 5.0 * std::sqrt(2.0 / kSamples);
+    EXPECT_NEAR(m.covariance[2][2] / (turn * turn), 1.0, tolerance) << place_m;
+    EXPECT_NEAR(m.covariance[0][2] / shared, 1.0, 2.0 * tolerance) << place_m;
+  }
+}
+
+TEST(OdometryMotion, TakesACovarianceOfNumbersOfSinglePrecision) {
+  const auto rounded = [](double value) { return static_cast<double>(static_cast<float>(value)); };
+  const double shared = rounded(0.3);
+  const double turn = rounded(0.0009);
+  EXPECT_EQ(refusal({}, {{{100.0, 0.0, 0.0}, {0.0, 100.0, shared}, {0.0, shared, turn}}}), "taken");
+}
+
 TEST(OdometryMotion, TakesACovarianceThatLeavesADirectionWithoutError) {
   const OdometryCovariance rank1{{{4.0, 2.0, 0.0}, {2.0, 1.0, 0.0}, {0.0, 0.0, 0.0}}};
   const ParticleState end = moved(OdometryMotion({0.0, 0.0, Angle()}, rank1));
   EXPECT_NEAR(end.north_m, 2.0 * end.east_m, 1e-9);
   EXPECT_EQ(end.heading_rad, 0.0);
-}
-
-std::string refusal(const Odometry& odometry, const OdometryCovariance& covariance) {
-  try {
-    const OdometryMotion motion(odometry, covariance);
-  } catch (const InvalidInput& error) {
-    return error.code();
-  }
-  return "taken";
 }
 
 TEST(OdometryMotion, RefusesWhatIsNoCovarianceAndNoNumber) {

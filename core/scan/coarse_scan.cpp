@@ -93,6 +93,7 @@ class Scan {
       means.at(direction.half_turn, cells_, buffers->means[direction.half_turn ? 1 : 0]);
       found.headings += direction.count();
     }
+    if (deadline_.over()) return;
     map_.values().spectrum_of(values_of(first, feature_mean_),
                               bases.size() > 1 ? values_of(patch_at(bases.back()), feature_mean_) : FloatPlane(),
                               buffers->workspace, buffers->cross);

@@ -38,15 +38,18 @@ Deadline end_of_proof(const SearchOptions& options) {
 SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates) {
   const Level& level = levels.at(levels.proof_level());
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
+  SearchProof proof{
+      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), bounded.known, 1.0, false, 0.0};
+  const Deadline deadline = end_of_proof(options);
+  if (deadline.over()) return proof;
   const int largest = level.scales.reach();
   const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);
   // Its cells are means of the finest ones, which are not as fine in every search.
   const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
                                           [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();
-  const Deadline deadline = end_of_proof(options);
-  SearchProof proof{
-      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), 0.0, 0.0, true, 0.0};
+  proof.bound = 0.0;
+  proof.complete = true;
   std::optional<LatticePose> better;
   for (int scale = -largest; scale <= largest; ++scale) {
     const LevelFeatures features = level.at_scale(scale);

@@ -36,6 +36,25 @@ TEST(SearchProof, IsGivenWhereItIsAskedFor) {
   EXPECT_FALSE(search(reader_of(map), 2.0, seen, region, options).proof->complete);
 }
 
+TEST(SearchProof, ReadsNoMapWhenTimeIsOver) {
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 300, 300});
+  const FeatureMap seen = cut_out(map, {map.geometry.box().centre(), Angle()}, 150, 150, 2.0);
+  int read = 0;
+  const auto counting = [&](const GridGeometry& window) {
+    if (window.cell_m == 4.0) ++read;
+    return reader_of(map)(window);
+  };
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  options.deadline = std::chrono::steady_clock::now();
+  const SearchResult found = search(counting, 2.0, seen, all_poses_in(map.geometry.box()), options);
+  EXPECT_EQ(read, 0);
+  ASSERT_TRUE(found.proof.has_value());
+  EXPECT_FALSE(found.proof->complete);
+  EXPECT_EQ(found.proof->bound, 1.0);
+  EXPECT_EQ(found.proof->excluded_share, 0.0);
+}
+
 TEST(SearchProof, IsOverAllScalesToo) {
   const RoadGrid map = street_map(18, {2.0, {150'000, -2'000'000}, 350, 300});
   std::mt19937_64 random(19);

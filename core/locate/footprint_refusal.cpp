@@ -16,11 +16,32 @@ namespace {
 // holds.
 constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
+// Of a square as large as the ground that was seen. Eight frames of a flight of which every second was left out stay
+// within, and frames of cameras that lean far.
+constexpr double kMostSidesFar = 6.0;
+constexpr double kNeverFarM = 1500.0;
+
 double observed_m2(const FeatureMap& features) {
   return features.cell_m * features.cell_m * static_cast<double>(features.cells.observed_count());
 }
 
 }  // namespace
+
+GroundReach ground_reach(const FeatureMap& features) {
+  const CellArray& cells = features.cells;
+  double farthest = 0.0;
+  for (int row = 0; row < cells.rows(); ++row) {
+    const auto in = cells.row(row);
+    const auto first = std::ranges::find_if(in, is_observed);
+    if (first == in.end()) continue;
+    const auto last = std::find_if(in.rbegin(), in.rend(), is_observed);
+    const double left = features.nadir.col - static_cast<double>(first - in.begin());
+    const double right = static_cast<double>(in.rend() - last) - features.nadir.col;
+    const double along = std::max(features.nadir.row - row, row + 1 - features.nadir.row);
+    farthest = std::max(farthest, std::hypot(std::max(left, right), along));
+  }
+  return {features.cell_m * farthest, std::max(kNeverFarM, kMostSidesFar * std::sqrt(observed_m2(features)))};
+}
 
 std::optional<FootprintRefusal> refusal_of(const FeatureMap& features) {
   const double ground_m2 = observed_m2(features);
@@ -36,6 +57,13 @@ std::optional<FootprintRefusal> refusal_of(const FeatureMap& features) {
         fmt::format("the frame shows {:.0f} m2 of ground, and at least {:.0f} m2 are needed to tell places apart: "
                     "check its scale (metres per pixel or cell), fly higher, or combine several frames",
                     ground_m2, kMinGroundM2)};
+  }
+  if (const GroundReach reach = ground_reach(features); reach.too_far()) {
+    return FootprintRefusal{
+        "footprint-too-small",
+        fmt::format("the feature map shows {:.0f} m2 of ground, up to {:.0f} m from the point below the UAV, and for "
+                    "so little at most {:.0f} m are searched: give a map of the ground near the UAV only",
+                    ground_m2, reach.farthest_m, reach.allowed_m)};
   }
   if (moments_of(features.cells).variance() < kMinVariance) {
     return FootprintRefusal{"too-few-roads",

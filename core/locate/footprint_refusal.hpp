@@ -1,4 +1,5 @@
-// What a feature map alone says against a search for it: too little ground, or too little road on it.
+// What a feature map alone says against a search for it: too little ground, also for how far off it lies, or too little
+// road on it.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,15 @@
 #include "core/grid/feature_map.hpp"
 
 namespace roadfix {
+
+/// How far from the point below the UAV the farthest observed ground lies, and how far it may: memory and time of a
+/// search grow with its square or more.
+struct GroundReach {
+  double farthest_m = 0.0;
+  double allowed_m = 0.0;
+  bool too_far() const { return farthest_m > allowed_m; }
+};
+GroundReach ground_reach(const FeatureMap& features);
 
 struct FootprintRefusal {
   const char* reason;       ///< of a Fix

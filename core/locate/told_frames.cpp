@@ -7,6 +7,7 @@
 
 #include "core/grid/cell_moments.hpp"
 #include "core/locate/compared_cells.hpp"
+#include "core/locate/footprint_refusal.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/units/error.hpp"
 
@@ -48,10 +49,21 @@ void refuse_repeated(std::span<const PlacedFeatures> parts) {
   }
 }
 
+void refuse_far_apart(const FeatureMap& together) {
+  const GroundReach reach = ground_reach(together);
+  if (!reach.too_far()) return;
+  throw LimitExceeded("frames-too-far-apart",
+                      fmt::format("together the frames show ground up to {:.0f} m from where the first was taken, and "
+                                  "at most {:.0f} m are allowed for as much as they show: check their offsets, or "
+                                  "leave the farthest out",
+                                  reach.farthest_m, reach.allowed_m));
+}
+
 }  // namespace
 
 FeatureMap laid_together(std::span<const PlacedFeatures> parts, double max_cells) {
   FeatureMap result = combined(parts, max_cells);
+  refuse_far_apart(result);
   refuse_repeated(parts);
   result.nadir_sigma_m = std::hypot(result.nadir_sigma_m, kToldOffsetShare * mean_distance_m(parts));
   return result;

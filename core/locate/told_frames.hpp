@@ -11,7 +11,8 @@ namespace roadfix {
 inline constexpr double kToldOffsetShare = 0.05;
 
 /// combined(), its nadir known no better than the offsets: the roads of a frame tell where that one was taken, and its
-/// offset, where the reference was. Each counts by how much road it has to tell places apart. Throws as combined(), and
+/// offset, where the reference was. Each counts by how much road it has to tell places apart. Throws as combined(),
+/// LimitExceeded ("frames-too-far-apart") also where they show little ground for that (ground_reach()), and
 /// InvalidInput ("frames-repeated") where one picture is said to have been taken at two places.
 FeatureMap laid_together(std::span<const PlacedFeatures> parts, double max_cells);
 

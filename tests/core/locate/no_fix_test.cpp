@@ -1,4 +1,5 @@
 // Where nothing can be trusted, and why.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -93,6 +94,18 @@ TEST_F(NoFix, NeverPlacesAPatchOfGroundAsSmallAsAYard) {
   paste(cut_out(map_, pose_within(view_.extent, 300.0, random_), 20, 20, 2.0).cells, mostly_dark, 90, 90);
   EXPECT_EQ(locate(view_, FeatureMap::centred(std::move(mostly_dark), 2.0), {}, {}).reason, "footprint-too-small");
   EXPECT_EQ(locate(view_, FeatureMap::centred(CellArray(30, 30, kRoad), 0.01), {}, {}).reason, "footprint-too-small");
+}
+
+TEST_F(NoFix, SearchesForNothingThatIsStrewnFarAroundTheUav) {
+  const CellArray seen = cut_out(map_, pose_within(view_.extent, 300.0, random_), 100, 100, 2.0).cells;
+  CellArray strewn(100, 3000);
+  paste(seen, strewn, 0, 0);
+  EXPECT_NE(locate(view_, FeatureMap{strewn, 2.0, {50.0, 50.0}}, {}, {}).reason, "footprint-too-small")
+      << "where nothing was observed does not count";
+  paste(seen, strewn, 0, 2900);
+  const Fix fix = locate(view_, FeatureMap{strewn, 2.0, {50.0, 50.0}}, {}, {});
+  EXPECT_EQ(fix.reason, "footprint-too-small");
+  EXPECT_THAT(fix.explanation, ::testing::HasSubstr("up to 5901 m"));
 }
 
 TEST_F(NoFix, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {

@@ -50,5 +50,18 @@ TEST(LaidTogether, RefusesOnePictureFromTwoPlaces) {
   EXPECT_EQ(code_of_second_at(field, {-20.0, 0.0, {}}), "no error") << "one field is like the next";
 }
 
+TEST(LaidTogether, RefusesFramesFartherApartThanOnesOfAFlight) {
+  const FeatureMap frame = FeatureMap::centred(CellArray(150, 150, kNoRoad), 2.0);
+  const auto code_of_others_every = [&](double apart_m, int others) {
+    std::vector<PlacedFeatures> parts{{frame, {}}};
+    for (int i = 1; i <= others; ++i) parts.push_back({frame, {-apart_m * i, 0.0, {}}});
+    return testing::code_of([&] { laid_together(parts, 16e6); });
+  };
+  EXPECT_EQ(code_of_others_every(12'000.0, 1), "frames-too-far-apart") << "a search would take a gigabyte";
+  EXPECT_EQ(code_of_others_every(3000.0, 1), "frames-too-far-apart");
+  EXPECT_EQ(code_of_others_every(1500.0, 1), "no error") << "five footprints";
+  EXPECT_EQ(code_of_others_every(600.0, 7), "no error") << "every second footprint of a flight";
+}
+
 }  // namespace
 }  // namespace roadfix

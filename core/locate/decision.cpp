@@ -116,6 +116,17 @@ double share_beside_outside(const SearchResult& found) {
   return 1.0 / (1.0 + others);
 }
 
+/// Whether chance does not explain how well the roads fit at the best place around the region, which is known then.
+bool is_known_outside(const SearchResult& found) {
+  if (found.outside.empty()) return false;
+  SearchResult there = found;
+  there.modes = {found.outside.front()};
+  std::vector<double>& rivals = there.background.rivals;
+  if (!rivals.empty()) rivals.erase(rivals.begin());  // itself
+  there.background.region_share = 1.0;
+  return figures_of(there).surprise >= kBeyondChance;
+}
+
 std::string fits_outside(const SearchResult& found) {
   return fmt::format(
       "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
@@ -147,6 +158,8 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   decision.weights = weights_of(posterior, decision.probability);
   if (!found.complete()) {
     explain_time_limit(decision, found);
+  } else if (share < 0.5 && is_known_outside(found)) {
+    explain(decision, "better-outside-prior", fits_outside(found));
   } else if (figures.roads_across < kMinRoadsAcross) {
     explain(decision, kNotAboveChanceReason, shares_one_road(figures));
   } else if (decision.probability >= confidence) {

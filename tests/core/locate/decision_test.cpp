@@ -98,8 +98,8 @@ TEST(Decision, APlaceThatRestsOnNoMoreThanOneStraightRoadIsExplainedByChanceHowe
 class DecisionBesideOtherPlacesOutside : public ::testing::Test {
  protected:
   /// Places 60 m, 120 m, ... away.
-  Decision beside(const std::vector<double>& scores) {
-    SearchResult result = found(0.8, 0.35, 0.2);
+  Decision beside(const std::vector<double>& scores, double best = 0.8) {
+    SearchResult result = found(best, 0.35, 0.2);
     for (const double score : scores) {
       result.outside.push_back(result.modes[0]);
       result.outside.back().score = score;
@@ -123,6 +123,11 @@ TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsNearlyAsWellLeavesNoFixEithe
   EXPECT_EQ(decision.reason, "better-outside-prior");
   EXPECT_GT(decision.probability, 0.5);
   EXPECT_LT(decision.probability, 0.6);
+}
+
+TEST_F(DecisionBesideOtherPlacesOutside, OneThatChanceDoesNotExplainIsTheReasonWhereNothingInsideFits) {
+  EXPECT_EQ(beside({0.8}, 0.38).reason, "better-outside-prior");
+  EXPECT_EQ(beside({0.39}, 0.38).reason, "not-above-chance") << "nothing fits outside either";
 }
 
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsFarLessChangesNothing) {

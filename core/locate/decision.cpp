@@ -156,16 +156,16 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   const double share = share_beside_outside(found);
   decision.probability = share * within;
   decision.weights = weights_of(posterior, decision.probability);
+  const bool one_road = figures.roads_across < kMinRoadsAcross;
+  const bool sure_within = !one_road && within >= confidence;
   if (!found.complete()) {
     explain_time_limit(decision, found);
-  } else if (share < 0.5 && is_known_outside(found)) {
-    explain(decision, "better-outside-prior", fits_outside(found));
-  } else if (figures.roads_across < kMinRoadsAcross) {
-    explain(decision, kNotAboveChanceReason, shares_one_road(figures));
-  } else if (decision.probability >= confidence) {
+  } else if (!one_road && decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
-  } else if (within >= confidence || (within > kLikely && share < 0.5)) {
+  } else if (sure_within || (share < 0.5 && (within > kLikely || is_known_outside(found)))) {
     explain(decision, "better-outside-prior", fits_outside(found));
+  } else if (one_road) {
+    explain(decision, kNotAboveChanceReason, shares_one_road(figures));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, posterior, calibration, confidence);
   } else if (decision.probability > kLikely) {

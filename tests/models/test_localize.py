@@ -3,22 +3,15 @@
 
 Skips (exit 77) where torch or OpenCV for Python is not installed.
 """
-import sys
 import unittest
-from pathlib import Path
 
-try:
-    import cv2
-    import numpy as np
-    import torch
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
+import with_torch  # noqa: F401
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "models"))
-
-from roadnet import data, network, predict  # noqa: E402
-from roadnet.localize import best_place, recall  # noqa: E402
+import cv2
+import numpy as np
+import torch
+from roadnet import data, network, predict
+from roadnet.localize import best_place, recall
 
 
 def random_roads(rng, size):

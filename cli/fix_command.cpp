@@ -11,6 +11,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
@@ -19,7 +20,6 @@
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/frame_scale.hpp"
-#include "tiles/view/map_file_view.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -85,7 +85,7 @@ void print_text(const Fix& fix) {
 }
 
 void run_fix(const FixArguments& options) {
-  const MapView view = view_of_file(options.map);
+  const MapView view = view_with_notes(options.map);
   api::Features input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);

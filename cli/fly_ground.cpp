@@ -9,6 +9,7 @@
 
 #include "cli/fly/area.hpp"
 #include "cli/fly/pilot.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
@@ -148,7 +149,7 @@ fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
 
 MapView map_of(const FlyOptions& options) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{1} << 30;  // all flights search the same map
-  MapView map = view_of_file(options.map, kSearchCacheBytes);
+  MapView map = view_with_notes(options.map, kSearchCacheBytes);
   return options.area_m > 0.0 ? fly::middle_of(map, options.area_m) : map;
 }
 

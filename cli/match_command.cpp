@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
@@ -21,7 +22,6 @@
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "server/api/fix_json.hpp"
-#include "tiles/view/map_file_view.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -88,7 +88,7 @@ void run_match(const MatchArguments& options) {
   for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--pose"));
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
-  const MapView view = view_of_file(options.map);
+  const MapView view = view_with_notes(options.map);
   const api::Features input = read_feature_input(options.input, view.cell_m);
   MatchOptions match_options = options.match;
   match_options.stop = stop_on_signals();

@@ -1,6 +1,7 @@
 #include "core/search/search_cache.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace roadfix {
 
@@ -9,57 +10,60 @@ std::size_t SearchCache::bytes() const {
   return bytes_;
 }
 
-SearchCache::Key SearchCache::key_of(std::size_t kind, const GridGeometry& window, const Parameters& parameters) {
-  return {static_cast<std::int64_t>(kind),
-          std::llround(window.cell_m * 1e6),
-          window.origin.col,
-          window.origin.row,
-          window.cols,
-          window.rows,
-          parameters[0],
-          parameters[1],
-          parameters[2]};
+SearchCache::Key SearchCache::key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters) {
+  return {type,
+          {std::llround(window.cell_m * 1e6), window.origin.col, window.origin.row, window.cols, window.rows,
+           parameters[0], parameters[1], parameters[2]}};
 }
 
 std::shared_ptr<const void> SearchCache::entry(const Key& key, const std::function<Value()>& build) {
   std::promise<Value> promise;
-  std::shared_future<Value> value;
-  bool builds = false;
+  std::shared_future<Value> value = promise.get_future().share();
+  Keys fresh{key};
+  Entry* builds = nullptr;
   {
     const std::lock_guard lock(mutex_);
-    Entry& entry = entries_[key];
-    entry.asked = ++asked_;
-    builds = !entry.value.valid();
-    if (builds) entry.value = promise.get_future().share();
-    value = entry.value;
-  }
-  if (!builds) return value.get().value;
-  try {
-    promise.set_value(build());
-    keep(key, value.get().bytes);
-  } catch (...) {
-    {
-      const std::lock_guard lock(mutex_);
-      entries_.erase(key);
+    const auto [found, is_new] = entries_.try_emplace(key, Entry{value, fresh.begin()});
+    Entry& entry = found->second;
+    if (is_new) {
+      being_built_.splice(being_built_.begin(), fresh);
+      builds = &entry;
+    } else {
+      if (entry.kept) kept_.splice(kept_.begin(), kept_, entry.place);
+      value = entry.value;
     }
+  }
+  if (builds == nullptr) return value.get().value;
+  try {
+    Value built = build();
+    keep(*builds, built.bytes);
+    promise.set_value(std::move(built));
+  } catch (...) {
+    forget(key);
     promise.set_exception(std::current_exception());
   }
   return value.get().value;
 }
 
-void SearchCache::keep(const Key& key, std::size_t bytes) {
+void SearchCache::keep(Entry& entry, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  entries_.at(key).bytes = bytes;
+  kept_.splice(kept_.begin(), being_built_, entry.place);
+  entry.kept = true;
+  entry.bytes = bytes;
   bytes_ += bytes;
   while (bytes_ > max_bytes_) {
-    auto oldest = entries_.end();
-    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
-      if (entry->second.bytes > 0 && (oldest == entries_.end() || entry->second.asked < oldest->second.asked))
-        oldest = entry;
-    }
+    const auto oldest = entries_.find(kept_.back());
     bytes_ -= oldest->second.bytes;
     entries_.erase(oldest);
+    kept_.pop_back();
   }
+}
+
+void SearchCache::forget(const Key& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(key);
+  being_built_.erase(found->second.place);
+  entries_.erase(found);
 }
 
 }  // namespace roadfix

@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <typeindex>
 #include <typeinfo>
+#include <utility>
 
 #include "core/grid/geometry.hpp"
 
@@ -26,7 +29,7 @@ class SearchCache {
   /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
   template <typename T, typename Build>
   std::shared_ptr<const T> get(const GridGeometry& window, const Parameters& parameters, Build build) {
-    const auto built = entry(key_of(typeid(T).hash_code(), window, parameters), [&] {
+    const auto built = entry(key_of(typeid(T), window, parameters), [&] {
       auto value = std::make_shared<const T>(build());
       return Value{value, value->bytes()};
     });
@@ -36,26 +39,30 @@ class SearchCache {
   std::size_t bytes() const;
 
  private:
-  using Key = std::array<std::int64_t, 9>;
+  using Key = std::pair<std::type_index, std::array<std::int64_t, 8>>;
   struct Value {
     std::shared_ptr<const void> value;
     std::size_t bytes = 0;
   };
+  using Keys = std::list<Key>;
   struct Entry {
     std::shared_future<Value> value;
-    std::size_t bytes = 0;  ///< 0 while it is being built
-    std::uint64_t asked = 0;
+    Keys::iterator place;  ///< in being_built_ or kept_
+    bool kept = false;
+    std::size_t bytes = 0;
   };
 
-  static Key key_of(std::size_t kind, const GridGeometry& window, const Parameters& parameters);
+  static Key key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters);
   std::shared_ptr<const void> entry(const Key& key, const std::function<Value()>& build);
-  void keep(const Key& key, std::size_t bytes);
+  void keep(Entry& entry, std::size_t bytes);
+  void forget(const Key& key);
 
   const std::size_t max_bytes_;
   mutable std::mutex mutex_;
   std::map<Key, Entry> entries_;
+  Keys being_built_;
+  Keys kept_;  ///< most recently asked for first
   std::size_t bytes_ = 0;
-  std::uint64_t asked_ = 0;
 };
 
 /// From the cache, or without one just built.

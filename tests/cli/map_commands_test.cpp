@@ -137,6 +137,17 @@ TEST_F(MapCommands, ExportWritesARegion) {
   EXPECT_EQ(roadfix("export " + arguments + " --bbox 38.25,37,38.24,38").code, 2) << "west above east";
 }
 
+TEST_F(MapCommands, SayThatTilesStillShowWhatTheMapHeldBefore) {
+  EXPECT_THAT(roadfix("export " + path.string() + " before.tif").err, Not(HasSubstr("still show")));
+  testing::open_sqlite(path).execute("INSERT INTO roadfix_pending VALUES (11, 12315, 848)");
+  const ProgramResult exported = roadfix("export " + path.string() + " after.tif");
+  EXPECT_EQ(exported.code, 0);
+  EXPECT_THAT(exported.err, HasSubstr("note: 1 tiles of " + path.string() + " still show"));
+  EXPECT_THAT(roadfix("fix " + path.string() + " nowhere.png --cell 2").err, HasSubstr("still show"));
+  EXPECT_THAT(roadfix("match " + path.string() + " nowhere.png --cell 2 --pose 37.76,38.25,0").err,
+              HasSubstr("still show"));
+}
+
 TEST_F(MapCommands, ExportTakesTheFormatFromTheNameOfItsTarget) {
   const auto begin_of = [&](const std::string& name, const std::string& more) {
     const ProgramResult result =

@@ -74,22 +74,19 @@ FusionQueue::Tile FusionQueue::pending_tile(const Statement& row) const {
                                                map_.path().string()));
 }
 
-/// Fuses the next tiles, finest level first, in one transaction. Returns how many it did.
+/// Fuses the next tiles of the finest level that waits, as overviews follow from the tiles of the level before, in one
+/// transaction. Returns how many it did.
 std::int64_t FusionQueue::fuse_some() {
   Transaction transaction(map_, Transaction::Kind::kWrite);
   Statement next(map_,
-                 "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending ORDER BY zoom_level DESC, tile_row, "
-                 "tile_column LIMIT ?1");
+                 "SELECT zoom_level, tile_row, tile_column FROM roadfix_pending WHERE zoom_level = (SELECT "
+                 "max(zoom_level) FROM roadfix_pending) ORDER BY tile_row, tile_column LIMIT ?1");
   std::vector<Tile> batch;
   next.with(kTilesPerTransaction);
   while (next.step()) batch.push_back(pending_tile(next));
-  for (auto first = batch.begin(); first != batch.end();) {
-    // An overview follows from the tiles of the level before it, which have to be there.
-    const auto end = std::find_if(first, batch.end(), [&](const Tile& tile) { return tile.first != first->first; });
-    fuse({first, end});
-    first = end;
-  }
-  if (!batch.empty() && size() == 0) update_extent();
+  fuse(batch);
+  const bool last = sqlite::number(map_, "SELECT NOT EXISTS (SELECT 1 FROM roadfix_pending)") == 1;
+  if (last && !batch.empty()) update_extent();
   transaction.commit();
   return static_cast<std::int64_t>(batch.size());
 }

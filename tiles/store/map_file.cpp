@@ -194,6 +194,7 @@ MapInfo read_info(Connection& map) {
   tiles.with(zoom_of(info.settings.cell_m)).step();
   info.tiles = tiles.integer(0);
   info.pending = number(map, "SELECT count(*) FROM roadfix_pending");
+  info.error_of_removed_m = error_of_removed_m(map);
   Statement sources(map,
                     "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "
                     "registration_sigma_m, in_force, ingested_at, "

@@ -183,7 +183,9 @@ std::optional<double> MapReader::registration_sigma_m(const GridBox& box) const 
             "e.tile_column BETWEEN ?1 AND ?2 AND e.tile_row BETWEEN ?3 AND ?4 ORDER BY 1 DESC LIMIT 1",
             kRegistrationInForce));
     largest.with(cols.min.col, cols.max.col, tile_row(rows.min, zoom), tile_row(rows.max, zoom));
-    return largest.step() ? std::optional(largest.real(0)) : std::nullopt;
+    const double removed_m = error_of_removed_m(*channel.map);
+    if (largest.step()) return std::max(largest.real(0), removed_m);
+    return removed_m > 0.0 ? std::optional(removed_m) : std::nullopt;
   });
 }
 

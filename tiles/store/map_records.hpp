@@ -91,10 +91,11 @@ struct MapInfo {
   MapSettings settings;
   std::string version = {};  ///< changes whenever a fused cell changes
   int schema_version = 0;
-  GridBox extent = {};       ///< of the observed cells; empty() for a map without any
-  std::int64_t tiles = 0;    ///< of the finest level
-  int levels = 0;            ///< finest level and overviews, down to cells of 256 m
-  std::int64_t pending = 0;  ///< tiles of all levels that wait to be fused: an ingest was interrupted
+  GridBox extent = {};              ///< of the observed cells; empty() for a map without any
+  std::int64_t tiles = 0;           ///< of the finest level
+  int levels = 0;                   ///< finest level and overviews, down to cells of 256 m
+  std::int64_t pending = 0;         ///< tiles of all levels that wait to be fused: an ingest was interrupted
+  double error_of_removed_m = 0.0;  ///< 1 sigma per axis, of sources taken out that tiles which wait still show; or 0
   std::vector<SourceStatus> sources = {};
 };
 

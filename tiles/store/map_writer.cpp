@@ -190,11 +190,12 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
     const auto replaced = s.sources.find(source, true);
     if (const auto complete = s.sources.find(source, false)) {
       s.sources.require_complete(complete->id, source);
-      s.fusion.add_source(complete->id);
       if (replaced) {
+        remember_error_of_removed(s.map, replaced->id);
         s.fusion.add_source(replaced->id);
         s.sources.remove(replaced->id);
       }
+      s.fusion.add_source(complete->id);
       s.sources.put_in_force(complete->id);
       call_shifts_outdated(s.map);
     } else if (!replaced) {
@@ -244,6 +245,7 @@ bool MapWriter::remove_source(const std::string& source, const OnProgress& progr
       const auto found = s.sources.find(source, in_force);
       if (!found) continue;
       if (in_force) {
+        remember_error_of_removed(s.map, found->id);
         s.fusion.add_source(found->id);
         call_shifts_outdated(s.map);
       }

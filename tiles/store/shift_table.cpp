@@ -1,5 +1,7 @@
 #include "tiles/store/shift_table.hpp"
 
+#include <fmt/format.h>
+
 namespace roadfix {
 namespace {
 
@@ -48,6 +50,23 @@ std::map<std::string, SourceShift> read_shifts(Connection& map) {
                               .sigma_m = select.real(5)};
   }
   return shifts;
+}
+
+void remember_error_of_removed(Connection& map, std::int64_t source_id) {
+  const double before_m = error_of_removed_m(map);
+  Statement(
+      map, fmt::format("INSERT OR REPLACE INTO roadfix_meta (key, value) SELECT 'error_of_removed_m', max({}, ?2) FROM "
+                       "roadfix_sources s WHERE s.id = ?1",
+                       kRegistrationInForce))
+      .with(source_id, before_m)
+      .run();
+}
+
+double error_of_removed_m(Connection& map) {
+  Statement select(map,
+                   "SELECT CAST(value AS REAL) FROM roadfix_meta WHERE key = 'error_of_removed_m' AND EXISTS (SELECT 1 "
+                   "FROM roadfix_pending)");
+  return select.step() ? select.real(0) : 0.0;
 }
 
 }  // namespace roadfix

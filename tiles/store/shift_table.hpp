@@ -2,6 +2,7 @@
 // for other modules.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,5 +28,12 @@ std::map<std::string, SourceShift> read_shifts(sqlite::Connection& map);
 /// more.
 inline constexpr std::string_view kRegistrationInForce =
     "max(s.registration_sigma_m, coalesce((SELECT sigma_m FROM roadfix_shifts h WHERE h.source_id = s.id), 0))";
+
+/// Says, as part of the caller's transaction and before tiles wait for it, that a source is taken out: until they are
+/// fused they show it, as far off as it lies.
+void remember_error_of_removed(sqlite::Connection& map, std::int64_t source_id);
+
+/// The largest error so remembered, m (1 sigma per axis); 0 where no tile waits.
+double error_of_removed_m(sqlite::Connection& map);
 
 }  // namespace roadfix

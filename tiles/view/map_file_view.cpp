@@ -12,7 +12,7 @@ constexpr double kAroundM = 500.0;
 
 std::function<double(GridPoint)> registration_around(std::shared_ptr<const MapReader> reader) {
   double least_m = std::numeric_limits<double>::infinity();
-  double largest_m = 0.0;
+  double largest_m = reader->info().error_of_removed_m;
   for (const SourceStatus& source : reader->info().sources) {
     if (!source.complete) continue;
     least_m = std::min(least_m, source.registration_sigma_m());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <ctime>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -47,6 +48,20 @@ TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
   const auto large = cache.get<Piece>(window(9), {}, [] { return Piece{7, 100}; });
   EXPECT_EQ(large->value, 7) << "what does not fit is used all the same";
   EXPECT_LE(cache.bytes(), 25U);
+}
+
+TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
+  constexpr int kMany = 20'000;
+  SearchCache cache(10 * kMany);
+  const auto time_of = [&](int first) {
+    const std::clock_t begin = std::clock();
+    for (int col = first; col < first + kMany; ++col) cache.get<Piece>(window(col), {}, [] { return Piece{}; });
+    return static_cast<double>(std::clock() - begin);
+  };
+  const double filling = time_of(0);
+  const double replacing = time_of(kMany);
+  EXPECT_EQ(cache.bytes(), 10U * kMany);
+  EXPECT_LT(replacing, 20.0 * filling);  // some hundred times it if all that is kept is looked through
 }
 
 TEST(SearchCache, WhatFailedIsBuiltAnew) {

@@ -109,6 +109,42 @@ TEST(InterruptedWriter, OnlyANewMapWithoutAFinishedBlockIsRemoved) {
   EXPECT_TRUE(std::filesystem::exists(folder / "old.gpkg"));
 }
 
+TEST(InterruptedWriter, WhatWasReplacedOrRemovedCountsWithItsErrorUntilNoTileShowsItAnyMore) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  MapWriter writer(path, settings_37n());
+  const auto put = [&](double sigma_m, std::uint64_t seed, bool replace, std::stop_token stop) {
+    SourceRecord record = TestSource{"a", seed, {}}.record();
+    record.provenance.registration_sigma_m = sigma_m;
+    for (const TileIndex block : writer.begin_source(record, some_blocks(2), replace)) {
+      put_block(writer, "a", block, random_cells(seed, block));
+    }
+    writer.finish_source("a", {}, stop);
+  };
+  ingest(writer, {"b", 9, some_blocks(2)});  // 2.5 m
+  const GridBox box = tile_geometry(some_blocks(1).front(), 2.0).box();
+  const auto error_m = [&] { return MapReader(path).registration_sigma_m(box); };
+  put(40.0, 1, false, {});
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_EQ(code_of([&] { put(2.0, 2, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(error_m(), 40.0);
+  EXPECT_EQ(code_of([&] { put(3.0, 3, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(error_m(), 40.0) << "no tile shows the one between, and all show the first";
+  EXPECT_EQ(MapReader(path).info().error_of_removed_m, 40.0);
+  writer.finish_source("a");
+  EXPECT_EQ(error_m(), 3.0);
+  EXPECT_EQ(MapReader(path).info().error_of_removed_m, 0.0);
+  EXPECT_EQ(code_of([&] { put(2.0, 4, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(error_m(), 3.0) << "no tile shows the first any more";
+  writer.finish_source("a");
+  put(4.0, 5, true, {});
+  EXPECT_EQ(code_of([&] { writer.remove_source("a", {}, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(error_m(), 4.0);
+  writer.remove_source("a");
+  EXPECT_EQ(error_m(), 2.5);
+}
+
 /// Two sources, the second replaced by a third: every kind of transaction of a writer.
 void ingest_everything(const std::filesystem::path& path) {
   MapWriter writer(path, settings_37n());

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "core/locate/fix.hpp"
+#include "core/units/error.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
 namespace {
@@ -51,6 +53,27 @@ TEST(MapFileView, ASourceCountsForTheAccuracyOfTheGroundAroundItOnly) {
   EXPECT_EQ(view.registration_sigma_m(town.geometry.box().centre()), 1.5);
   EXPECT_EQ(view.registration_sigma_m({620'000.0, 6'400'100.0}), 40.0);
   EXPECT_EQ(view.registration_sigma_m({640'000.0, 6'400'100.0}), 40.0) << "beyond all sources";
+}
+
+TEST(MapFileView, CountsTheErrorOfASourceThatWasReplacedWhereTilesStillShowIt) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder / "town.gpkg";
+  MapWriter writer(path, testing::settings_37n());
+  const auto put = [&](double sigma_m, std::uint64_t seed, std::stop_token stop) {
+    SourceRecord record = testing::TestSource{"a", seed, {}}.record();
+    record.provenance.registration_sigma_m = sigma_m;
+    for (const TileIndex block : writer.begin_source(record, testing::some_blocks(1), seed > 1)) {
+      testing::put_block(writer, "a", block, testing::random_cells(seed, block));
+    }
+    writer.finish_source("a", {}, stop);
+  };
+  put(40.0, 1, {});
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_THROW(put(2.0, 2, stopped.get_token()), Interrupted);
+  EXPECT_EQ(view_of_file(path).registration_sigma_m({434'000.0, 4'180'000.0}), 40.0);
+  writer.finish_source("a");
+  EXPECT_EQ(view_of_file(path).registration_sigma_m({434'000.0, 4'180'000.0}), 2.0);
 }
 
 }  // namespace

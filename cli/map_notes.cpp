@@ -12,11 +12,11 @@ namespace roadfix::cli {
 
 void note_waiting_tiles(const std::filesystem::path& file, const MapInfo& info) {
   if (info.pending == 0) return;
-  fmt::print(
-      stderr,
-      "note: {} tiles of {} still show what the map held before the last ingest or remove, which is running or was "
-      "interrupted. Repeat it if it does not run\n",
-      info.pending, file.string());
+  fmt::print(stderr,
+             "note: {}: {} of its tiles still show what the map held before the last ingest or remove, which is "
+             "running or was "
+             "interrupted. Repeat it if it does not run\n",
+             file.string(), info.pending);
 }
 
 MapView view_with_notes(const std::filesystem::path& file, std::size_t search_cache_bytes) {

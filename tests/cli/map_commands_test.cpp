@@ -142,7 +142,7 @@ TEST_F(MapCommands, SayThatTilesStillShowWhatTheMapHeldBefore) {
   testing::open_sqlite(path).execute("INSERT INTO roadfix_pending VALUES (11, 12315, 848)");
   const ProgramResult exported = roadfix("export " + path.string() + " after.tif");
   EXPECT_EQ(exported.code, 0);
-  EXPECT_THAT(exported.err, HasSubstr("note: 1 tiles of " + path.string() + " still show"));
+  EXPECT_THAT(exported.err, HasSubstr("note: " + path.string() + ": 1 of its tiles still show"));
   EXPECT_THAT(roadfix("fix " + path.string() + " nowhere.png --cell 2").err, HasSubstr("still show"));
   EXPECT_THAT(roadfix("match " + path.string() + " nowhere.png --cell 2 --pose 37.76,38.25,0").err,
               HasSubstr("still show"));

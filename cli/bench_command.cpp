@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -24,6 +25,7 @@
 #include "cli/threads_option.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
@@ -36,6 +38,7 @@ struct BenchArguments {
   std::string methods;
   std::string curves;
   std::string calibrate_file;
+  std::string calibrate_headings_file;
   std::string calibration_file;
   DetectorChoice detector;
   double cell_m = 2.0;
@@ -83,14 +86,17 @@ nlohmann::json document(const BenchArguments& arguments, const std::string& dete
 }
 
 /// What the calibration was learned from, for those who read the file.
-nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest& manifest) {
+nlohmann::json origin_of(const BenchArguments& arguments, const bench::Manifest& manifest,
+                         const std::vector<std::string>& left_out) {
   nlohmann::json maps = nlohmann::json::array();
   for (const bench::ManifestMap& map : manifest.maps) maps.push_back(map.name);
-  return {{"roadfix", ROADFIX_VERSION},
-          {"manifest", std::filesystem::path(arguments.manifest).filename().string()},
-          {"maps", maps},
-          {"seed", arguments.options.seed},
-          {"cell_m", arguments.cell_m}};
+  nlohmann::json origin{{"roadfix", ROADFIX_VERSION},
+                        {"manifest", std::filesystem::path(arguments.manifest).filename().string()},
+                        {"maps", maps},
+                        {"seed", arguments.options.seed},
+                        {"cell_m", arguments.cell_m}};
+  if (!left_out.empty()) origin["left_out"] = left_out;
+  return origin;
 }
 
 void write_json(const nlohmann::json& document, const std::string& file) {
@@ -117,20 +123,33 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
   }
 }
 
-void learn(const BenchArguments& arguments, const bench::Manifest& manifest,
-           const std::vector<bench::SetResult>& results, std::FILE* out) {
-  const Calibration& in_force =
-      arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
-  const bench::CalibrationReport report = bench::learn_calibration(bench::road_outcomes(results), in_force);
-  write_json(bench::calibration_json(report, origin_of(arguments, manifest)), arguments.calibrate_file);
+const Calibration& in_force(const BenchArguments& arguments) {
+  return arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
+}
+
+void learn(const BenchArguments& arguments, const nlohmann::json& origin, const std::vector<bench::Outcome>& outcomes,
+           std::FILE* out) {
+  const bench::CalibrationReport report = bench::learn_calibration(outcomes, in_force(arguments));
+  write_json(bench::calibration_json(report, origin), arguments.calibrate_file);
   fmt::print(out, "learned from {} answers, {} of them right: {}\n", report.examples, report.right,
              arguments.calibrate_file);
 }
 
+void learn_headings(const BenchArguments& arguments, const nlohmann::json& origin,
+                    const std::vector<bench::Outcome>& outcomes, std::FILE* out) {
+  const std::string& file = arguments.calibrate_headings_file;
+  const bench::HeadingScale learned = bench::learn_heading_scale(outcomes, in_force(arguments));
+  write_json(bench::with_heading_scale(read_named_file(file, "calibration-missing"), learned, origin), file);
+  fmt::print(out, "learned from the headings of {} right answers: {}\n", learned.right, file);
+}
+
 void run_bench(BenchArguments& arguments) {
   const bench::Manifest manifest = manifest_of(arguments);
-  require_apart({arguments.json_file, arguments.calibrate_file}, {arguments.manifest});
-  require_writable({arguments.json_file, arguments.calibrate_file});
+  const std::initializer_list<std::filesystem::path> outputs = {arguments.json_file, arguments.calibrate_file,
+                                                                arguments.calibrate_headings_file};
+  require_apart(outputs, {arguments.manifest});
+  require_writable(outputs);
+  if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const auto detector = make_detector(arguments.detector);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
@@ -151,16 +170,19 @@ void run_bench(BenchArguments& arguments) {
   std::vector<std::string> left_out;
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
-  std::FILE* out = printed_beside({arguments.json_file, arguments.calibrate_file});
+  std::FILE* out = printed_beside(outputs);
   fmt::print(out, "detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
              bench::to_table(results));
-  const bench::Honesty honesty = bench::honesty_of(bench::road_outcomes(results));
+  const std::vector<bench::Outcome> outcomes = bench::road_outcomes(results);
+  const bench::Honesty honesty = bench::honesty_of(outcomes);
   fmt::print(out, "\n{}", bench::to_text(honesty));
   if (!arguments.json_file.empty()) {
     write_json(document(arguments, detector->describe(), results, left_out), arguments.json_file);
   }
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
-  if (!arguments.calibrate_file.empty()) learn(arguments, manifest, results, out);
+  const nlohmann::json origin = origin_of(arguments, manifest, left_out);
+  if (!arguments.calibrate_file.empty()) learn(arguments, origin, outcomes, out);
+  if (!arguments.calibrate_headings_file.empty()) learn_headings(arguments, origin, outcomes, out);
   if (!left_out.empty()) {
     throw InvalidInput(bench::kNoPlaceForQuery,
                        fmt::format("{} of {} sets of queries could not be asked:\n  {}", left_out.size(),
@@ -189,6 +211,8 @@ void add_bench_command(CLI::App& app) {
       "Draw every query into this folder: keypoint matches, roads before and after and their agreement");
   command->add_option("--calibrate", a->calibrate_file,
                       "Learn from the answers how reliable they are, and write a calibration to this file");
+  command->add_option("--calibrate-headings", a->calibrate_headings_file,
+                      "Learn from the answers how sure their headings are, and change that in this calibration");
   add_calibration_option(*command, a->calibration_file);
   command->add_option("--cell", a->cell_m, "Cell size of the maps in metres")->capture_default_str();
   command->add_option("--confidence", a->options.fix.confidence, "Minimum probability of a fix")

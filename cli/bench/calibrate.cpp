@@ -29,30 +29,38 @@ struct Example {
   bool right = false;
 };
 
-struct Scales {
-  double position = 1.0;
-  double heading = 1.0;
-};
-
 /// So that the right answers have the mean of chi^2, and 95 % of them lie where 95 % should.
 double scale_of(const std::vector<double>& normalised, double mean, double within_95) {
+  if (normalised.empty()) return 1.0;
   double sum = 0.0;
   for (const double value : normalised) sum += value / static_cast<double>(normalised.size());
   return std::sqrt(std::max(sum / mean, quantile(normalised, 0.95).value_or(0.0) / within_95));
 }
 
-Scales scales_of(std::span<const Outcome> outcomes, const Calibration& in_force) {
+/// NEES of the right answers.
+struct NormalisedErrors {
   std::vector<double> position;
   std::vector<double> heading;
+};
+
+NormalisedErrors normalised_errors(std::span<const Outcome> outcomes) {
+  NormalisedErrors errors;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.position_nees || !outcome.error_m || *outcome.error_m > kFalseFixM) continue;
-    position.push_back(*outcome.position_nees);
-    heading.push_back(*outcome.heading_nees);
+    errors.position.push_back(*outcome.position_nees);
+    errors.heading.push_back(*outcome.heading_nees);
   }
-  if (position.empty()) return {in_force.position_sigma_scale, in_force.heading_sigma_scale};
-  const auto bounded = [](double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); };
-  return {bounded(in_force.position_sigma_scale * scale_of(position, 2.0, evaluation::kChiSquare95)),
-          bounded(in_force.heading_sigma_scale * scale_of(heading, 1.0, evaluation::kChiSquare95OfHeading))};
+  return errors;
+}
+
+double bounded(double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); }
+
+double position_scale(const NormalisedErrors& errors, const Calibration& in_force) {
+  return bounded(in_force.position_sigma_scale * scale_of(errors.position, 2.0, evaluation::kChiSquare95));
+}
+
+double heading_scale(const NormalisedErrors& errors, const Calibration& in_force) {
+  return bounded(in_force.heading_sigma_scale * scale_of(errors.heading, 1.0, evaluation::kChiSquare95OfHeading));
 }
 
 /// Bias first.
@@ -86,7 +94,8 @@ Weights logistic(std::span<const Example> examples) {
   return weights;
 }
 
-/// The largest probability of a group of surest answers, by Laplace's rule of succession.
+/// The largest probability of a group of surest answers, by Laplace's rule of succession. Answers that are as sure as
+/// each other belong to the same groups.
 double highest_of(std::span<const Example> examples, const Weights& weights) {
   std::vector<std::pair<double, bool>> surest;
   for (const Example& example : examples) surest.emplace_back(sum_of(weights, example.figures), example.right);
@@ -95,6 +104,7 @@ double highest_of(std::span<const Example> examples, const Weights& weights) {
   int wrong = 0;
   for (std::size_t i = 0; i < surest.size(); ++i) {
     wrong += surest[i].second ? 0 : 1;
+    if (i + 1 < surest.size() && surest[i + 1].first == surest[i].first) continue;
     highest = std::max(highest, 1.0 - (wrong + 1.0) / (static_cast<double>(i) + 3.0));
   }
   return highest;
@@ -131,8 +141,9 @@ Scaling standardise(std::vector<Example>& examples) {
 
 CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Calibration& in_force) {
   CalibrationReport report;
-  const Scales scales = scales_of(outcomes, in_force);
-  const double region = kRegionSigmas * scales.position / in_force.position_sigma_scale;
+  const NormalisedErrors errors = normalised_errors(outcomes);
+  const double sigma_scale = position_scale(errors, in_force);
+  const double region = kRegionSigmas * sigma_scale / in_force.position_sigma_scale;
   std::vector<Example> examples;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.answer.figures || !outcome.position_nees) continue;
@@ -159,8 +170,8 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
     c.bias -= weights[i + 1] * scaling.mean[i] / scaling.spread[i];
   }
   c.highest = highest_of(examples, weights);
-  c.position_sigma_scale = scales.position;
-  c.heading_sigma_scale = scales.heading;
+  c.position_sigma_scale = sigma_scale;
+  c.heading_sigma_scale = heading_scale(errors, in_force);
   return report;
 }
 
@@ -177,6 +188,25 @@ json calibration_json(const CalibrationReport& report, const json& origin) {
   document["origin"]["examples"] = report.examples;
   document["origin"]["right"] = report.right;
   document["origin"]["elsewhere"] = report.elsewhere;
+  return document;
+}
+
+HeadingScale learn_heading_scale(std::span<const Outcome> outcomes, const Calibration& in_force) {
+  const NormalisedErrors errors = normalised_errors(outcomes);
+  const auto right = static_cast<int>(errors.heading.size());
+  if (right < kFewest) {
+    throw InvalidInput("calibration-too-few-examples",
+                       fmt::format("{} right answers are too few to learn from: ask for {} at least", right, kFewest));
+  }
+  return {heading_scale(errors, in_force), right};
+}
+
+json with_heading_scale(std::string_view calibration, const HeadingScale& learned, const json& origin) {
+  parse_calibration(calibration);  // or throws
+  json document = json::parse(calibration);
+  document["sigma_scale"]["heading"] = learned.scale;
+  document["origin"]["heading"] = origin;
+  document["origin"]["heading"]["right"] = learned.right;
   return document;
 }
 

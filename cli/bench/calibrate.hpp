@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string_view>
 
 #include "cli/bench/report.hpp"
 #include "core/locate/calibration.hpp"
@@ -16,13 +17,25 @@ struct CalibrationReport {
   int elsewhere = 0;
 };
 
-/// Sigma scales first, from the normalised errors of the right answers; then, with the regions that follow, a logistic
-/// regression with weights >= 0 and a small ridge; then the highest probability that the examples vouch for by
+/// Sigma scales first, from the normalised errors of the answers within 25 m; then, with the regions that follow, a
+/// logistic regression with weights >= 0 and a small ridge; then the highest probability that the examples vouch for by
 /// Laplace's rule. The outcomes must come from `in_force`, whose scales are undone. Throws InvalidInput
 /// "calibration-too-few-examples" below 50 right or 50 wrong answers.
 CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Calibration& in_force);
 
 /// The file's content; `origin` says where it was learned.
 nlohmann::json calibration_json(const CalibrationReport& report, const nlohmann::json& origin);
+
+struct HeadingScale {
+  double scale = 1.0;
+  int right = 0;  ///< answers within 25 m, which it was learned from
+};
+
+/// The sigma scale of headings alone, as learn_calibration() learns it. Throws likewise below 50 answers within 25 m.
+HeadingScale learn_heading_scale(std::span<const Outcome> outcomes, const Calibration& in_force);
+
+/// The content of a calibration file with that scale instead of its own. Throws as parse_calibration() does.
+nlohmann::json with_heading_scale(std::string_view calibration, const HeadingScale& learned,
+                                  const nlohmann::json& origin);
 
 }  // namespace roadfix::bench

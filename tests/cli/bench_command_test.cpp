@@ -24,6 +24,8 @@ TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
   const std::string manifest = (folder / "town.json").string();
   EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --json " + manifest).err,
               HasSubstr("target-is-source"));
+  EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --calibrate-headings nowhere.json").err,
+              HasSubstr("calibration-missing"));
   const std::string file = (folder / "out.json").string();
   const ProgramResult bench =
       run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +

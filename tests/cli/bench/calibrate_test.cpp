@@ -58,6 +58,18 @@ TEST(LearnCalibration, ClaimsNoMoreThanTheExamplesVouchFor) {
   EXPECT_LE(report.calibration.probability(surest), report.calibration.highest);
 }
 
+TEST(LearnCalibration, CountsTheWrongAmongAnswersThatAreAllAsSure) {
+  std::vector<Outcome> outcomes = drawn(200, 10);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const bool sure = i < 120;  // the 100 right ones and 20 wrong ones; all count as the median of the right
+    const bool right = i < 100;
+    outcomes[i].answer.figures = SearchFigures{sure ? 5.0 : -5.0, 0.0, 0.0};
+    outcomes[i].error_m = right ? 2.0 : 500.0;
+    outcomes[i].position_nees = right ? 1.0 : 1e6;
+  }
+  EXPECT_DOUBLE_EQ(learn_calibration(outcomes, default_calibration()).calibration.highest, 1.0 - 21.0 / 122.0);
+}
+
 TEST(LearnCalibration, RefusesTooFewExamples) {
   EXPECT_THROW(learn_calibration(drawn(60, 4), default_calibration()), InvalidInput);
 }
@@ -83,6 +95,42 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
   }
   const CalibrationReport report = learn_calibration(exact, default_calibration());
   EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
+}
+
+TEST(LearnHeadingScale, WidensHeadingsThatAreSurerThanTheyShouldBe) {
+  const Calibration& before = default_calibration();
+  std::vector<Outcome> outcomes = drawn(400, 7);
+  for (Outcome& outcome : outcomes) outcome.heading_nees = 9.0;  // three standard deviations off
+  // A mean of 1 asks for a factor of 3, the 95th percentile of chi^2 (3.84) for less.
+  EXPECT_NEAR(learn_heading_scale(outcomes, before).scale / before.heading_sigma_scale, 3.0, 1e-9);
+}
+
+TEST(LearnHeadingScale, LearnsFromNoPlaceThatIsWrong) {
+  std::vector<Outcome> outcomes = drawn(400, 8);
+  int right = 0;
+  for (Outcome& outcome : outcomes) {
+    if (*outcome.error_m > 25.0) {
+      outcome.heading_nees = 1e6;
+    } else {
+      ++right;
+    }
+  }
+  const HeadingScale learned = learn_heading_scale(outcomes, default_calibration());
+  EXPECT_EQ(learned.right, right);
+  EXPECT_LT(learned.scale, default_calibration().heading_sigma_scale);  // 0.25 each
+  EXPECT_THROW(learn_heading_scale(std::span(outcomes).first(50), default_calibration()), InvalidInput);
+}
+
+TEST(LearnHeadingScale, ChangesNothingElseOfACalibration) {
+  const CalibrationReport report = learn_calibration(drawn(1000, 9), default_calibration());
+  const nlohmann::json before = calibration_json(report, {{"seed", 9}});
+  nlohmann::json after = with_heading_scale(before.dump(), {1.75, 60}, {{"seed", 10}});
+  EXPECT_EQ(parse_calibration(after.dump()).heading_sigma_scale, 1.75);
+  EXPECT_EQ(after["origin"]["heading"], nlohmann::json({{"seed", 10}, {"right", 60}}));
+  after["sigma_scale"]["heading"] = before["sigma_scale"]["heading"];
+  after["origin"].erase("heading");
+  EXPECT_EQ(after, before);
+  EXPECT_THROW(with_heading_scale("{}", {1.75, 60}, {}), InvalidInput);
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
   channels_ = std::max(channels_, image.content.channels);
   integers_ = integers_ || image.content.integers;
   if (images_.empty()) crs_ = crs_name(file.crs());
-  PositionError error = roadfix::position_error(file, georeference, zone_);
+  PositionError error = roadfix::position_error(file, zone_);
   if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
   told_.push_back(provenance_in(file.dataset()));
   image.exported = holds_exported_roads(file.dataset());

@@ -18,8 +18,8 @@ struct PositionError {
 /// registry states nothing.
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path);
 
-/// Of the datum, and of ground control points: how far they lie from where the fit to them puts them, as far as there
-/// are more of them than the fit has degrees of freedom. Of RPC without a terrain model: what is usual.
-PositionError position_error(const RasterFile& file, const Georeference& georeference, UtmZone zone);
+/// Of the datum, and of what places it. Of ground control points: how far they lie from where the others put them; what
+/// is usual where an error in one would not show. Of RPC without a terrain model: what is usual.
+PositionError position_error(const RasterFile& file, UtmZone zone);
 
 }  // namespace roadfix

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <opencv2/imgproc.hpp>
@@ -210,19 +211,44 @@ RasterSpec placed_by_points(double east_m) {
   return spec;
 }
 
+SourceSummary summary_of_ramp(const std::string& path, const RasterSpec& spec) {
+  const BlurDetector detector;
+  write_raster(path, spec, [](int, int col, int) { return col % 200; });
+  return open_imagery({path}, {}, kZone, 2.0, detector)->summary();
+}
+
 TEST(Imagery, IsAsUncertainAsItsControlPointsContradictEachOther) {
   const testing::TemporaryFolder folder;
-  const BlurDetector detector;
-  const auto summary_of = [&](const std::string& name, const RasterSpec& spec) {
-    const std::string path = write_raster(folder / name, spec, [](int, int col, int) { return col % 200; });
-    return open_imagery({path}, {}, kZone, 2.0, detector)->summary();
-  };
-  const SourceSummary exact = summary_of("exact.tif", placed_by_points(0.0));
+  const SourceSummary exact = summary_of_ramp(folder / "exact.tif", placed_by_points(0.0));
   EXPECT_EQ(exact.registration_sigma_m, 2.5);
   EXPECT_THAT(exact.notes, ::testing::IsEmpty());
-  const SourceSummary off = summary_of("off.tif", placed_by_points(200.0));
+  const SourceSummary off = summary_of_ramp(folder / "off.tif", placed_by_points(200.0));
   EXPECT_GT(off.registration_sigma_m, 30.0);
   EXPECT_THAT(off.notes, ::testing::ElementsAre(::testing::HasSubstr("its 9 control points contradict each other")));
+}
+
+TEST(Imagery, IsUncertainWhereAnErrorOfOneControlPointWouldNotShowInTheFitToAll) {
+  const testing::TemporaryFolder folder;
+  constexpr std::array<std::array<double, 2>, 7> kPlaces{
+      {{20, 20}, {380, 20}, {20, 380}, {380, 380}, {200, 80}, {120, 240}, {280, 200}}};
+  const auto summary = [&](std::size_t count, double east_m) {
+    RasterSpec spec{.width = 400, .height = 400};
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [col, row] = kPlaces[i];
+      spec.control_points.push_back({col, row, 400000.0 + col + (i == 1 ? east_m : 0.0), 4200400.0 - row});
+    }
+    return summary_of_ramp(folder / "a.tif", spec);
+  };
+  for (const double east_m : {0.0, 25.0}) {
+    EXPECT_EQ(summary(3, east_m).registration_sigma_m, 10.0);
+    EXPECT_THAT(summary(3, east_m).notes, ::testing::ElementsAre(::testing::HasSubstr("its 3 control points are so")));
+  }
+  for (const std::size_t count : {4U, 5U, 6U, 7U}) {
+    EXPECT_EQ(summary(count, 0.0).registration_sigma_m, 2.5) << count;
+    EXPECT_GT(summary(count, 25.0).registration_sigma_m, 25.0 / std::sqrt(2.0 * static_cast<double>(count))) << count;
+    EXPECT_LT(summary(count, 25.0).registration_sigma_m, 60.0) << count;
+    EXPECT_THAT(summary(count, 25.0).notes, ::testing::ElementsAre(::testing::HasSubstr("contradict each other")));
+  }
 }
 
 TEST(Imagery, IsAsUncertainAsTheWayFromItsDatum) {

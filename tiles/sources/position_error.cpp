@@ -83,8 +83,19 @@ PositionError error_of_control_points(const RasterFile& file, UtmZone zone) {
 
 PositionError error_of_placing(const RasterFile& file, UtmZone zone) {
   std::array<double, 6> transform{};
-  if (file.dataset().GetGeoTransform(transform.data()) == CE_None) return {};
-  if (file.dataset().GetGCPCount() > 0) return error_of_control_points(file, zone);
+  const bool has_transform = file.dataset().GetGeoTransform(transform.data()) == CE_None;
+  const bool has_points = !has_transform && file.dataset().GetGCPCount() > 0;
+  PositionError placing = has_points ? error_of_control_points(file, zone) : PositionError{};
+  if (file.dataset().GetMetadata("RPC") == nullptr || placing.sigma_m >= kRpcSigmaM) return placing;
+  if (has_transform || has_points) {
+    return {
+        kRpcSigmaM,
+        fmt::format("{}: has rational polynomials beside its coordinates, as pictures have that are no orthoimages, "
+                    "and where it lies is taken to be uncertain by {} m (1 sigma), more where hills are. Make an "
+                    "orthoimage of it first: gdalwarp -rpc -to RPC_DEM=terrain.tif. If it is one, give "
+                    "--registration-sigma",
+                    file.path(), kRpcSigmaM)};
+  }
   return {kRpcSigmaM,
           fmt::format("{}: placed by its rational polynomials at the mean height of the scene, which is taken to "
                       "be uncertain by {} m (1 sigma), more where hills are. Make an orthoimage of it first: gdalwarp "

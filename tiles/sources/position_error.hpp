@@ -19,7 +19,8 @@ struct PositionError {
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path);
 
 /// Of the datum, and of what places it. Of ground control points: how far they lie from where the others put them; what
-/// is usual where an error in one would not show. Of RPC without a terrain model: what is usual.
+/// is usual where an error in one would not show. Of RPC without a terrain model, also beside a geotransform: what is
+/// usual.
 PositionError position_error(const RasterFile& file, UtmZone zone);
 
 }  // namespace roadfix

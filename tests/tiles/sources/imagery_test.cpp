@@ -1,4 +1,6 @@
 // Roads that a detector sees in imagery.
+#include <cpl_string.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/tiles/sources/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/raster_sources.hpp"
 #include "tiles/sources/road_values.hpp"
 
@@ -249,6 +252,26 @@ TEST(Imagery, IsUncertainWhereAnErrorOfOneControlPointWouldNotShowInTheFitToAll)
     EXPECT_LT(summary(count, 25.0).registration_sigma_m, 60.0) << count;
     EXPECT_THAT(summary(count, 25.0).notes, ::testing::ElementsAre(::testing::HasSubstr("contradict each other")));
   }
+}
+
+TEST(Imagery, WithRationalPolynomialsBesideItsCoordinatesIsNotTakenForAnOrthoimage) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder / "a.tif";
+  EXPECT_EQ(summary_of_ramp(path, {.width = 400, .height = 400}).registration_sigma_m, 2.5);
+  {
+    CPLStringList polynomials;
+    for (const char* axis : {"LINE", "SAMP", "LAT", "LONG", "HEIGHT"}) {
+      for (const char* part : {"OFF", "SCALE"}) polynomials.SetNameValue(fmt::format("{}_{}", axis, part).c_str(), "1");
+    }
+    for (const char* part : {"LINE_NUM", "LINE_DEN", "SAMP_NUM", "SAMP_DEN"}) {
+      polynomials.SetNameValue(fmt::format("{}_COEFF", part).c_str(), "1 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0");
+    }
+    open_dataset(path, GDAL_OF_RASTER | GDAL_OF_UPDATE)->SetMetadata(polynomials.List(), "RPC");
+  }
+  const BlurDetector detector;
+  const SourceSummary both = open_imagery({path}, {}, kZone, 2.0, detector)->summary();
+  EXPECT_EQ(both.registration_sigma_m, 10.0);
+  EXPECT_THAT(both.notes, ::testing::ElementsAre(::testing::HasSubstr("rational polynomials beside its coordinates")));
 }
 
 TEST(Imagery, IsAsUncertainAsTheWayFromItsDatum) {

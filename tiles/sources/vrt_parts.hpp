@@ -10,8 +10,8 @@
 namespace roadfix {
 
 /// Rectangles of the file's pixels that the images of the band fill; of an overview, in its own pixels. What lies
-/// beside them reads as 0 and is nothing. nullopt of other files, and of VRTs that compute their pixels. Of a VRT
-/// within a VRT all is taken as filled.
+/// beside them reads as 0 and is nothing; so do gaps in VRTs within it. nullopt of other files, and of VRTs that
+/// compute their pixels.
 std::optional<std::vector<cv::Rect>> filled_parts(GDALDataset& dataset, int band);
 
 /// Clears what of the window (`valid`, CV_8UC1, has its size) lies beside the parts.

@@ -174,13 +174,16 @@ TEST_F(RasterFileTest, OverviewsWithoutTheMaskOfTheirImageAreNotRead) {
   EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), -1);
 }
 
-/// As gdalbuildvrt makes it.
+/// As gdalbuildvrt makes it, in the finest of their pixels.
 std::string mosaic_of(const std::filesystem::path& path, const std::vector<std::string>& images) {
   std::vector<const char*> names;
   for (const std::string& image : images) names.push_back(image.c_str());
   const GdalMessages quiet;
+  std::array<const char*, 3> finest{"-resolution", "highest", nullptr};
+  GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(const_cast<char**>(finest.data()), nullptr);
   const DatasetPtr vrt(GDALDataset::FromHandle(
-      GDALBuildVRT(path.c_str(), static_cast<int>(names.size()), nullptr, names.data(), nullptr, nullptr)));
+      GDALBuildVRT(path.c_str(), static_cast<int>(names.size()), nullptr, names.data(), options, nullptr)));
+  GDALBuildVRTOptionsFree(options);
   return path.string();
 }
 
@@ -218,6 +221,44 @@ TEST_F(RasterFileTest, GapsBetweenTheImagesOfAVrtHoldNothing) {
       EXPECT_EQ(valid.at<std::uint8_t>(row, col) != 0, holds(2 * col + 1, 2 * row + 1)) << col << ' ' << row;
     }
   }
+}
+
+TEST_F(RasterFileTest, GapsWithinTheVrtsOfAVrtHoldNothing) {
+  const auto image = [&](const char* name, double east_m, double pixel_m) {
+    const std::array<double, 6> transform{400000.0 + east_m, pixel_m, 0.0, 4200000.0, 0.0, -pixel_m};
+    return write_raster(folder / name, {.transform = transform}, [](int, int, int) { return 0.0; });
+  };
+  const std::string coarse = mosaic_of(folder / "coarse.vrt", {image("a.tif", 0, 2), image("b.tif", 160, 2)});
+  const std::string fine = mosaic_of(folder / "fine.vrt", {image("c.tif", 320, 1), image("d.tif", 416, 1)});
+  const std::string region = mosaic_of(folder / "region.vrt", {coarse, fine});
+  for (const std::string& path : {region, mosaic_of(folder / "country.vrt", {region})}) {
+    for (const int overview : {-1, 0}) {
+      if (overview == 0) add_overview(path, GA_ReadOnly);
+      RasterFile file(path, {}, overview);
+      const cv::Mat valid = file.read({{0, 0}, file.size()}, {}).valid;
+      const int pixel_m = overview == 0 ? 2 : 1;
+      ASSERT_EQ(file.size(), cv::Size(480 / pixel_m, 128 / pixel_m));
+      for (int row = 0; row < valid.rows; ++row) {
+        for (int col = 0; col < valid.cols; ++col) {
+          const int east = col * pixel_m;
+          const bool of_coarse = east < 128 || (east >= 160 && east < 288);
+          const bool of_fine = row * pixel_m < 64 && ((east >= 320 && east < 384) || east >= 416);
+          ASSERT_EQ(valid.at<std::uint8_t>(row, col) != 0, of_coarse || of_fine) << path << ' ' << col << ' ' << row;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(RasterFileTest, AVrtThatNamesItselfIsOpened) {
+  const std::string path = folder / "a.vrt";
+  std::ofstream(path) << R"(<VRTDataset rasterXSize="8" rasterYSize="8"><SRS>EPSG:32637</SRS>
+    <GeoTransform>400000, 1, 0, 4200000, 0, -1</GeoTransform><VRTRasterBand dataType="Byte" band="1"><SimpleSource>
+    <SourceFilename relativeToVRT="1">a.vrt</SourceFilename><SourceBand>1</SourceBand>
+    <SourceProperties RasterXSize="8" RasterYSize="8" DataType="Byte"/>
+    <SrcRect xOff="0" yOff="0" xSize="8" ySize="8"/><DstRect xOff="0" yOff="0" xSize="8" ySize="8"/>
+    </SimpleSource></VRTRasterBand></VRTDataset>)";
+  EXPECT_EQ(RasterFile(path, {}).size(), cv::Size(8, 8));
 }
 
 TEST_F(RasterFileTest, AVrtWithoutGapsHoldsAllThatItsImagesHold) {

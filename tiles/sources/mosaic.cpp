@@ -43,6 +43,26 @@ Sampled sampled_in(const std::vector<float>& values) {
   return {max, std::ranges::all_of(values, [max](float v) { return v == 0.0F || v == max; })};
 }
 
+/// Looks at all values of an image of shares where those of its samples are small: roads are few, and may all lie
+/// between them. Returns whether there are larger ones.
+bool look_beyond_samples(RasterFile& file, Sampled& sampled) {
+  if (!file.holds_integers() || file.has_palette()) return false;
+  const std::optional<ValueRange> declared = file.declared_range();
+  const float half = declared ? 127.0F : 32767.0F;  // of what the type can hold: above it nothing is open
+  if (sampled.max > half || (declared && declared->high <= 1.0)) return false;
+  const float largest = file.largest_value(half);
+  if (largest <= sampled.max) return false;
+  sampled.mask = sampled.mask && sampled.max <= 0.0F;
+  sampled.max = largest;
+  return true;
+}
+
+/// Whether some are 1, and none lies between 1 and the largest, which is more.
+bool are_ones_only(const std::vector<float>& values, float largest) {
+  const auto between = [&](float v) { return v > 1.0F && v < largest; };
+  return largest > 1.0F && std::ranges::find(values, 1.0F) != values.end() && std::ranges::none_of(values, between);
+}
+
 /// What an image holds, as far as those of one source have to agree.
 struct Content {
   explicit Content(const RasterFile& file)
@@ -148,14 +168,20 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
     image.sampled = sampled_in(sample);
     const std::vector<float> ground = rule_ == ValueRule::kPicture ? without_fill(sample) : sample;
     values.insert(values.end(), ground.begin(), ground.end());
+    if (rule_ == ValueRule::kShare && look_beyond_samples(file, image.sampled)) values.push_back(image.sampled.max);
   }
   images_.push_back(std::move(image));
 }
 
 void Mosaic::choose_ranges(std::vector<float> values) {
+  // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
+  const bool masks = rule_ == ValueRule::kShare && integers_ &&
+                     std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
+  share_values_ = {.integers = integers_, .bytes = images_.front().content.bytes};
   if (rule_ == ValueRule::kShare && (channels_ == 1 || !integers_) && !values.empty()) {
     const auto [min, max] = std::ranges::minmax_element(values);
-    sampled_ = {static_cast<double>(*min), static_cast<double>(*max)};
+    share_values_.seen = {static_cast<double>(*min), static_cast<double>(*max)};
+    share_values_.ones_only = integers_ && !masks && are_ones_only(values, *max);
   }
   const bool all_declared = std::ranges::all_of(images_, [](const Image& image) { return image.declared.has_value(); });
   if (all_declared) {
@@ -167,13 +193,11 @@ void Mosaic::choose_ranges(std::vector<float> values) {
     return rule_ == ValueRule::kShare && image.exported && image.content.bytes;
   };
   if (std::ranges::all_of(images_, exact)) range_ = kExportedBytes;
-  // Beside graded shares a value of 1 is next to nothing, beside masks of 0 and 255 it is another mask's road.
-  const bool masks = rule_ == ValueRule::kShare && integers_ &&
-                     std::ranges::all_of(images_, [](const Image& image) { return image.sampled.mask; });
   for (Image& image : images_) {
     image.range = image.declared.value_or(range_);
     if (masks && image.sampled.max == 1.0F) image.range = {0.0, 1.0};
     if (exact(image)) image.range = kExportedBytes;
+    image.range.shares = rule_ == ValueRule::kShare;
   }
 }
 

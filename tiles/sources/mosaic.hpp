@@ -19,6 +19,7 @@
 #include "core/units/provenance.hpp"
 #include "tiles/sources/position_error.hpp"
 #include "tiles/sources/raster_file.hpp"
+#include "tiles/sources/road_values.hpp"
 
 namespace roadfix {
 
@@ -28,8 +29,8 @@ enum class ValueRule {
   /// sampled evenly over all such images of the source, but for what fills a rim: one range for all their bands, images
   /// and blocks.
   kPicture,
-  /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no sampled value is larger; 16 bit 0..65535 likewise.
-  /// Bytes that roadfix wrote: 0..254.
+  /// Shares of road: floats 0..1; bytes 0..255, or 0..1 when no value of any image is larger; wider integers 0..65535,
+  /// or as bytes when no value is larger. Bytes that roadfix wrote: 0..254.
   /// Masks of 0 and 1 beside masks of 0 and 255 keep their own range.
   kShare,
 };
@@ -50,8 +51,8 @@ class Mosaic {
   bool exported() const { return exported_; }
   /// Of the images whose type does not say it; of the first one where all types do.
   ValueRange range() const { return range_; }
-  /// Least and largest value sampled of a source of shares; low > high where none is valid, or they are colours.
-  ValueRange sampled() const { return sampled_; }
+  /// Of a source of shares.
+  const ShareValues& share_values() const { return share_values_; }
   std::string crs() const { return crs_; }
   /// Of the image whose place is the least certain.
   const PositionError& position_error() const { return position_error_; }
@@ -60,7 +61,7 @@ class Mosaic {
   Provenance told() const;
 
   /// The ground in the box in pixels of `gsd_m`, north up; pixels without data are not observed, nor is what pictures
-  /// show blank (exclude_blank). Thread-safe.
+  /// show blank (exclude_blank). Thread-safe. Throws what RasterFile::read() throws.
   GroundImage view(const GridBox& box, double gsd_m) const;
 
  private:
@@ -83,7 +84,7 @@ class Mosaic {
   bool integers_ = false;
   bool exported_ = true;
   ValueRange range_;
-  ValueRange sampled_{1.0, 0.0};
+  ShareValues share_values_;
   std::string crs_;
   PositionError position_error_;
   std::vector<Provenance> told_;  ///< by each image

@@ -9,6 +9,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/sources/nodata.hpp"
+#include "tiles/sources/road_values.hpp"
 #include "tiles/sources/vrt_parts.hpp"
 
 namespace roadfix {
@@ -60,6 +61,15 @@ double largest_opacity(GDALDataType type) {
     default:
       return 1.0;
   }
+}
+
+/// Least and largest of the valid values and 0.
+ValueRange extremes(const cv::Mat& values, const cv::Mat& valid) {
+  ValueRange range;
+  cv::Mat seen = values.clone();
+  seen.setTo(cv::Scalar::all(0.0), valid == 0);
+  cv::minMaxLoc(seen.reshape(1), &range.low, &range.high);
+  return range;
 }
 
 }  // namespace
@@ -176,9 +186,12 @@ bool RasterFile::unpacks_from_the_top() const {
 
 RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
   const bool bytes = declared_range().has_value();
-  const cv::Mat raw = read_bands(window, bytes ? CV_8U : CV_32F, bytes ? GDT_Byte : GDT_Float32);
+  const cv::Mat raw = read_stored(window);
   RasterPixels result;
   result.valid = read_validity(window, raw);
+  if (range.shares && !bytes && palette_.empty()) {
+    require_shares(path_, extremes(raw, result.valid), range, holds_integers());
+  }
   if (!palette_.empty()) {
     cv::Mat indices;
     raw.convertTo(indices, CV_32S);
@@ -199,6 +212,10 @@ RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
     raw.convertTo(result.values, CV_8U, scale, -range.low * scale);
   }
   return result;
+}
+
+cv::Mat RasterFile::read_stored(cv::Rect window) {
+  return declared_range() ? read_bands(window, CV_8U, GDT_Byte) : read_bands(window, CV_32F, GDT_Float32);
 }
 
 cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type) {
@@ -288,6 +305,33 @@ std::vector<float> RasterFile::sample_values() {
     }
   }
   return values;
+}
+
+/// All of the image, in whole blocks of the file of a megapixel or so together.
+std::vector<cv::Rect> RasterFile::all_windows() const {
+  constexpr int kSidePx = 1024;
+  int block_width = 1;
+  int block_height = 1;
+  dataset_->GetRasterBand(colour_bands_.front())->GetBlockSize(&block_width, &block_height);
+  const int width = block_width * std::max(1, kSidePx / block_width);
+  const auto blocks = std::int64_t{kSidePx} * kSidePx / (std::int64_t{width} * block_height);
+  const int height = block_height * static_cast<int>(std::max(std::int64_t{1}, blocks));
+  const cv::Rect whole({0, 0}, size());
+  std::vector<cv::Rect> windows;
+  for (int row = 0; row < whole.height; row += height) {
+    for (int col = 0; col < whole.width; col += width) windows.push_back(cv::Rect(col, row, width, height) & whole);
+  }
+  return windows;
+}
+
+float RasterFile::largest_value(float enough) {
+  float largest = 0.0F;
+  for (const cv::Rect& window : all_windows()) {
+    const cv::Mat raw = read_stored(window);
+    largest = std::max(largest, static_cast<float>(extremes(raw, read_validity(window, raw)).high));
+    if (largest > enough) break;
+  }
+  return largest;
 }
 
 void RasterFile::fail(cv::Rect window, const std::string& reason) const {

@@ -32,6 +32,7 @@ struct RasterOptions {
 struct ValueRange {
   double low = 0.0;
   double high = 255.0;
+  bool shares = false;  ///< of road: values far beyond are refused; bytes, which cannot lie there, are not checked
 };
 
 /// Pixels of a window and which of them hold something.
@@ -56,6 +57,7 @@ class RasterFile {
   int channels() const { return palette_.empty() && colour_bands_.size() < 3 ? 1 : 3; }
   /// The range that the type declares: 0..255, less where NBITS says so; nullopt where the values must be looked at.
   std::optional<ValueRange> declared_range() const;
+  bool has_palette() const { return !palette_.empty(); }
   bool holds_integers() const;
   /// Number of the band that says what is transparent, 0 without.
   int alpha_band() const { return alpha_band_; }
@@ -68,7 +70,8 @@ class RasterFile {
   bool unpacks_from_the_top() const;
 
   std::unique_lock<std::mutex> take_turn() { return std::unique_lock(turns_); }
-  /// The window must lie within the image. Throws CorruptData "image-unreadable-block".
+  /// The window must lie within the image. Throws CorruptData "image-unreadable-block", and what require_shares() of
+  /// road_values.hpp throws.
   RasterPixels read(cv::Rect window, const ValueRange& range);
   /// Value of the alpha band where all is opaque, 1 without. Of more than 8 bits by the largest value that is sampled:
   /// programs widen pictures without their alpha.
@@ -81,12 +84,16 @@ class RasterFile {
   std::vector<cv::Rect> sample_windows() const;
   /// Values of valid pixels in these windows as the file stores them: of a palette the indices.
   std::vector<float> sample_values();
+  /// Of all valid pixels as the file stores them, and 0; the first above `enough` that is met.
+  float largest_value(float enough);
 
  private:
   void find_bands();
   void find_reference(const RasterOptions& options);
+  std::vector<cv::Rect> all_windows() const;
   cv::Mat read_alpha(cv::Rect window);
   double sample_full_opacity();
+  cv::Mat read_stored(cv::Rect window);
   cv::Mat read_bands(cv::Rect window, int cv_depth, GDALDataType type);
   cv::Mat read_validity(cv::Rect window, const cv::Mat& values);
   [[noreturn]] void fail(cv::Rect window, const std::string& reason) const;

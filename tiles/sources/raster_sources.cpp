@@ -157,8 +157,7 @@ class RoadRaster final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     if (!mosaic_.exported()) {
-      summary_.notes =
-          notes_on_road_values(paths.front(), mosaic_.sampled(), mosaic_.range(), mosaic_.holds_integers());
+      summary_.notes = notes_on_road_values(paths.front(), mosaic_.share_values(), mosaic_.range());
     }
     summary_.told = mosaic_.told();
     const double told_m = summary_.told.registration_sigma_m;

@@ -10,36 +10,54 @@
 
 namespace roadfix {
 
-std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
-                                              const ValueRange& range, bool integers) {
-  if (sampled.low > sampled.high) return {};
+void require_shares(const std::string& path, const ValueRange& values, const ValueRange& range, bool integers) {
   constexpr double kResampling = 0.1;  // by which cubic resampling overshoots
-  if (sampled.low < -kResampling * range.high || (!integers && sampled.high > (1.0 + kResampling) * range.high)) {
-    throw InvalidInput(
-        "road-values-out-of-range",
-        fmt::format("{}: its values go from {:g} to {:g}, but a raster of roads holds {} from 0 to {:g}. Mark values "
-                    "that mean nothing as nodata (gdal_edit.py -a_nodata), rescale others (gdal_translate -scale)",
-                    path, sampled.low, sampled.high, integers ? "integers" : "probabilities", range.high));
-  }
+  if (values.low >= -kResampling * range.high && values.high <= (1.0 + kResampling) * range.high) return;
+  throw InvalidInput(
+      "road-values-out-of-range",
+      fmt::format("{}: its values go from {:g} to {:g}, but a raster of roads holds {} from 0 to {:g}. Mark values "
+                  "that mean nothing as nodata (gdal_edit.py -a_nodata), rescale others (gdal_translate -scale)",
+                  path, values.low, values.high, integers ? "integers" : "probabilities", range.high));
+}
+
+std::vector<std::string> notes_on_road_values(const std::string& path, const ShareValues& values,
+                                              const ValueRange& range) {
+  const double low = values.seen.low;
+  const double high = values.seen.high;
+  if (low > high) return {};
+  require_shares(path, values.seen, range, values.integers);
   constexpr double kHalf = 0.5;
   std::vector<std::string> notes;
-  if (sampled.low > kHalf * range.high) {
+  if (low > kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: every pixel with data is road, so that nothing is known to be no road, and places look alike. If nodata "
         "stands for no road here, take the mark away (gdal_edit.py -unsetnodata) and use --replace",
         path));
   }
-  if (sampled.high <= 0.0) {
+  if (high <= 0.0) {
     notes.push_back(fmt::format(
         "{}: every value that was looked at is 0, so that all of its ground becomes no road. If it should hold roads, "
         "look at its values (gdalinfo -stats), and ingest the right ones with --replace",
         path));
   }
-  if (integers && sampled.high > 0.0 && sampled.high < kHalf * range.high) {
+  if (values.integers && high > 0.0 && high < kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: its largest value is {:g} of {:g}, so that no road is surer than {:.0f} %. If it stands for certain, "
         "rescale it (gdal_translate -scale 0 {:g} 0 {:g})",
-        path, sampled.high, range.high, 100.0 * sampled.high / range.high, sampled.high, range.high));
+        path, high, range.high, 100.0 * high / range.high, high, range.high));
+  }
+  constexpr double kByte = 255.0;
+  if (values.integers && !values.bytes && high > 1.0 && high < kByte) {
+    notes.push_back(fmt::format(
+        "{}: its integers of more than 8 bits go to {:g} only, and 255 is taken for a certain road. If 65535 is one, "
+        "make bytes of them (gdal_translate -ot Byte -scale 0 65535 0 255) and use --replace",
+        path, high));
+  }
+  if (values.ones_only) {
+    notes.push_back(fmt::format(
+        "{0}: its values are 0 and 1, but for some of {1:g}, so that 1 counts as {2:.2g} % road. If 1 is "
+        "road and {1:g} means nothing, mark that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
+        path, high, 100.0 / range.high));
   }
   return notes;
 }

@@ -10,11 +10,22 @@
 
 namespace roadfix {
 
-/// `sampled` are the least and the largest value, `range` what becomes no road and road. Notes for the user: a raster
-/// without any road, a mask without "no road", values that end far below the range. Throws InvalidInput
-/// "road-values-out-of-range" for negative values and for floats above 1.
-std::vector<std::string> notes_on_road_values(const std::string& path, const ValueRange& sampled,
-                                              const ValueRange& range, bool integers);
+/// What was looked at of the values of a source.
+struct ShareValues {
+  ValueRange seen{1.0, 0.0};  ///< least and largest value; low > high where none is valid, or they are colours
+  bool integers = false;
+  bool bytes = false;      ///< integers of 8 bits at most
+  bool ones_only = false;  ///< some are 1, and none lies between 1 and the largest, which is more
+};
+
+/// `values` are the least and the largest, `range` what becomes no road and road. Throws InvalidInput
+/// "road-values-out-of-range" where they go further beyond it than resampling overshoots.
+void require_shares(const std::string& path, const ValueRange& values, const ValueRange& range, bool integers);
+
+/// Notes for the user: a raster without any road, a mask without "no road", values that end far below the range, and
+/// values by which another range may be meant. Throws what require_shares() throws.
+std::vector<std::string> notes_on_road_values(const std::string& path, const ShareValues& values,
+                                              const ValueRange& range);
 
 /// For rasters of roads, as they are read with `range`: a note where the file is in colour, as pictures of the ground
 /// are, or else where most of it is road, as if dark stood for roads.

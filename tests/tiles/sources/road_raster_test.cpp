@@ -1,7 +1,9 @@
 // Rasters that say themselves where roads are.
 #include <gmock/gmock.h>
 
+#include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "tests/support/code_of.hpp"
@@ -113,6 +115,55 @@ TEST_F(RoadRaster, ValuesThatHardlySayAnythingGetANote) {
   EXPECT_THAT(notes(100.0, 0.0, std::nullopt),
               ::testing::ElementsAre(::testing::HasSubstr("no road is surer than 39 %")));
   EXPECT_THAT(notes(0.0, 0.0, std::nullopt), ::testing::ElementsAre(::testing::HasSubstr("becomes no road")));
+}
+
+/// A raster of `ground` but for a square of `village` and a line of `road` across it, which lie between what is
+/// sampled.
+class SparseRoadRaster : public ::testing::Test {
+ protected:
+  std::unique_ptr<CellSource> open(GDALDataType type, double ground, double village, double road) {
+    const RasterSpec spec{.width = 2048, .height = 2048, .type = type};
+    const auto within = [](int place) { return place >= 68 && place < 128; };
+    const std::string path = write_raster(folder / "sparse.tif", spec, [&](int, int col, int row) {
+      if (!within(col) || !within(row)) return ground;
+      return row >= 96 && row < 104 ? road : village;
+    });
+    return open_road_raster({path}, {}, kZone, 2.0);
+  }
+  static CellArray read(const CellSource& source) { return source.read({2.0, {200000, -2100032}, 64, 64}, 1); }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(SparseRoadRaster, ItsRangeFollowsFromAllOfItsValues) {
+  const Certainty certainty;
+  for (const auto& [type, village, road] : {std::tuple{GDT_Byte, 20.0, 255.0},
+                                            {GDT_UInt16, 300.0, 65535.0},
+                                            {GDT_Byte, 0.0, 1.0},
+                                            {GDT_Int32, 0.0, 255.0}}) {
+    const CellArray cells = read(*open(type, 0.0, village, road));
+    EXPECT_NEAR(probability(cells.at(40, 38)), certainty.probability(village / road), 0.005) << village;
+    EXPECT_EQ(cells.at(40, 49), cell_from_probability(certainty.on_road)) << road;
+  }
+}
+
+TEST_F(SparseRoadRaster, ValuesThatAreNoSharesAreRefusedWhereTheyAreMet) {
+  for (const auto& [type, village] : {std::pair{GDT_Float32, 5.0}, {GDT_Float32, -9999.0}, {GDT_Int16, -9999.0}}) {
+    const auto source = open(type, 0.0, village, 1.0);
+    EXPECT_EQ(testing::code_of([&] { read(*source); }), "road-values-out-of-range") << village;
+  }
+}
+
+TEST_F(SparseRoadRaster, ValuesThatMayMeanAnotherRangeGetANote) {
+  const auto notes = [&](GDALDataType type, double ground, double village, double road) {
+    return open(type, ground, village, road)->summary().notes;
+  };
+  using ::testing::ElementsAre;
+  using ::testing::HasSubstr;
+  EXPECT_THAT(notes(GDT_UInt16, 0.0, 0.0, 200.0), ElementsAre(HasSubstr("-ot Byte -scale 0 65535 0 255")));
+  EXPECT_THAT(notes(GDT_UInt16, 0.0, 0.0, 255.0), ::testing::IsEmpty());
+  EXPECT_THAT(notes(GDT_UInt16, 0.0, 0.0, 1.0), ::testing::IsEmpty());
+  EXPECT_THAT(notes(GDT_Byte, 1.0, 0.0, 255.0), ::testing::Contains(HasSubstr("mark that as nodata")));
+  EXPECT_THAT(notes(GDT_Byte, 0.0, 0.0, 255.0), ::testing::IsEmpty());
 }
 
 TEST_F(RoadRaster, FloatsAreProbabilitiesAsTheyAre) {

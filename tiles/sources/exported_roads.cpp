@@ -20,15 +20,47 @@ constexpr std::array<std::pair<const char*, std::string Provenance::*>, 3> kText
      {"ROADFIX_LICENCE", &Provenance::licence},
      {"ROADFIX_ATTRIBUTION", &Provenance::attribution}}};
 
-}  // namespace
+bool is_feature_map(GDALDataset& dataset) { return CSLFetchNameValue(dataset.GetMetadata(), kFeatureMap) != nullptr; }
 
-bool holds_exported_roads(GDALDataset& dataset) {
+bool says_what_it_is(GDALDataset& dataset) {
+  if (is_feature_map(dataset) || is_called_as_maps_are(dataset)) return true;
   char** metadata = dataset.GetMetadata();
-  if (CSLFetchNameValue(metadata, kFeatureMap) != nullptr) return true;
   return std::ranges::any_of(kDescriptions, [&](const char* name) {
     const char* text = CSLFetchNameValue(metadata, name);
     return text != nullptr && std::string_view(text).starts_with(kExportedRoads);
   });
+}
+
+/// Null of other files than VRTs.
+DatasetPtr first_image_of(GDALDataset& dataset) {
+  if (!EQUAL(dataset.GetDriverName(), "VRT")) return nullptr;
+  const std::string own = dataset.GetDescription();
+  const GdalMessages messages;
+  const CPLStringList files(dataset.GetFileList(), TRUE);
+  for (int i = 0; i < files.size(); ++i) {
+    if (std::string_view(files[i]).starts_with(own)) continue;  // with its overviews and .aux.xml
+    return DatasetPtr(GDALDataset::Open(files[i], GDAL_OF_RASTER | GDAL_OF_READONLY));
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_called_as_maps_are(GDALDataset& dataset) {
+  const char* identifier = CSLFetchNameValue(dataset.GetMetadata(), "IDENTIFIER");
+  return identifier != nullptr && std::string_view(identifier) == "road_probability";
+}
+
+bool holds_exported_roads(GDALDataset& dataset) {
+  if (says_what_it_is(dataset)) return true;
+  const DatasetPtr first = first_image_of(dataset);
+  return first && says_what_it_is(*first);
+}
+
+bool is_bare_copy_of_roads(GDALDataset& dataset) {
+  const bool map = EQUAL(dataset.GetDriverName(), "GPKG");
+  return !map && holds_exported_roads(dataset) && !is_feature_map(dataset) &&
+         provenance_in(dataset).registration_sigma_m == 0.0;
 }
 
 std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance) {

@@ -15,8 +15,15 @@ namespace roadfix {
 /// How descriptions of what is exported begin.
 inline constexpr std::string_view kExportedRoads = "Probability of road, by Roadfix";
 
-/// Whether it says so, or that it is a feature map: then bytes are probabilities k / 254.
+/// Whether it is a map, or says that another program copied it from one.
+bool is_called_as_maps_are(GDALDataset& dataset);
+
+/// Whether it says so, that it is a feature map, or is called as maps are; or whether the first image of a VRT does.
+/// Then bytes are probabilities k / 254.
 bool holds_exported_roads(GDALDataset& dataset);
+
+/// Whether another program made it of a map or an export, without what those tell of themselves.
+bool is_bare_copy_of_roads(GDALDataset& dataset);
 
 /// Names and values of the metadata that tell it; nothing of what is not known.
 std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance);

@@ -156,14 +156,13 @@ class RoadRaster final : public CellSource {
     summary_.crs = mosaic_.crs();
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
-    if (!mosaic_.exported()) {
-      summary_.notes = notes_on_road_values(paths.front(), mosaic_.share_values(), mosaic_.range());
-    }
+    summary_.notes = notes_on_road_values(paths.front(), mosaic_.share_values(), mosaic_.range());
     summary_.told = mosaic_.told();
     const double told_m = summary_.told.registration_sigma_m;
     state_position(mosaic_, told_m > 0.0 ? told_m : kRasterSigmaM, summary_);
-    if (mosaic_.exported()) return;
-    std::optional<std::string> note = note_on_likely_picture(paths.front(), options, mosaic_.range());
+    std::optional<std::string> note = mosaic_.exported()
+                                          ? note_on_copied_roads(RasterFile(paths.front(), options))
+                                          : note_on_likely_picture(paths.front(), options, mosaic_.range());
     if (note) summary_.notes.push_back(std::move(*note));
   }
 

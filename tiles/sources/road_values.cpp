@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/exported_roads.hpp"
 
 namespace roadfix {
 
@@ -97,6 +98,14 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
       "{}: {:.0f} % of it is road. If dark stands for roads here, turn its values round (gdal_translate -scale 0 {:g} "
       "{:g} 0, with -expand gray where it has a palette) and use --replace",
       path, 100.0 * bright / seen, max, max);
+}
+
+std::optional<std::string> note_on_copied_roads(const RasterFile& file) {
+  if (!is_bare_copy_of_roads(file.dataset())) return std::nullopt;
+  return fmt::format(
+      "{}: another program copied it from a map, without its date and licence and how uncertain its position is. "
+      "Ingest the map itself, or what roadfix export makes of it; or give --registration-sigma",
+      file.path());
 }
 
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {

@@ -32,6 +32,10 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
 std::optional<std::string> note_on_likely_picture(const std::string& path, const RasterOptions& options,
                                                   const ValueRange& range);
 
+/// For rasters of roads that come from roadfix: a note where another program copied them and left out what they tell of
+/// themselves.
+std::optional<std::string> note_on_copied_roads(const RasterFile& file);
+
 /// For imagery: a note where the file has one band of floats within 0..1, or of two values alone.
 std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options);
 

@@ -38,11 +38,7 @@ bool one_of(const Endings& endings, std::string_view ending) {
   return std::ranges::find(endings, ending) != endings.end();
 }
 
-bool is_map(GDALDataset& raster) {
-  const char* identifier = raster.GetMetadataItem("IDENTIFIER");
-  return EQUAL(raster.GetDriverName(), "GPKG") && identifier != nullptr &&
-         std::string_view(identifier) == "road_probability";
-}
+bool is_map(GDALDataset& raster) { return EQUAL(raster.GetDriverName(), "GPKG") && is_called_as_maps_are(raster); }
 
 bool is_exported(const std::string& image) {
   const GdalMessages messages;

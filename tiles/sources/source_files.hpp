@@ -9,8 +9,8 @@
 
 namespace roadfix {
 
-/// What the user says a source is. kAuto: vectors, maps and rasters of roads that roadfix wrote are roads, other
-/// rasters imagery.
+/// What the user says a source is. kAuto: vectors, maps, rasters of roads that roadfix wrote and copies of either are
+/// roads, other rasters imagery.
 enum class SourceMeaning { kAuto, kImagery, kRoads };
 /// "auto", "imagery", "roads". Throws InvalidInput "source-meaning-unknown".
 SourceMeaning parse_meaning(std::string_view text);

@@ -11,6 +11,8 @@
 #include "tests/tiles/sources/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
 #include "tiles/sources/collar.hpp"
+#include "tiles/sources/exported_roads.hpp"
+#include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/raster_sources.hpp"
 #include "tiles/sources/road_rules.hpp"
 #include "tiles/sources/road_values.hpp"
@@ -164,6 +166,22 @@ TEST_F(SparseRoadRaster, ValuesThatMayMeanAnotherRangeGetANote) {
   EXPECT_THAT(notes(GDT_UInt16, 0.0, 0.0, 1.0), ::testing::IsEmpty());
   EXPECT_THAT(notes(GDT_Byte, 1.0, 0.0, 255.0), ::testing::Contains(HasSubstr("mark that as nodata")));
   EXPECT_THAT(notes(GDT_Byte, 0.0, 0.0, 255.0), ::testing::IsEmpty());
+}
+
+TEST_F(RoadRaster, CopiesOfMapsAndExportsByOtherProgramsGetANote) {
+  const auto notes = [&](const char* name, const std::string& text, double road) {
+    const std::string path =
+        write_raster(folder / "c.tif", {}, [road](int, int col, int) { return col < 31 ? road : 0.0; });
+    open_dataset(path, GDAL_OF_RASTER | GDAL_OF_UPDATE)->SetMetadataItem(name, text.c_str());
+    return open_road_raster({path}, {}, kZone, 2.0)->summary().notes;
+  };
+  const auto copied = ::testing::HasSubstr("another program copied it from a map");
+  EXPECT_THAT(notes("IDENTIFIER", "road_probability", 254.0), ::testing::ElementsAre(copied));
+  const std::string description(kExportedRoads);
+  EXPECT_THAT(notes("TIFFTAG_IMAGEDESCRIPTION", description, 254.0), ::testing::ElementsAre(copied));
+  EXPECT_THAT(notes("TIFFTAG_IMAGEDESCRIPTION", description, 100.0),
+              ::testing::ElementsAre(::testing::HasSubstr("its largest value is 100 of 254"), copied))
+      << "rescaled";
 }
 
 TEST_F(RoadRaster, FloatsAreProbabilitiesAsTheyAre) {

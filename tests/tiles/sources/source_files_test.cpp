@@ -1,6 +1,7 @@
 #include "tiles/sources/source_files.hpp"
 
 #include <cpl_vsi.h>
+#include <gdal_utils.h>
 #include <gmock/gmock.h>
 
 #include <array>
@@ -58,6 +59,29 @@ TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
     EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, map ? SourceKind::kRoadRaster : SourceKind::kImagery);
     EXPECT_EQ(find_source(path, SourceMeaning::kImagery).kind, SourceKind::kImagery);
     EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
+  }
+}
+
+TEST_F(SourceFilesTest, WhatGdalMakesOfAMapIsRoadsAndNoMap) {
+  const std::string city = write_raster(folder / "city.tif", {.type = GDT_Float32}, [](int, int, int) { return 0.5; });
+  const std::string map = (folder / "map.gpkg").string();
+  const std::string copy = (folder / "copy.tif").string();
+  const std::string vrt = (folder / "all.vrt").string();
+  {
+    const DatasetPtr picture = open_dataset(city, GDAL_OF_RASTER);
+    const std::array<const char*, 2> options{"RASTER_IDENTIFIER=road_probability", nullptr};
+    const auto driver = [](const char* name) { return GetGDALDriverManager()->GetDriverByName(name); };
+    const DatasetPtr made(driver("GPKG")->CreateCopy(map.c_str(), picture.get(), FALSE,
+                                                     const_cast<char**>(options.data()), nullptr, nullptr));
+    const DatasetPtr copied(driver("GTiff")->CreateCopy(copy.c_str(), open_dataset(map, GDAL_OF_RASTER).get(), FALSE,
+                                                        nullptr, nullptr, nullptr));
+    const char* name = map.c_str();
+    const DatasetPtr joined(GDALDataset::FromHandle(GDALBuildVRT(vrt.c_str(), 1, nullptr, &name, nullptr, nullptr)));
+  }
+  for (const std::string& path : {copy, vrt}) {
+    const SourceFiles files = find_source(path, SourceMeaning::kAuto);
+    EXPECT_EQ(files.kind, SourceKind::kRoadRaster) << path;
+    EXPECT_FALSE(files.is_map) << path;
   }
 }
 

@@ -136,22 +136,28 @@ std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
 }
 
 void VectorFile::for_each_feature(const Visit& visit) {
-  const GdalMessages messages;
-  dataset_->ResetReading();
-  while (true) {
-    OGRLayer* layer = nullptr;
-    const std::unique_ptr<OGRFeature> feature(dataset_->GetNextFeature(&layer, nullptr, nullptr, nullptr));
-    if (!feature) break;
-    visit(*layer, *feature);
+  if (!osm_) {  // what other layers and tables of the file hold is no concern
+    for (OGRLayer* layer : layers_) for_each_feature_of(*layer, visit);
+    return;
   }
-  refuse_unread(messages);
+  dataset_->ResetReading();
+  OGRLayer* layer = nullptr;
+  const auto next = [&] { return dataset_->GetNextFeature(&layer, nullptr, nullptr, nullptr); };
+  while (const OGRFeatureUniquePtr feature = read(next)) visit(*layer, *feature);
 }
 
 void VectorFile::for_each_feature_of(OGRLayer& layer, const Visit& visit) {
-  const GdalMessages messages;
   layer.ResetReading();
-  while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()}) visit(layer, *feature);
+  const auto next = [&] { return layer.GetNextFeature(); };
+  while (const OGRFeatureUniquePtr feature = read(next)) visit(layer, *feature);
+}
+
+/// Refuses what GDAL says of reading alone: what PROJ says of coordinates while features are visited is no damage.
+OGRFeatureUniquePtr VectorFile::read(const std::function<OGRFeature*()>& next) const {
+  const GdalMessages messages;
+  OGRFeatureUniquePtr feature(next());
   refuse_unread(messages);
+  return feature;
 }
 
 /// Where reading ended in a failure.

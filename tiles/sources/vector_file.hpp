@@ -47,12 +47,13 @@ class VectorFile {
   /// where the file does not state it, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
-  /// Once through all features of all layers. Throws CorruptData "roads-unreadable" or IoFailure
-  /// "temporary-files-refused".
+  /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable" or
+  /// IoFailure "temporary-files-refused".
   void for_each_feature(const Visit& visit);
 
  private:
   void for_each_feature_of(OGRLayer& layer, const Visit& visit);
+  OGRFeatureUniquePtr read(const std::function<OGRFeature*()>& next) const;
   void refuse_unread(const GdalMessages& messages) const;
   std::optional<OGREnvelope> bounding_box(OGRLayer& layer);
 

@@ -289,6 +289,22 @@ TEST_F(RoadLines, TablesWithoutGeometriesBesideTheRoadsAreNoConcern) {
   EXPECT_EQ(read_road_network({path}, {}, RoadRules(), kZone).lines.size(), 1U);
 }
 
+TEST_F(RoadLines, TablesThatGdalCannotReadBesideThemAreNoConcern) {
+  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
+  const std::string path = (folder / "project.gpkg").string();
+  {
+    const DatasetPtr from = open_dataset(roads, GDAL_OF_VECTOR);
+    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
+    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    to->CopyLayer(from->GetLayer(0), "roads");
+    to->ExecuteSQL("CREATE TABLE keys (id TEXT PRIMARY KEY) WITHOUT ROWID", nullptr, nullptr);
+  }
+  for (const char* layer : {"", "roads"}) {
+    EXPECT_EQ(read_road_network({path}, {.crs = "", .layer = layer, .extent = ""}, RoadRules(), kZone).lines.size(), 1U)
+        << layer;
+  }
+}
+
 TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) {
   require_gdal();
   const auto another = [&](const std::string& name, const std::string& geometry) {

@@ -1,5 +1,6 @@
 #include "tiles/sources/road_geometry.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "tiles/sources/line_on_plane.hpp"
@@ -19,6 +20,17 @@ bool add_line(const OGRLineString& line, OGRCoordinateTransformation& to_plane, 
 }
 
 }  // namespace
+
+// The dimension of a collection is that of its largest part: it tells nothing of the lines beside an area.
+bool holds_a_line(const OGRGeometry& geometry) {
+  if (OGR_GT_IsSubClassOf(wkbFlatten(geometry.getGeometryType()), wkbGeometryCollection) == FALSE) {
+    OGREnvelope box;
+    geometry.getEnvelope(&box);
+    return geometry.getDimension() == 1 && !(box.MinX == box.MaxX && box.MinY == box.MaxY);
+  }
+  const OGRGeometryCollection& parts = *geometry.toGeometryCollection();
+  return std::any_of(parts.begin(), parts.end(), [](const OGRGeometry* part) { return holds_a_line(*part); });
+}
 
 bool add_geometry(const OGRGeometry& geometry, OGRCoordinateTransformation& to_plane, const Drawing& drawing,
                   RoadNetwork& network) {

@@ -7,6 +7,10 @@
 
 namespace roadfix {
 
+/// Whether a line is among the parts of the geometry, however deep they are nested. One that ends where it begins and
+/// goes nowhere is a point.
+bool holds_a_line(const OGRGeometry& geometry);
+
 /// How the lines of a feature are drawn.
 struct Drawing {
   double width_m = 0.0;

@@ -11,6 +11,7 @@
 
 #include "core/units/text.hpp"
 #include "tiles/sources/osm_tags.hpp"
+#include "tiles/sources/road_geometry.hpp"
 
 namespace roadfix {
 namespace {
@@ -124,16 +125,6 @@ std::optional<std::string> class_attribute_in(const VectorFile& file, OGRLayer& 
   return std::nullopt;
 }
 
-/// Whether a line is among the parts of the geometry, however deep they are nested. The dimension of a collection is
-/// that of its largest part: it tells nothing of the lines beside an area.
-bool holds_a_line(const OGRGeometry& geometry) {
-  if (OGR_GT_IsSubClassOf(wkbFlatten(geometry.getGeometryType()), wkbGeometryCollection) == FALSE) {
-    return geometry.getDimension() == 1;
-  }
-  const OGRGeometryCollection& parts = *geometry.toGeometryCollection();
-  return std::any_of(parts.begin(), parts.end(), [](const OGRGeometry* part) { return holds_a_line(*part); });
-}
-
 }  // namespace
 
 int AttributePlaces::operator()(std::string_view name) {
@@ -175,15 +166,14 @@ std::optional<OGREnvelope> RoadLayer::extent_seen() const {
 }
 
 std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
-  FeatureTags tags(feature, places_);
   const OGRGeometry& geometry = *feature.GetGeometryRef();
+  if (!holds_a_line(geometry)) return std::nullopt;
+  FeatureTags tags(feature, places_);
   std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
-  if (holds_a_line(geometry)) {
-    ++lines_;
-    if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
-    if (classified_ && road_class.empty()) ++without_class_;
-  }
-  if (geometry.IsEmpty() == FALSE && (!classified_ || rules_.knows(road_class))) {
+  ++lines_;
+  if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
+  if (classified_ && road_class.empty()) ++without_class_;
+  if (!classified_ || rules_.knows(road_class)) {
     OGREnvelope own;
     geometry.getEnvelope(&own);
     seen_.Merge(own);

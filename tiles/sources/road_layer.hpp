@@ -56,8 +56,8 @@ class RoadLayer {
 
   /// Takes note of a feature, whose geometry must not be null; nullopt to leave it out.
   std::optional<DrawnFeature> see(const OGRFeature& feature);
-  /// Around all that tells where the roads were looked for, in the layer's own coordinates: where the layer has classes
-  /// the features of classes that the rules know, drawn or not, else all. nullopt where there was none.
+  /// Around all lines that tell where the roads were looked for, in the layer's own coordinates: where the layer has
+  /// classes those of classes that the rules know, drawn or not, else all. nullopt where there was none.
   std::optional<OGREnvelope> extent_seen() const;
 
   /// Widths in metres of the drawn features that state them in an attribute of the layer or in the one that the user

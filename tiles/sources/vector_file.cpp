@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/temporary_files.hpp"
 
 namespace roadfix {
@@ -51,6 +52,12 @@ std::optional<OGREnvelope> stored_extent(OGRLayer& layer) {
   if (layer.GetExtent(&box, FALSE) != OGRERR_NONE || box.MinX > box.MaxX) return std::nullopt;
   if (box.MinX == 0.0 && box.MaxX == 0.0 && box.MinY == 0.0 && box.MaxY == 0.0) return std::nullopt;
   return box;
+}
+
+/// Whether lines, areas and points may share the layer.
+bool may_be_mixed(OGRLayer& layer) {
+  const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+  return type == wkbUnknown || type == wkbGeometryCollection;
 }
 
 }  // namespace
@@ -119,20 +126,21 @@ std::optional<OGREnvelope> VectorFile::cut_out(OGRLayer& layer) const {
 
 std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
   // A GeoPackage states what it ever held: few programs make that smaller when features go.
-  if (!EQUAL(dataset_->GetDriverName(), "GPKG")) {
+  if (!EQUAL(dataset_->GetDriverName(), "GPKG") && !may_be_mixed(layer)) {
     if (std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
   }
-  OGREnvelope box;
+  OGREnvelope lines;
+  OGREnvelope others;
   const auto add = [&](OGRLayer& of, OGRFeature& feature) {
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (&of != &layer || geometry == nullptr || geometry->IsEmpty() != FALSE) return;
     OGREnvelope own;
     geometry->getEnvelope(&own);
-    box.Merge(own);
+    (holds_a_line(*geometry) ? lines : others).Merge(own);
   };
   osm_ ? for_each_feature(add) : for_each_feature_of(layer, add);  // OpenStreetMap's layers come interleaved only
-  if (box.IsInit() == 0) return std::nullopt;
-  return box;
+  const OGREnvelope& box = lines.IsInit() != 0 ? lines : others;
+  return box.IsInit() != 0 ? std::optional(box) : std::nullopt;
 }
 
 void VectorFile::for_each_feature(const Visit& visit) {

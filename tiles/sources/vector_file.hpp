@@ -43,8 +43,9 @@ class VectorFile {
   /// What the file was cut out of the world with, in the layer's own coordinates: a vector tile, the box of an extract
   /// of OpenStreetMap. nullopt for other files, in which an extent only says where features are, or once were.
   std::optional<OGREnvelope> cut_out(OGRLayer& layer) const;
-  /// About where its features are, in the layer's own coordinates. nullopt for an empty layer. Of a GeoPackage and
-  /// where the file does not state it, all features of the layer are read.
+  /// About where its lines are, or its other features where it has none, in the layer's own coordinates. nullopt for an
+  /// empty layer. Of a GeoPackage, a layer that may hold both and where the file does not state it, all features of the
+  /// layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
   /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable" or

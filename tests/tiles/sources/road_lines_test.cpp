@@ -329,6 +329,26 @@ TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) 
   EXPECT_NEAR(centre_of_roads({points}, {}).lon_deg, 7.0, 0.01) << "where there is nothing else";
 }
 
+TEST_F(RoadLines, AloneAreTheGroundThatWasSeenWhateverPointsAndAreasShareTheirLayer) {
+  const std::string beside[] = {R"({"type":"Point","coordinates":[9,9]})",
+                                R"({"type":"Polygon","coordinates":[[[9,9],[9.1,9],[9.1,9.1],[9,9]]]})",
+                                R"({"type":"LineString","coordinates":[[9,9],[9,9]]})"};
+  for (const char* properties : {R"("highway":"primary")", R"("name":"Yol")"}) {
+    std::vector<std::string> features{feature(properties, at(-100, -100), at(100, 100))};
+    for (const std::string& geometry : beside) {
+      features.push_back(
+          fmt::format(R"({{"type":"Feature","properties":{{{}}},"geometry":{}}})", properties, geometry));
+    }
+    const std::string path = geojson(features);
+    EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
+    const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+    ASSERT_EQ(network.covered.size(), 1U);
+    EXPECT_NEAR(network.covered.front().box().width_m(), 200.0, 10.0) << properties;
+    EXPECT_EQ(network.lines.size(), 1U);
+    EXPECT_EQ(network.left_out, 3);
+  }
+}
+
 TEST_F(RoadLines, TheCentreIsWhereTheyAreWhateverAGeoPackageStates) {
   require_gdal();
   const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});

@@ -166,9 +166,12 @@ std::optional<OGREnvelope> RoadLayer::extent_seen() const {
 }
 
 std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
-  const OGRGeometry& geometry = *feature.GetGeometryRef();
-  if (!holds_a_line(geometry)) return std::nullopt;
   FeatureTags tags(feature, places_);
+  const OGRGeometry& geometry = *feature.GetGeometryRef();
+  if (!holds_a_line(geometry)) {
+    if (geometry.getDimension() == 2 && rules_.width_of(std::ref(tags), classified_)) ++areas_;
+    return std::nullopt;
+  }
   std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
   ++lines_;
   if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];

@@ -66,6 +66,8 @@ class RoadLayer {
   /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
+  /// Areas that would be drawn if they were lines.
+  std::int64_t areas() const { return areas_; }
   /// Lines without a class where the layer has classes.
   std::int64_t lines_without_class() const { return without_class_; }
   /// Whether an attribute could say of a line without a class that it is a river, a railway or the like.
@@ -84,6 +86,7 @@ class RoadLayer {
   std::int64_t lines_ = 0;
   std::map<std::string, std::int64_t> unknown_classes_;
   std::int64_t without_class_ = 0;
+  std::int64_t areas_ = 0;
 };
 
 }  // namespace roadfix

@@ -59,6 +59,7 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
 /// Takes down what is known of a layer once all its features were seen.
 void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, RoadParts& parts) {
   if (layer.lines() == 0) return;
+  parts.of(layer).network.areas += layer.areas();
   LineCounts& counts = parts.counts;
   counts.lines += layer.lines();
   for (const auto& [name, count] : layer.unknown_classes()) counts.unknown_classes[name] += count;

@@ -38,6 +38,7 @@ struct RoadNetwork {
   std::vector<PlanePolygon> covered;
   std::map<std::string, std::vector<double>> stated_widths;  ///< in metres, of the roads drawn so, by attribute
   std::int64_t left_out = 0;  ///< features that the rules leave out or that have no place in the zone
+  std::int64_t areas = 0;     ///< those of them that would be drawn if they were lines, of layers with lines
   std::string crs;
   double datum_sigma_m = 0.0;      ///< see datum_error(); of the layer whose place is the least certain
   std::string class_attribute;     ///< of the first layer that has one where the rules do not name it; else empty

@@ -11,6 +11,10 @@
 namespace roadfix {
 namespace {
 
+constexpr double kWorthNoting = 0.02;  // of the lines
+constexpr const char* kAreasAsRaster =
+    "burn them into a raster (gdal_rasterize -burn 255 -init 0 -ot Byte) and ingest that with --as roads";
+
 /// The most frequent of them: "Autobahn (12), Feldweg (3)".
 std::string most_frequent(const std::map<std::string, std::int64_t>& counts) {
   constexpr std::size_t kNamed = 8;
@@ -26,7 +30,6 @@ std::string most_frequent(const std::map<std::string, std::int64_t>& counts) {
 
 /// A few features of odd classes are in every extract of OpenStreetMap; more of them are missing roads.
 void note_unknown_classes(const LineCounts& counts, RoadNetwork& network) {
-  constexpr double kWorthNoting = 0.02;
   std::int64_t unknown = 0;
   for (const auto& [name, count] : counts.unknown_classes) unknown += count;
   if (static_cast<double>(unknown) <= kWorthNoting * static_cast<double>(counts.lines)) return;
@@ -46,6 +49,16 @@ void note_roads_without_class(const LineCounts& counts, const RoadRules& rules, 
   network.notes.push_back(
       fmt::format("{} of {} lines are not drawn, since their attribute '{}' is empty. If they are roads, fill it in",
                   counts.roads_without_class, counts.lines, class_attribute_of(network, rules)));
+}
+
+/// A few squares are in every extract of OpenStreetMap; more areas are missing roads.
+void note_areas(RoadNetwork& network) {
+  const std::size_t lines = network.lines.size();
+  if (static_cast<double>(network.areas) <= kWorthNoting * static_cast<double>(lines)) return;
+  network.notes.push_back(
+      fmt::format("areas are not drawn, so that the ground of {} counts as no road (lines that are drawn: {}). If they "
+                  "are roads, {}",
+                  network.areas, lines, kAreasAsRaster));
 }
 
 /// Roads three times as wide as they are make a map that fits nowhere.
@@ -73,13 +86,16 @@ void note_widths(const RoadRules& rules, RoadNetwork& network) {
 void add_notes(const LineCounts& counts, const RoadRules& rules, RoadNetwork& network) {
   note_unknown_classes(counts, network);
   note_roads_without_class(counts, rules, network);
+  note_areas(network);
   note_widths(rules, network);
 }
 
 std::string why_none_is_drawn(const LineCounts& counts, const RoadNetwork& network, const RoadRules& rules) {
   if (counts.lines == 0) {
-    return "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, burn them "
-           "into a raster (gdal_rasterize -burn 255 -init 0 -ot Byte) and ingest that with --as roads";
+    return fmt::format(
+        "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, "
+        "{}",
+        kAreasAsRaster);
   }
   if (counts.without_class == counts.lines) {
     return fmt::format("their attribute '{}' is empty; fill it in, or name another with --class-attribute",

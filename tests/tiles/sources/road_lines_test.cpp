@@ -23,6 +23,8 @@ namespace {
 using ::testing::AllOf;
 using testing::at;
 using testing::code_of;
+using ::testing::Contains;
+using testing::degrees;
 using ::testing::ElementsAre;
 using testing::feature;
 using ::testing::HasSubstr;
@@ -30,6 +32,7 @@ using ::testing::IsEmpty;
 using testing::kCentre;
 using testing::kZone;
 using testing::message_of;
+using ::testing::Not;
 
 using RoadLines = testing::RoadFeatures;
 
@@ -166,6 +169,24 @@ TEST_F(RoadLines, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {
   EXPECT_EQ(network.lines.size(), 2U);
   EXPECT_EQ(network.left_out, 0);
   EXPECT_EQ(network.covered.size(), 1U);
+}
+
+TEST_F(RoadLines, AreasOfRoadBesideThemAreNotDrawnAndSaidSo) {
+  const auto area = [](const std::string& properties, double east) {
+    return fmt::format(
+        R"({{"type":"Feature","properties":{{{}}},"geometry":{{"type":"Polygon","coordinates":[[{},{},{},{}]]}}}})",
+        properties, degrees(at(east, 0)), degrees(at(east + 20, 0)), degrees(at(east, 20)), degrees(at(east, 0)));
+  };
+  for (const char* properties : {R"("highway":"pedestrian")", R"("name":"Meydan")"}) {
+    const std::string line = feature(properties, at(0, 0), at(100, 100));
+    EXPECT_THAT(notes({line, area(properties, 0), area(properties, 50)}),
+                Contains(AllOf(HasSubstr("the ground of 2 counts as no road"), HasSubstr("gdal_rasterize"))));
+    std::vector<std::string> town(100, line);
+    town.push_back(area(properties, 0));
+    EXPECT_THAT(notes(town), Not(Contains(HasSubstr("areas"))));
+  }
+  const std::string road = feature(R"("highway":"primary")", at(0, 0), at(100, 100));
+  EXPECT_THAT(notes({road, area(R"("highway":"services")", 0), area(R"("building":"yes")", 50)}), IsEmpty());
 }
 
 TEST_F(RoadLines, DrawnByHandButNotClassifiedAreNotDrawnAndSaidSo) {

@@ -1,5 +1,6 @@
 #include "tiles/sources/road_rules.hpp"
 
+#include <cpl_string.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,12 +81,32 @@ constexpr double kLaneM = 3.25;
 constexpr double kShouldersM = 1.0;
 constexpr double kMaxLanes = 16.0;
 
+constexpr std::string_view kBlank = " \t\r\n";
+
 /// Shapefiles and office tables write "Primary", "PRIMARY" and "primary ", where OpenStreetMap writes "primary".
 std::string plain(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kBlank);
   if (first == std::string_view::npos) return {};
   return lower_case(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
+}
+
+/// Of the end of a text without outer blanks, which it and the blanks before it are taken from.
+std::string take_last_word(std::string& text) {
+  const std::size_t start = text.find_last_of(kBlank) + 1;  // 0 where there is no blank
+  std::string word = text.substr(start);
+  text.erase(start);
+  text.erase(text.find_last_not_of(kBlank) + 1);
+  return word;
+}
+
+/// The class may hold blanks. nullopt where the line is none.
+std::optional<RoadRule> rule_of(std::string line) {
+  const std::string drawn = take_last_word(line);
+  const auto width_m = as_number<double>(take_last_word(line));
+  if (line.empty() || !width_m || !(*width_m >= 0.0 && *width_m <= 100.0) || (drawn != "yes" && drawn != "no")) {
+    return std::nullopt;
+  }
+  return RoadRule{line, *width_m, drawn == "yes"};
 }
 
 /// Of the beginning of the text, which it and the spaces behind it are taken from; a comma is a decimal point.
@@ -138,25 +159,26 @@ RoadRules::RoadRules() : RoadRules(parse(kTable)) {}
 
 RoadRules RoadRules::parse(std::string_view text) {
   RoadRules result{std::vector<RoadRule>{}};
-  std::istringstream lines{std::string(text)};
+  std::istringstream lines{std::string(without_byte_order_mark(text))};
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    std::istringstream words(line.substr(0, line.find('#')));
-    RoadRule rule;
-    std::string drawn;
-    if (!(words >> rule.road_class)) continue;
-    std::string more;
-    if (!(words >> rule.width_m >> drawn) || (drawn != "yes" && drawn != "no") || (words >> more) ||
-        !(rule.width_m >= 0.0 && rule.width_m <= 100.0)) {
+    const std::string content = plain(line.substr(0, line.find('#')));
+    if (content.empty()) continue;
+    if (CPLIsUTF8(content.c_str(), static_cast<int>(content.size())) == FALSE) {
+      throw InvalidInput("rules-unreadable",
+                         fmt::format("line {} of the road rules is not in UTF-8, in which the classes of road data are "
+                                     "read: save the file as UTF-8",
+                                     number));
+    }
+    std::optional<RoadRule> rule = rule_of(content);
+    if (!rule) {
       throw InvalidInput("rules-unreadable",
                          fmt::format("line {} of the road rules, '{}': write class, width in metres (0 "
                                      "to 100) and yes or no, for example 'residential 6 yes'",
                                      number, line));
     }
-    rule.road_class = plain(rule.road_class);
-    rule.drawn = drawn == "yes";
-    result.rules_.push_back(std::move(rule));
+    result.rules_.push_back(*std::move(rule));
   }
   return result;
 }

@@ -47,8 +47,8 @@ class RoadRules {
  public:
   /// The built-in table, see road_rules.cpp.
   RoadRules();
-  /// Lines "class width_m yes|no", '#' starts a comment; replaces the table. Throws InvalidInput "rules-unreadable"
-  /// with the line's number.
+  /// Lines "class width_m yes|no" in UTF-8; the class may hold blanks, '#' starts a comment. Replaces the table. Throws
+  /// InvalidInput "rules-unreadable" with the line's number.
   static RoadRules parse(std::string_view text);
 
   /// Draws exactly these classes of the table, separated by commas. Throws InvalidInput "road-class-unknown".

@@ -156,6 +156,27 @@ TEST(RoadRules, AreReadFromATable) {
   }
 }
 
+TEST(RoadRules, ReadClassesWithBlanks) {
+  RoadRules rules = RoadRules::parse("Main Road 8 yes\r\nA road,  single carriageway \t 7 no  # national\r\n");
+  EXPECT_THAT(width({{"highway", "Main Road"}}, rules), Optional(8.0));
+  EXPECT_FALSE(rules.knows("main"));
+  EXPECT_TRUE(rules.knows("A road,  single carriageway"));
+  EXPECT_EQ(width({{"highway", "A road,  single carriageway"}}, rules), std::nullopt);
+  rules.select("main road");
+  EXPECT_THAT(width({{"highway", "Main Road"}}, rules), Optional(8.0));
+  for (const char* wrong : {"6 yes", " 6 yes", "Main Road yes", "Main Road 8", "Main Road 8 yes please", "8", "yes"}) {
+    EXPECT_EQ(testing::code_of([&] { RoadRules::parse(wrong); }), "rules-unreadable") << wrong;
+  }
+}
+
+TEST(RoadRules, AreReadFromATableOfAnyEditorInUtf8Alone) {
+  const RoadRules rules = RoadRules::parse("\xef\xbb\xbfHauptstra\xc3\x9f\x65 8 yes\r\n");
+  EXPECT_THAT(width({{"highway", "Hauptstra\xc3\x9f\x65"}}, rules), Optional(8.0));
+  EXPECT_THAT(testing::message_of([&] { RoadRules::parse("# Stra\xdf\x65n\nHauptstra\xdf\x65 8 yes\n"); }),
+              ::testing::HasSubstr("line 2 of the road rules is not in UTF-8"));
+  EXPECT_EQ(testing::code_of([&] { RoadRules::parse("\xff\xfer 6 yes"); }), "rules-unreadable") << "UTF-16";
+}
+
 TEST(WidthText, IsMetresUnlessItSaysOtherwise) {
   EXPECT_THAT(parse_width_m("7.5"), Optional(7.5));
   EXPECT_THAT(parse_width_m("7,5 m"), Optional(7.5));

@@ -53,6 +53,10 @@ void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer) {
   if (layer.lines() > 0 && box) refuse_degrees_as_metres(*box, file.crs_of(layer.layer()), file.path());
 }
 
+void refuse_as_nowhere(VectorFile& file, const RoadLayer& layer) {
+  if (layer.impossible_lines() > layer.lines()) refuse_as_nowhere(file.path(), "give the right one with --crs");
+}
+
 PositionError datum_error_of(VectorFile& file, const RoadLayer& layer, UtmZone zone) {
   const std::optional<OGREnvelope> box = layer.extent_seen();
   if (layer.lines() == 0 || !box) return {};

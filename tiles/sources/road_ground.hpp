@@ -20,6 +20,10 @@ namespace roadfix {
 void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
 void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer);
 
+/// Throws InvalidInput "crs-not-transformable" where most lines have coordinates of no place on Earth, which is more
+/// than an accident.
+void refuse_as_nowhere(VectorFile& file, const RoadLayer& layer);
+
 /// How well the place of the layer's roads is known, where their datum is an old one; else 0 m.
 PositionError datum_error_of(VectorFile& file, const RoadLayer& layer, UtmZone zone);
 

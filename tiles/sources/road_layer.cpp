@@ -138,7 +138,11 @@ int AttributePlaces::operator()(std::string_view name) {
 }
 
 RoadLayer::RoadLayer(const VectorFile& file, OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
-    : layer_(&layer), to_plane_(std::move(to_plane)), places_(layer), rules_(rules) {
+    : layer_(&layer),
+      to_plane_(std::move(to_plane)),
+      places_(layer),
+      limits_(coordinate_limits(file.crs_of(layer))),
+      rules_(rules) {
   const std::optional<std::string> attribute = class_attribute_in(file, layer, rules);
   if (attribute) rules_.set_class_attribute(*attribute);
   classified_ = attribute.has_value();
@@ -170,6 +174,10 @@ std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
   const OGRGeometry& geometry = *feature.GetGeometryRef();
   if (!holds_a_line(geometry)) {
     if (geometry.getDimension() == 2 && rules_.width_of(std::ref(tags), classified_)) ++areas_;
+    return std::nullopt;
+  }
+  if (!limits_.hold(geometry)) {
+    if (impossible_++ == 0) first_impossible_ = feature.GetFID();
     return std::nullopt;
   }
   std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tiles/sources/coordinate_limits.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/road_rules.hpp"
 #include "tiles/sources/vector_file.hpp"
@@ -66,6 +67,9 @@ class RoadLayer {
   /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
   std::int64_t lines() const { return lines_; }
   const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
+  /// Lines that were not looked at further, since no place on Earth has their coordinates, and the number of the first.
+  std::int64_t impossible_lines() const { return impossible_; }
+  std::int64_t first_impossible() const { return first_impossible_; }
   /// Areas that would be drawn if they were lines.
   std::int64_t areas() const { return areas_; }
   /// Lines without a class where the layer has classes.
@@ -79,6 +83,7 @@ class RoadLayer {
   OGRLayer* layer_;
   TransformationPtr to_plane_;
   AttributePlaces places_;
+  CoordinateLimits limits_;
   RoadRules rules_;
   bool classified_ = false;
   OGREnvelope seen_;
@@ -86,6 +91,8 @@ class RoadLayer {
   std::int64_t lines_ = 0;
   std::map<std::string, std::int64_t> unknown_classes_;
   std::int64_t without_class_ = 0;
+  std::int64_t impossible_ = 0;
+  std::int64_t first_impossible_ = 0;
   std::int64_t areas_ = 0;
 };
 

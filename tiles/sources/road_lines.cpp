@@ -63,6 +63,10 @@ void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string
   LineCounts& counts = parts.counts;
   counts.lines += layer.lines();
   for (const auto& [name, count] : layer.unknown_classes()) counts.unknown_classes[name] += count;
+  if (counts.impossible == 0 && layer.impossible_lines() > 0) {
+    counts.first_impossible = fmt::format("{} of layer '{}' of {}", layer.first_impossible(), layer.name(), path);
+  }
+  counts.impossible += layer.impossible_lines();
   counts.without_class += layer.lines_without_class();
   if (!layer.tells_other_lines()) counts.roads_without_class += layer.lines_without_class();
   for (const auto& [name, widths] : layer.stated_widths()) {
@@ -136,6 +140,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   });
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
+    refuse_as_nowhere(file, layer);
     refuse_degrees_as_metres(file, layer);
     add_layer(layer, rules, path, parts);
     add_datum_error(datum_error_of(file, layer, zone), parts.of(layer).network);

@@ -51,6 +51,13 @@ void note_roads_without_class(const LineCounts& counts, const RoadRules& rules, 
                   counts.roads_without_class, counts.lines, class_attribute_of(network, rules)));
 }
 
+void note_impossible_lines(const LineCounts& counts, RoadNetwork& network) {
+  if (counts.impossible == 0) return;
+  network.notes.push_back(
+      fmt::format("{} of {} lines are left out, since no place on Earth has their coordinates; the first is feature {}",
+                  counts.impossible, counts.lines + counts.impossible, counts.first_impossible));
+}
+
 /// A few squares are in every extract of OpenStreetMap; more areas are missing roads.
 void note_areas(RoadNetwork& network) {
   const std::size_t lines = network.lines.size();
@@ -84,6 +91,7 @@ void note_widths(const RoadRules& rules, RoadNetwork& network) {
 }  // namespace
 
 void add_notes(const LineCounts& counts, const RoadRules& rules, RoadNetwork& network) {
+  note_impossible_lines(counts, network);
   note_unknown_classes(counts, network);
   note_roads_without_class(counts, rules, network);
   note_areas(network);

@@ -125,9 +125,11 @@ std::optional<OGREnvelope> VectorFile::cut_out(OGRLayer& layer) const {
 }
 
 std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
+  const CoordinateLimits limits = limits_of(layer);
   // A GeoPackage states what it ever held: few programs make that smaller when features go.
   if (!EQUAL(dataset_->GetDriverName(), "GPKG") && !may_be_mixed(layer)) {
-    if (std::optional<OGREnvelope> stored = stored_extent(layer)) return stored;
+    std::optional<OGREnvelope> stored = stored_extent(layer);
+    if (stored && limits.hold(*stored)) return stored;
   }
   OGREnvelope lines;
   OGREnvelope others;
@@ -136,11 +138,17 @@ std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
     if (&of != &layer || geometry == nullptr || geometry->IsEmpty() != FALSE) return;
     OGREnvelope own;
     geometry->getEnvelope(&own);
-    (holds_a_line(*geometry) ? lines : others).Merge(own);
+    (holds_a_line(*geometry) && limits.hold(*geometry) ? lines : others).Merge(own);
   };
   osm_ ? for_each_feature(add) : for_each_feature_of(layer, add);  // OpenStreetMap's layers come interleaved only
   const OGREnvelope& box = lines.IsInit() != 0 ? lines : others;
   return box.IsInit() != 0 ? std::optional(box) : std::nullopt;
+}
+
+/// A layer without a reference system is refused by whoever needs one.
+CoordinateLimits VectorFile::limits_of(OGRLayer& layer) const {
+  const bool known = !options_.crs.empty() || layer.GetSpatialRef() != nullptr;
+  return coordinate_limits(known ? crs_of(layer) : wgs84_reference());
 }
 
 void VectorFile::for_each_feature(const Visit& visit) {
@@ -217,11 +225,15 @@ LatLon centre_on_earth(const OGREnvelope& box, const OGRSpatialReference& crs, c
   double lat = (box.MinY + box.MaxY) / 2.0;
   const GdalMessages messages;
   if (to_earth->Transform(1, &lon, &lat) == FALSE || !(std::abs(lat) <= 90.0) || !(std::abs(lon) <= 360.0)) {
-    throw InvalidInput(
-        "crs-not-transformable",
-        fmt::format("{}: its coordinates have no place on Earth; if the reference system is wrong, {}", path, remedy));
+    refuse_as_nowhere(path, remedy);
   }
   return {lat, lon};
+}
+
+void refuse_as_nowhere(const std::string& path, std::string_view remedy) {
+  throw InvalidInput(
+      "crs-not-transformable",
+      fmt::format("{}: its coordinates have no place on Earth; if the reference system is wrong, {}", path, remedy));
 }
 
 OGREnvelope with_sides_of(const OGREnvelope& box, double side_m, OGRCoordinateTransformation& to_plane) {

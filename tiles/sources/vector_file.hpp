@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tiles/sources/coordinate_limits.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/sources/plane_polygon.hpp"
 #include "tiles/sources/road_lines.hpp"
@@ -43,9 +44,9 @@ class VectorFile {
   /// What the file was cut out of the world with, in the layer's own coordinates: a vector tile, the box of an extract
   /// of OpenStreetMap. nullopt for other files, in which an extent only says where features are, or once were.
   std::optional<OGREnvelope> cut_out(OGRLayer& layer) const;
-  /// About where its lines are, or its other features where it has none, in the layer's own coordinates. nullopt for an
-  /// empty layer. Of a GeoPackage, a layer that may hold both and where the file does not state it, all features of the
-  /// layer are read.
+  /// About where its lines are, those that can be on Earth, or its other features where it has none, in the layer's own
+  /// coordinates. nullopt for an empty layer. Of a GeoPackage, a layer that may hold both and where the file does not
+  /// state it, or wrongly, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
   /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable" or
@@ -57,6 +58,7 @@ class VectorFile {
   OGRFeatureUniquePtr read(const std::function<OGRFeature*()>& next) const;
   void refuse_unread(const GdalMessages& messages) const;
   std::optional<OGREnvelope> bounding_box(OGRLayer& layer);
+  CoordinateLimits limits_of(OGRLayer& layer) const;
 
   std::string path_;
   VectorOptions options_;
@@ -68,6 +70,9 @@ class VectorFile {
 
 /// The box as a polygon on the plane, its edges followed closely. Throws InvalidInput "crs-not-transformable".
 PlanePolygon box_on_plane(const OGREnvelope& box, OGRCoordinateTransformation& to_plane, const std::string& path);
+
+/// Throws InvalidInput "crs-not-transformable". `remedy` is what to do about a wrong reference system.
+[[noreturn]] void refuse_as_nowhere(const std::string& path, std::string_view remedy);
 
 /// Of the box. `remedy` is what to do about a wrong reference system. Throws InvalidInput "crs-not-transformable".
 LatLon centre_on_earth(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path,

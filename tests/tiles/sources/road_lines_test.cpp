@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -169,6 +170,75 @@ TEST_F(RoadLines, LinesBesideAreasInOneGeometryAreTakenOutOfIt) {
   EXPECT_EQ(network.lines.size(), 2U);
   EXPECT_EQ(network.left_out, 0);
   EXPECT_EQ(network.covered.size(), 1U);
+}
+
+/// Lines in the reference system, in a GeoPackage: other formats have no coordinates that are no numbers.
+std::string geopackage(const std::filesystem::path& path, const OGRSpatialReference& crs,
+                       const std::vector<std::vector<GridPoint>>& lines) {
+  require_gdal();
+  GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
+  const DatasetPtr file(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  OGRSpatialReference reference = crs;
+  OGRLayer& layer = *file->CreateLayer("roads", &reference, wkbLineString);
+  for (const std::vector<GridPoint>& points : lines) {
+    OGRLineString line;
+    for (const GridPoint p : points) line.addPoint(p.east_m, p.north_m);
+    OGRFeature road(layer.GetLayerDefn());
+    road.SetGeometry(&line);
+    EXPECT_EQ(layer.CreateFeature(&road), OGRERR_NONE);
+  }
+  return path.string();
+}
+
+TEST_F(RoadLines, WithCoordinatesOfNoPlaceOnEarthAreLeftOutAndSaidSo) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const auto place = [](double east, double north) {
+    const LatLon p = kZone.unproject(at(east, north));
+    return GridPoint{p.lon_deg, p.lat_deg};
+  };
+  const std::vector<GridPoint> road{place(-100, -100), place(100, 100)};
+  const std::vector<GridPoint> wrong[] = {{place(0, 0), {38.0, 95.0}},
+                                          {{kNaN, kNaN}, place(0, 0)},
+                                          {place(0, 0), {38.0, kNaN}},
+                                          {place(0, 0), {1e30, 37.0}},
+                                          {place(0, 0), {-400.0, 37.0}}};
+  for (const std::vector<GridPoint>& line : wrong) {
+    for (const bool first : {true, false}) {
+      const auto lines = first ? std::vector{line, road, road} : std::vector{road, road, line};
+      const std::string path = geopackage(folder / "roads.gpkg", wgs84_reference(), lines);
+      EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
+      const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
+      EXPECT_EQ(network.lines.size(), 2U);
+      EXPECT_EQ(network.left_out, 1);
+      EXPECT_NEAR(network.covered.front().box().width_m(), 200.0, 10.0);
+      EXPECT_THAT(network.notes,
+                  Contains(HasSubstr(fmt::format("1 of 3 lines are left out, since no place on Earth has "
+                                                 "their coordinates; the first is feature {} of layer "
+                                                 "'roads' of ",
+                                                 first ? 1 : 3))));
+      std::filesystem::remove(path);
+    }
+  }
+  const std::vector<GridPoint> metres{at(0, 0), at(100, 100)};
+  const std::string declared = geopackage(folder / "metres.gpkg", wgs84_reference(), {metres, road, metres});
+  EXPECT_EQ(code_of([&] { read_road_network({declared}, {}, RoadRules(), kZone); }), "crs-not-transformable");
+  EXPECT_THAT(message_of([&] { centre_of_roads({geopackage(folder / "all.gpkg", wgs84_reference(), {metres})}, {}); }),
+              HasSubstr("no place on Earth; if the reference system is wrong, give the right one with --crs"));
+  const std::string plane =
+      geopackage(folder / "plane.gpkg", utm_reference(kZone), {metres, {at(0, 50), {1e30, at(0, 0).north_m}}});
+  EXPECT_NEAR(kZone.project(centre_of_roads({plane}, {})).east_m, kCentre.east_m + 50.0, 1.0);
+  EXPECT_EQ(read_road_network({plane}, {}, RoadRules(), kZone).lines.size(), 1U);
+}
+
+TEST_F(RoadLines, TooFarFromTheZoneForAPlaceInItMakeNoFileADamagedOne) {
+  const std::string there = R"({"type":"Feature","properties":{},"geometry":)"
+                            R"({"type":"LineString","coordinates":[[129,0],[129,0.5]]}})";
+  const std::string path = geojson({feature(R"("name":"Yol")", at(-50, 0), at(50, 0)), there});
+  const RoadNetwork network = read_road_network(
+      {path}, {.crs = "", .layer = "", .extent = testing::extent_around_centre(100)}, RoadRules(), kZone);
+  EXPECT_EQ(network.lines.size(), 1U);
+  EXPECT_EQ(network.left_out, 1);
+  EXPECT_THAT(network.notes, Not(Contains(HasSubstr("no place on Earth"))));
 }
 
 TEST_F(RoadLines, AreasOfRoadBesideThemAreNotDrawnAndSaidSo) {

@@ -1,0 +1,23 @@
+// Which coordinates can be those of a place on the Earth: files hold others by accident, and one of them is enough to
+// spoil the box around all.
+#pragma once
+
+#include <ogrsf_frmts.h>
+
+namespace roadfix {
+
+/// On either side of zero, in the units of a reference system; for its coordinates with x east or longitude first.
+struct CoordinateLimits {
+  double x = 0.0;
+  double y = 0.0;
+
+  bool hold(const OGREnvelope& box) const;
+  /// Whether they hold all corners of its lines and areas. A coordinate that is no number is beyond all limits.
+  bool hold(const OGRGeometry& geometry) const;
+};
+
+/// A turn and a quarter of one for longitudes and latitudes. The plane of a projection ends for each elsewhere: far
+/// beyond all of them.
+CoordinateLimits coordinate_limits(const OGRSpatialReference& crs);
+
+}  // namespace roadfix

@@ -5,6 +5,7 @@
 #include <gdal_alg.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -23,8 +24,22 @@ std::string wkt(const OGRSpatialReference& reference) {
   return result;
 }
 
+void require_pixels_with_area(const RasterFile& file) {
+  std::array<double, 6> to_reference{};
+  std::array<double, 6> to_pixels{};
+  if (file.dataset().GetGeoTransform(to_reference.data()) != CE_None ||
+      GDALInvGeoTransform(to_reference.data(), to_pixels.data()) != FALSE) {
+    return;
+  }
+  throw InvalidInput("image-without-georeference",
+                     fmt::format("{}: its geotransform ({}) gives its pixels no area, so that nothing says where they "
+                                 "lie; gdal_translate -a_ullr WEST NORTH EAST SOUTH makes a copy with the right one",
+                                 file.path(), fmt::join(to_reference, ", ")));
+}
+
 PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
   require_known_datum(file.crs(), target, file.path());
+  require_pixels_with_area(file);
   const GdalMessages messages;
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());

@@ -20,7 +20,8 @@ using PixelTransformerPtr = std::unique_ptr<void, DestroyTransformer>;
 
 class Georeference {
  public:
-  /// Refers to the file, which must outlive it. Throws InvalidInput ("crs-not-transformable", "datum-unknown").
+  /// Refers to the file, which must outlive it. Throws InvalidInput ("crs-not-transformable", "datum-unknown",
+  /// "image-without-georeference" where its geotransform gives pixels no area).
   Georeference(const RasterFile& file, UtmZone zone);
 
   /// Pixel coordinates of points on the plane; NaN where a point has no place in the image's reference system.
@@ -39,7 +40,7 @@ class Georeference {
   PixelTransformerPtr transformer_;
 };
 
-/// Geographic centre of the image, to choose a zone by. Throws InvalidInput ("crs-not-transformable", "datum-unknown").
+/// Geographic centre of the image, to choose a zone by. Throws as a Georeference does.
 LatLon centre_of(const RasterFile& file);
 
 }  // namespace roadfix

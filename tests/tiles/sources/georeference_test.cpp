@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <fstream>
 
 #include "tests/support/code_of.hpp"
@@ -35,6 +36,18 @@ TEST_F(GeoreferenceTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
       << "other commands, which have no such option, read rasters too";
   EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32637", .collar = {}}).crs()), "EPSG:32637");
   EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
+}
+
+TEST_F(GeoreferenceTest, PixelsWithoutAreaAreNotBlamedOnTheReferenceSystem) {
+  const std::array<double, 6> flat{400000, 2, 0, 4200000, 0, 0};
+  const std::array<double, 6> parallel{400000, 2, 2, 4200000, -2, -2};
+  for (const auto& transform : {flat, parallel}) {
+    const std::string path = write_raster(folder / "a.tif", {.transform = transform}, grey);
+    const RasterFile file(path, {});
+    EXPECT_EQ(code_of([&] { Georeference(file, *UtmZone::from_epsg(32637)); }), "image-without-georeference");
+    EXPECT_THAT(testing::message_of([&] { centre_of(file); }),
+                ::testing::HasSubstr("gives its pixels no area, so that nothing says where they lie"));
+  }
 }
 
 TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {

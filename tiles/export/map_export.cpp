@@ -121,6 +121,7 @@ class Picture {
   Picture(const Picture&) = delete;
   Picture& operator=(const Picture&) = delete;
 
+  const fs::path& target() const { return picture_.target(); }
   const fs::path& unfinished() const { return picture_.unfinished(); }
   /// GDAL's driver does not notice when the last bytes of a PNG or of the files beside it find no room.
   bool is_whole_png() const {
@@ -156,21 +157,21 @@ bool written_by(GDALDriver& driver, const Driver& target, const fs::path& path, 
   return add_zooms(*written, on_progress, &monitor);
 }
 
-void copy(const Driver& target, const fs::path& path, const Monitor& monitor) {
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(target.name);
+void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(kind.name);
   if (driver == nullptr) {
-    throw IoFailure("export-failed", fmt::format("this GDAL has no {} driver. Choose another format", target.name));
+    throw IoFailure("export-failed", fmt::format("this GDAL has no {} driver. Choose another format", kind.name));
   }
   const GdalMessages messages;
   CPLErrorReset();
-  const bool copied = written_by(*driver, target, path, monitor);
+  const bool copied = written_by(*driver, kind, picture.unfinished(), monitor);
   monitor.source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("export-stopped", "the export was stopped; nothing was written");
   if (!copied || CPLGetLastErrorType() >= CE_Failure) {  // of MBTiles, the driver itself gets over some
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
                                 "has room",
-                                path.string(), messages.text()));
+                                picture.target().string(), messages.text()));
   }
 }
 
@@ -191,7 +192,7 @@ void export_map(const MapReader& map, const fs::path& target, const ExportOption
   try {
     MapDataset source(map, geometry, driver.pixels);
     Picture picture(target);
-    copy(driver, picture.unfinished(), {source, progress, stop});
+    copy(driver, picture, {source, progress, stop});
     if (options.format == ExportFormat::kMbTiles) {
       complete_metadata(picture.unfinished(), map.info());
       sqlite::remove_logs(target);

@@ -1,4 +1,6 @@
 // What cannot be exported leaves nothing behind.
+#include <gmock/gmock.h>
+
 #include <stdexcept>
 #include <utility>
 
@@ -9,9 +11,13 @@ namespace roadfix {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 using testing::MapExport;
+using ::testing::Not;
 using testing::Room;
 using testing::settings_37n;
+using ::testing::StartsWith;
 
 TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
   EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");
@@ -35,8 +41,11 @@ TEST_F(MapExport, SaysWhenTheLastByteFindsNoRoomAndLeavesNothingBehind) {
     const std::uintmax_t whole = fs::file_size(target);
     fs::remove(target);
     for (const char* beside : {"out.wld", "out.png.aux.xml"}) fs::remove(folder / beside);
+    const ExportOptions options{.format = format};
     const Room room(whole - 1);
-    EXPECT_EQ(code_of(target, {.format = format}), "export-failed") << name;
+    EXPECT_EQ(code_of(target, options), "export-failed") << name;
+    EXPECT_THAT(testing::message_of([&] { export_map(MapReader(path), target, options); }),
+                AllOf(StartsWith(target.string() + ": "), Not(HasSubstr("unfinished"))));
     EXPECT_EQ(files(), 1U);
   }
 }

@@ -49,6 +49,7 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
           "track-store-full",
           fmt::format("{}: no space left for the tracks: nothing was changed; send the request again later", file)));
     case Failure::kNotWritable:
+    case Failure::kMoved:
       return make_exception_ptr(not_writable(path));
     case Failure::kDamaged:
     case Failure::kNotADatabase:

@@ -33,6 +33,12 @@ std::exception_ptr map_error(const std::filesystem::path& map, sqlite::Failure f
     case Failure::kNotWritable:
       return make_exception_ptr(
           IoFailure("map-not-writable", fmt::format("{}: cannot be written to ({})", file, detail)));
+    case Failure::kMoved:
+      return make_exception_ptr(IoFailure(
+          "map-not-writable", fmt::format("{}: it was moved, removed or replaced while it was written to. What was "
+                                          "finished until then is in the file that was there: put it back and repeat "
+                                          "the command to go on",
+                                          file)));
     case Failure::kFull:
       return make_exception_ptr(
           IoFailure("disk-full", fmt::format("{}: no space left on the disk. Free some and repeat the command", file)));

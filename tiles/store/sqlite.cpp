@@ -13,6 +13,7 @@ namespace {
 
 Failure failure_of(int code) {
   if (code == SQLITE_READONLY_ROLLBACK) return Failure::kNeedsRecovery;
+  if (code == SQLITE_READONLY_DBMOVED) return Failure::kMoved;
   switch (code & 0xff) {
     case SQLITE_NOTADB:
       return Failure::kNotADatabase;

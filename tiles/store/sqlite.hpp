@@ -30,6 +30,7 @@ enum class Failure {
   kOtherTables,  ///< a statement does not fit the tables of the file
   kBusy,         ///< another process has locked the file
   kNotWritable,
+  kMoved,  ///< it cannot be written to, since the file is no longer where it was opened
   kFull,
   kOther,
 };

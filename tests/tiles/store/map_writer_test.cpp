@@ -234,6 +234,23 @@ TEST(MapWriter, OnlyOneWriterHoldsAMap) {
   EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n()); }), "no error");
 }
 
+TEST(MapWriter, SaysThatItsMapWasMovedWhereWhatWasFinishedStaysWhole) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  const auto elsewhere = folder / "moved.gpkg";
+  const TestSource source{"a", 1, some_blocks(2)};
+  {
+    MapWriter writer(path, settings_37n());
+    const std::vector<TileIndex> blocks = writer.begin_source(source.record(), source.blocks, false);
+    put_block(writer, "a", blocks[0], random_cells(1, blocks[0]));
+    std::filesystem::rename(path, elsewhere);
+    const auto go_on = [&] { put_block(writer, "a", blocks[1], random_cells(1, blocks[1])); };
+    EXPECT_EQ(code_of(go_on), "map-not-writable");
+    EXPECT_THAT(message_of(go_on), ::testing::HasSubstr("moved, removed or replaced while it was written to"));
+  }
+  EXPECT_EQ(MapReader(elsewhere).info().sources.front().blocks_done, 1);
+}
+
 TEST(MapWriter, RefusesWhatDoesNotFit) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";

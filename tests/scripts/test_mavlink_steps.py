@@ -66,7 +66,8 @@ class Packets(unittest.TestCase):
     def test_are_found_among_others_and_rubbish(self):
         unknown = b"\xfd\x04\x00\x00\x00\x07\x01\x00\x00\x00" + bytes(6)
         signed = ATTITUDE[:2] + b"\x01" + ATTITUDE[3:-2]
-        signed += crc(signed[1:] + b"\x27").to_bytes(2, "little") + bytes(13)
+        signature = b"\xfd\x40\x00\x00\x00\x01\x01\x05" + bytes(5)  # as if a packet began there
+        signed += crc(signed[1:] + b"\x27").to_bytes(2, "little") + signature
         data = b"\xfd\xfe\x00" + unknown + signed + ATTITUDE_OF_VERSION_1 + LOCAL_POSITION + b"\xfe"
         self.assertEqual([m.name for m in messages(data)], ["ATTITUDE", "ATTITUDE", "LOCAL_POSITION_NED"])
 

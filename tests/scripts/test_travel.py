@@ -97,6 +97,19 @@ class Travels(unittest.TestCase):
         for actual, expected in zip(whole, (2.0, 0, 0, 0, 4.0 + 1.0, 0.1, 0, 0.1, 0.02)):
             self.assertAlmostEqual(actual, expected)
 
+    def test_over_a_turn_have_the_covariance_of_where_the_movements_lead(self):
+        draw = random.Random(6)
+        covariances = [drawn_covariance(draw) for _ in range(3)]
+        travel = Travel()
+        places = ((0.0, 0.0, 0.0), (10.0, 0.0, 90.0), (10.0, 20.0, 180.0), (-5.0, 20.0, 180.0))
+        for place, covariance in zip(places, [None, *covariances]):
+            travel.add(place, covariance and sum(covariance, []))
+        travel.taken(1)
+        parts = ((10.0, 0.0, math.pi / 2), (20.0, 0.0, math.pi / 2), (15.0, 0.0, 0.0))
+        expected = sum(derived_covariance(parts, covariances), [])
+        for actual, wanted in zip(travel.covariance(), expected, strict=True):
+            self.assertAlmostEqual(actual, wanted, delta=1e-5 * (1.0 + abs(wanted)))
+
     def test_over_a_place_of_which_anything_is_unknown_have_none(self):
         told = [1.0] * 9
         for unknown in (None, "1,1,1,1,1,1,1,1,1", [1.0] * 8, [math.nan] * 9, [[1.0] * 3] * 3):

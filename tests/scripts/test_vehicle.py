@@ -74,7 +74,7 @@ class Flights(unittest.TestCase):
             velocity = (radius_m * rate * math.cos(rate * t), radius_m * rate * math.sin(rate * t))
             vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": round(1e3 * t), "z": -80.0, "vx": velocity[0],
                                                 "vy": velocity[1]}, came)
-        for t in (15.03, 30.0, 44.97, 59.9):
+        for t in (15.03, 30.0, 30.04, 44.97, 59.9):  # at 30 it looks south
             (north, east), (roll, _, yaw) = vehicle.seen_at(1000.0 + t)
             self.assertAlmostEqual(north, radius_m * math.sin(rate * t), delta=0.15)
             self.assertAlmostEqual(east, radius_m * (1.0 - math.cos(rate * t)), delta=0.15)

@@ -20,27 +20,21 @@ constexpr double kBeyondChance = 4.6;
 // that it fits by chance.
 constexpr double kLikely = 0.5;
 
-/// Shares of the posterior of the modes, all places of the region considered.
-std::vector<double> shares(const SearchResult& found) {
+/// How many times as likely as the best mode each mode is.
+std::vector<double> likelihood_ratios(const SearchResult& found) {
   const ScoreBackground& background = found.background;
   const double best = background.log_likelihood(found.modes.front().score);
-  double total = 0.0;
-  std::vector<double> result;
+  std::vector<double> ratios;
   for (const SearchMode& mode : found.modes) {
-    result.push_back(std::exp(background.log_likelihood(mode.score) - best));
-    total += result.back();
+    ratios.push_back(std::exp(background.log_likelihood(mode.score) - best));
   }
-  for (std::size_t i = found.modes.size() - 1; i < background.rivals_within.size(); ++i) {
-    total += std::exp(background.log_likelihood(background.rivals_within[i]) - best);
-  }
-  for (double& share : result) share /= total;
-  return result;
+  return ratios;
 }
 
-/// The best mode has its probability, the others are to it as their posteriors are, as far as that leaves room.
-std::vector<double> weights_of(const std::vector<double>& shares, double probability) {
+/// The best mode has its probability, the others are to it as their likelihoods are, as far as that leaves room.
+std::vector<double> weights_of(const std::vector<double>& ratios, double probability) {
   std::vector<double> weights;
-  for (const double share : shares) weights.push_back(probability * share / shares.front());
+  for (const double ratio : ratios) weights.push_back(probability * ratio);
   const double others = std::accumulate(weights.begin() + 1, weights.end(), 0.0);
   const double room = others > 1.0 - probability ? (1.0 - probability) / others : 1.0;
   for (std::size_t i = 1; i < weights.size(); ++i) weights[i] *= room;
@@ -82,10 +76,9 @@ std::string below_confidence(double probability, const Calibration& calibration,
       probability, confidence);
 }
 
-void call_ambiguous(Decision& decision, const std::vector<double>& posterior, const Calibration& calibration,
+void call_ambiguous(Decision& decision, const std::vector<double>& ratios, const Calibration& calibration,
                     double confidence) {
-  const auto alike =
-      std::ranges::count_if(posterior, [&](double share) { return share >= kModeShare * posterior.front(); });
+  const auto alike = std::ranges::count_if(ratios, [](double ratio) { return ratio >= kModeShare; });
   decision.status = FixStatus::kAmbiguous;
   decision.weights.resize(static_cast<std::size_t>(alike));
   if (alike > 1) {
@@ -151,11 +144,11 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   }
   const SearchFigures figures = figures_of(found);
   decision.figures = figures;
-  const std::vector<double> posterior = shares(found);
+  const std::vector<double> ratios = likelihood_ratios(found);
   const double within = found.scanned_share * calibration.probability(figures);
   const double share = share_beside_outside(found);
   decision.probability = share * within;
-  decision.weights = weights_of(posterior, decision.probability);
+  decision.weights = weights_of(ratios, decision.probability);
   const bool one_road = figures.roads_across < kMinRoadsAcross;
   const bool sure_within = !one_road && within >= confidence;
   if (!found.complete()) {
@@ -167,7 +160,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   } else if (one_road) {
     explain(decision, kNotAboveChanceReason, shares_one_road(figures));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
-    call_ambiguous(decision, posterior, calibration, confidence);
+    call_ambiguous(decision, ratios, calibration, confidence);
   } else if (decision.probability > kLikely) {
     explain(decision, "below-confidence", below_confidence(decision.probability, calibration, confidence));
   } else {

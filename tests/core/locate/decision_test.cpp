@@ -97,9 +97,10 @@ TEST(Decision, APlaceThatRestsOnNoMoreThanOneStraightRoadIsExplainedByChanceHowe
 
 class DecisionBesideOtherPlacesOutside : public ::testing::Test {
  protected:
-  /// Places 60 m, 120 m, ... away.
-  Decision beside(const std::vector<double>& scores, double best = 0.8) {
+  /// Places 60 m, 120 m, ... away, around a region that is this share of the ground that was looked at.
+  Decision beside(const std::vector<double>& scores, double best = 0.8, double region_share = 1.0) {
     SearchResult result = found(best, 0.35, 0.2);
+    result.background.region_share = region_share;
     for (const double score : scores) {
       result.outside.push_back(result.modes[0]);
       result.outside.back().score = score;
@@ -130,6 +131,11 @@ TEST_F(DecisionBesideOtherPlacesOutside, OneThatChanceDoesNotExplainIsTheReasonW
   EXPECT_EQ(beside({0.39}, 0.38).reason, "not-above-chance") << "nothing fits outside either";
 }
 
+TEST_F(DecisionBesideOtherPlacesOutside, ChanceHasAllTheGroundAroundForOneHoweverSmallTheRegion) {
+  EXPECT_EQ(beside({0.45}, 0.25, 0.01).reason, "not-above-chance");
+  EXPECT_EQ(beside({0.8}, 0.25, 0.01).reason, "better-outside-prior");
+}
+
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsFarLessChangesNothing) {
   EXPECT_EQ(beside({0.7}).status, FixStatus::kFix);
   EXPECT_NEAR(beside({0.7}).probability, decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99).probability, 1e-4);
@@ -150,6 +156,20 @@ TEST(Decision, WeightsAreSharedByTheModes) {
     EXPECT_EQ(decision.weights.front(), decision.probability);
     EXPECT_TRUE(std::ranges::is_sorted(decision.weights, std::ranges::greater{}));
   }
+}
+
+TEST(Decision, WeightsOfPlacesThatFitAsWellAsASureOneShareWhatItLeaves) {
+  Calibration sure;
+  sure.bias = 10.0;
+  sure.highest = 0.9;
+  SearchResult result = found(0.8, 0.35, 0.2);
+  result.modes.push_back(result.modes.front());
+  result.modes[1].score = result.modes.front().score;
+  const Decision decision = decide(result, sure, 0.5);
+  ASSERT_EQ(decision.weights.size(), 3U);
+  EXPECT_EQ(decision.weights[0], 0.9);
+  EXPECT_NEAR(decision.weights[1], 0.05, 1e-9);
+  EXPECT_NEAR(decision.weights[2], 0.05, 1e-9);
 }
 
 TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {

@@ -55,6 +55,36 @@ TEST(FeatureRequest, SaysOfAPictureWithoutAWordHowAFrameIsSent) {
               ::testing::HasSubstr("add kind=frame, and gsd_m"));
 }
 
+/// Keeps what share of the picture it is told was observed.
+class Watching : public NoRoads {
+ public:
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                   const std::stop_token& stop) const override {
+    observed_share = cv::countNonZero(image.observed) / static_cast<double>(image.observed.total());
+    return NoRoads::detect(image, cell_m, seed, stop);
+  }
+  mutable double observed_share = 0.0;
+};
+
+TEST(FeatureRequest, TakesABlackBorderForGroundThatWasNotSeenWhereItIsToldSo) {
+  cv::Mat frame(40, 40, CV_8UC3);
+  cv::RNG random(1);
+  random.fill(frame, cv::RNG::UNIFORM, 40, 200);
+  random.fill(frame.colRange(0, 20), cv::RNG::UNIFORM, 1, 5);  // ground in the dark, unless it is said to be none
+  const auto observed_share = [&](const nlohmann::json& told) {
+    Content content;
+    content.fields.add({{"kind", "frame"}, {"gsd_m", 1}}, feature_fields());
+    content.fields.add(told, feature_fields());
+    content.image = testing::encoded(".png", frame);
+    const Watching detector;
+    features_of(content, {detector, 2.0}, Limits{});
+    return detector.observed_share;
+  };
+  EXPECT_EQ(observed_share(nlohmann::json::object()), 1.0);
+  EXPECT_EQ(observed_share({{"unobserved", "seen"}}), 1.0);
+  EXPECT_NEAR(observed_share({{"unobserved", "black"}}), 0.5, 0.05);
+}
+
 TEST(FeatureRequest, TakesWhatItIsToldOfTheNadir) {
   EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}, {"nadir_sigma_m", 12}}), 12.0);
   EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"nadir_sigma_m", 0}}), 0.0);

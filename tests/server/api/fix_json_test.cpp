@@ -10,6 +10,7 @@ namespace {
 FixMode mode() {
   FixMode mode;
   mode.pose = {{37.7632, 38.2571}, Angle::degrees(-90.0)};
+  mode.scale = 1.05;
   mode.weight = 0.996;
   mode.rho = 0.31;
   mode.sigma_m = {2.1, 1.7};
@@ -33,7 +34,12 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_EQ(answer["pose"]["lat"], 37.7632);
   EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), 270.0, 1e-9);
   EXPECT_EQ(answer["geometry"]["coordinates"], (nlohmann::json{38.2571, 37.7632}));
+  EXPECT_EQ(answer["scale"], 1.05);
+  EXPECT_EQ(answer["rho"], 0.31);
   EXPECT_EQ(answer["sigma_m"], (nlohmann::json{2.1, 1.7}));
+  EXPECT_NEAR(answer["ellipse_heading_deg"].get<double>(), 40.0, 1e-9);
+  EXPECT_NEAR(answer["heading_sigma_deg"].get<double>(), 0.8, 1e-9);
+  EXPECT_EQ(answer["observed_cells"], 9812);
   EXPECT_EQ(answer["modes"][0]["weight"], 0.996);
   EXPECT_EQ(answer["searched"]["headings"], 360);
   EXPECT_EQ(answer["searched"]["complete"], true);

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "server/autopilot/mavlink_frame.hpp"
 #include "tests/server/api/request_fixture.hpp"
 #include "tests/support/code_of.hpp"
@@ -15,7 +17,7 @@ using ::testing::Pair;
 using ::testing::StartsWith;
 
 const json kKnown{
-    {"status", "fix"}, {"pose", {{"lat", 37.7632}, {"lon", 38.2571}, {"heading_deg", 131.4}}}, {"sigma_m", {1.5, 2.5}}};
+    {"status", "fix"}, {"pose", {{"lat", 37.7632}, {"lon", 38.2571}, {"heading_deg", 131.4}}}, {"sigma_m", {2.5, 1.5}}};
 /// Where several places fit there is no pose at the top, whatever the places below it say.
 const json kNotKnown{{"status", "ambiguous"}, {"modes", {{{"pose", kKnown["pose"]}}}}};
 constexpr PositionTime kTime{1'763'724'896'250'000, std::chrono::milliseconds(250)};
@@ -68,8 +70,15 @@ TEST(PositionAnswer, SaysWhereTheVehicleIsAndWhenItWasThere) {
   EXPECT_EQ(told["alt"], 512.5);
   EXPECT_EQ(told["time_usec"], kTime.captured_us);
   EXPECT_EQ(told["satellites_visible"], 10);
-  EXPECT_EQ(told["horiz_accuracy"], 2.5) << "the longer axis, whichever it is";
   EXPECT_EQ(told["yaw"], 13'140);
+}
+
+TEST(PositionAnswer, IsAsAccurateAsTheLongerAxisOfItsEllipseWhicheverComesFirst) {
+  for (const std::array<double, 2> sigma_m : {std::array{2.5, 1.5}, {1.5, 2.5}}) {
+    json answer = kKnown;
+    answer["sigma_m"] = sigma_m;
+    EXPECT_EQ(mavproxy(answer)["horiz_accuracy"], 2.5) << sigma_m[0];
+  }
 }
 
 TEST(PositionAnswer, TurnsTheHeadingOfTheFrameIntoThatOfTheVehicle) {

@@ -122,6 +122,15 @@ TEST(MeasurementModel, OfAPoseThatIsMostlyOutsideTheMapIsNoBetterThanThatOfAWron
   EXPECT_GT(model.log_likelihood(sums_of(few, few), 200, 16.0), 0.0);
 }
 
+TEST(MeasurementModel, SupportsABeliefThatExplainsWhatWasSeenBetterThanChance) {
+  for (const LikelihoodKind kind : {LikelihoodKind::kCorrelation, LikelihoodKind::kDetectionRates}) {
+    MeasurementModel model;
+    model.kind = kind;
+    EXPECT_FALSE(model.supports(0.9));
+    EXPECT_TRUE(model.supports(1.1));
+  }
+}
+
 TEST(MeasurementModel, OfEquation7IsItself) {
   std::mt19937_64 random(5);
   const Cells cells = seen(random, 0.6, 0.1);

@@ -106,6 +106,11 @@ TEST_F(NoFix, SearchesForNothingThatIsStrewnFarAroundTheUav) {
   const Fix fix = locate(view_, FeatureMap{strewn, 2.0, {50.0, 50.0}}, {}, {});
   EXPECT_EQ(fix.reason, "footprint-too-small");
   EXPECT_THAT(fix.explanation, ::testing::HasSubstr("up to 5901 m"));
+  CellArray to_the_right(3000, 100);
+  paste(seen, to_the_right, 0, 0);
+  paste(seen, to_the_right, 2900, 0);
+  EXPECT_THAT(locate(view_, FeatureMap{to_the_right, 2.0, {50.0, 50.0}}, {}, {}).explanation,
+              ::testing::HasSubstr("up to 5901 m"));
 }
 
 TEST_F(NoFix, SaysThatADeadEndIsTooFewRoadsToTellPlacesApart) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/map_view.hpp"
 
 namespace roadfix {
@@ -23,17 +25,22 @@ class OtherPlaces : public ::testing::Test {
     result.background.rivals_within = {0.4, 0.3};
     return result;
   }
-  void sort_out(SearchResult& found, double registration_m) const {
+  struct Errors {
+    double registration_m = 0.0;
+    double nadir_m = 0.0;
+    double position_sigma_scale = 1.0;
+  };
+  void sort_out(SearchResult& found, const Errors& errors) const {
     MapView view = testing::view_of(map_);
-    view.registration_sigma_m = [=](GridPoint) { return registration_m; };
+    view.registration_sigma_m = [=](GridPoint) { return errors.registration_m; };
     Calibration calibration;
-    calibration.position_sigma_scale = 1.0;
-    sort_out_other_places(view, calibration, 0.0, found);
+    calibration.position_sigma_scale = errors.position_sigma_scale;
+    sort_out_other_places(view, calibration, errors.nadir_m, found);
   }
-  bool counts_nearby(double east_m, double registration_m) const {
+  bool counts_nearby(double east_m, const Errors& errors) const {
     SearchResult result = found();
     result.nearby = mode(east_m, 0.6);
-    sort_out(result, registration_m);
+    sort_out(result, errors);
     const bool counts = result.modes.size() == 3;
     EXPECT_EQ(result.modes.at(1).score, counts ? 0.6 : 0.4);
     EXPECT_EQ(result.background.rivals_within.front(), counts ? 0.6 : 0.4);
@@ -44,16 +51,23 @@ class OtherPlaces : public ::testing::Test {
 };
 
 TEST_F(OtherPlaces, LieBeyondFourStandardDeviationsOrFartherThanOnePlaceIsWide) {
-  EXPECT_FALSE(counts_nearby(3.9, 0.0));
-  EXPECT_TRUE(counts_nearby(4.1, 0.0));
-  EXPECT_FALSE(counts_nearby(24.0, 10.0));
-  EXPECT_TRUE(counts_nearby(26.0, 10.0));
+  EXPECT_FALSE(counts_nearby(3.9, {}));
+  EXPECT_TRUE(counts_nearby(4.1, {}));
+  EXPECT_FALSE(counts_nearby(24.0, {10.0}));
+  EXPECT_TRUE(counts_nearby(26.0, {10.0}));
+}
+
+TEST_F(OtherPlaces, LieBeyondFourStandardDeviationsOfThePositionAsItIsTold) {
+  const Errors errors{.registration_m = 0.0, .nadir_m = 3.0, .position_sigma_scale = 2.0};
+  const double sigma_m = std::hypot(2.0 * 1.0, 3.0);
+  EXPECT_FALSE(counts_nearby(4.0 * sigma_m - 0.1, errors));
+  EXPECT_TRUE(counts_nearby(4.0 * sigma_m + 0.1, errors));
 }
 
 TEST_F(OtherPlaces, OfThoseOutsideTheRegionOnlyTheBestOneItselfIsLeftOut) {
   SearchResult result = found();
   result.outside = {mode(5.0, 0.85), mode(6.0, 0.7), mode(0.0, 0.6, 180.0)};
-  sort_out(result, 10.0);
+  sort_out(result, {10.0});
   ASSERT_EQ(result.outside.size(), 2U);
   EXPECT_EQ(result.outside[0].score, 0.7) << "the registration errs for both alike";
   EXPECT_EQ(result.outside[1].score, 0.6) << "at another heading";
@@ -61,7 +75,7 @@ TEST_F(OtherPlaces, OfThoseOutsideTheRegionOnlyTheBestOneItselfIsLeftOut) {
 
 TEST_F(OtherPlaces, OfASearchThatFoundNoneAreNone) {
   SearchResult result;
-  sort_out(result, 2.5);
+  sort_out(result, {2.5});
   EXPECT_TRUE(result.modes.empty());
 }
 

@@ -33,6 +33,19 @@ TEST(SearchFigures, CountsHowManyPlacesChanceWouldPutThere) {
   EXPECT_NEAR(figures.surprise, 5.0 - std::log(200.0), 0.2);
 }
 
+TEST(SearchFigures, LeavesMoreToChanceWhereFewRivalsTellHowTheyThinOut) {
+  // If the mean m of n excesses is all that is known of an exponential, one beyond x has the probability E[exp(-x/m)]
+  // over the sums n m that a gamma distribution of shape n draws: (1 + x / (n m))^-n.
+  constexpr int kExcesses = 12;
+  constexpr double kMean = 0.02;
+  SearchResult result = found_among(std::tanh(std::atanh(0.1) + 40 * kMean), 0.1, kMean, 1);
+  result.background.rivals.clear();
+  for (int i = kExcesses; i >= 0; --i) {
+    result.background.rivals.push_back(std::tanh(std::atanh(0.1) + 2.0 * kMean * i / (kExcesses + 1)));
+  }
+  EXPECT_NEAR(figures_of(result).surprise, 12.0 * std::log(52.0 / 12.0) - std::log(12.0), 1e-9);
+}
+
 TEST(SearchFigures, MeasuresTheLeadInDeviationsAndInMeanExcesses) {
   SearchResult result = found_among(0.6, 0.2, 0.02);
   const double ahead = std::atanh(0.6) - std::atanh(result.modes[1].score);
@@ -56,6 +69,15 @@ TEST(SearchFigures, CountsSharedRoadInRoadsAcrossTheGroundThatTookPart) {
   result.modes[0].observed_cells = 22'500;  // 300 x 300 m
   result.modes[0].shared_road_m2 = 2 * 300 * kRoadWidthM;
   EXPECT_NEAR(figures_of(result).roads_across, 2.0, 1e-9);
+}
+
+TEST(SearchFigures, CountsARoadAsWideAsTheCellsThatShowIt) {
+  SearchResult result = found_among(0.6, 0.2, 0.02);
+  result.cell_m = 2.0 * kRoadWidthM;
+  result.modes[0].observed_cells = 900;
+  const double side_m = 30 * result.cell_m;
+  result.modes[0].shared_road_m2 = side_m * result.cell_m;  // one row of cells
+  EXPECT_NEAR(figures_of(result).roads_across, 1.0, 1e-9);
 }
 
 TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {

@@ -48,6 +48,17 @@ TEST(TrackClaim, WaitsForAnotherSearchAndALookWhereOtherPlacesWereTakenIn) {
   EXPECT_FALSE(claim.looked_time_us);
 }
 
+TEST(TrackClaim, WaitsForALookWhereSomethingSpokeAgainstItOrASearchHasJustFoundIt) {
+  TrackClaim rejected;
+  rejected.bear_out(7'000'000);
+  rejected.reject();
+  EXPECT_FALSE(rejected.looked_time_us);
+  TrackClaim found;
+  found.bear_out(7'000'000);
+  found.confirm(0.98);
+  EXPECT_FALSE(found.looked_time_us);
+}
+
 TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
   TrackClaim claim;
   claim.weigh(kHundredToOne - 0.01);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "tests/support/flight.hpp"
@@ -76,6 +77,26 @@ TEST_F(TrackLook, BearsOutNoPlaceWhereTheVehicleHeadsElsewhere) {
   EXPECT_EQ(turned(-2.0), Look::Outcome::kBorneOut);
   EXPECT_EQ(turned(5.0), Look::Outcome::kOpen);
   EXPECT_EQ(turned(-8.0), Look::Outcome::kOpen);
+}
+
+TEST_F(TrackLook, BearsOutNoPlaceFarFromTheVehicleHoweverUnsureTheBelief) {
+  Cluster belief;
+  belief.mean = beside(45.0);
+  belief.covariance[0][0] = belief.covariance[1][1] = 50.0 * 50.0;
+  EXPECT_EQ(look_around(search_, view_, frame_, belief, 0.0).outcome, Look::Outcome::kOpen);
+}
+
+TEST_F(TrackLook, FindsTheVehicleBesideAtTheScaleThatIsBelieved) {
+  Cluster belief;
+  belief.mean = beside(45.0);
+  belief.log_scale = 0.1;
+  std::mt19937_64 random(4);
+  FeatureMap frame = testing::observed_at(map_, truth_, 128, 128, 2.0 * std::exp(0.1), {0.15, 0.15}, random);
+  frame.cell_m = 2.0;
+  const Look look = look_around(search_, view_, frame, belief, 0.0);
+  ASSERT_EQ(look.outcome, Look::Outcome::kBeside);
+  EXPECT_LT(distance_m(look.places.at(0).mean.position, truth_.position), 5.0);
+  EXPECT_NEAR(look.places[0].log_scale, 0.1, 0.01);
 }
 
 TEST_F(TrackLook, IsOpenBeyondTheMap) { EXPECT_EQ(look_from(beside(5000.0)).outcome, Look::Outcome::kOpen); }

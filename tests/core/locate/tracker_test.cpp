@@ -258,6 +258,8 @@ TEST_F(Track, RefusesWhatItCannotUseAndNamesIt) {
   EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'000'000; }), "time-backwards");
   EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'001'000; }), "impossible-speed") << "milliseconds";
   EXPECT_EQ(refusal([](StepInput& s) { s.time_us = 1'000'001; }), "impossible-speed") << "seconds";
+  EXPECT_EQ(refusal([](StepInput& s) { s.odometry->forward_m = 1'100.0; }), "impossible-speed") << "in a second";
+  EXPECT_EQ(refusal([](StepInput& s) { s.odometry->forward_m = 900.0; }), "no error");
   EXPECT_EQ(refusal([](StepInput& s) { s.odometry->forward_m = std::numeric_limits<double>::quiet_NaN(); }),
             "odometry-not-finite");
   EXPECT_EQ(refusal([](StepInput& s) {

@@ -54,6 +54,23 @@ TEST(Clusters, TellSpreadAndThe95PercentRadius) {
   EXPECT_NEAR(clusters[0].radius95_m, 6.0 * std::sqrt(5.991), 0.4) << "chi-square of two degrees of freedom";
 }
 
+TEST(Clusters, TellTheSpreadAlongTheLongerAxisHoweverItLies) {
+  constexpr int kReach = 60;
+  for (const double direction : {0.0, 30.0, 45.0, 90.0, 135.0}) {
+    Particles p;
+    p.resize(2 * kReach + 1);
+    for (int along = -kReach; along <= kReach; ++along) {
+      const Angle towards = Angle::degrees(direction);
+      const auto i = static_cast<std::size_t>(along + kReach);
+      p.set(i, {along * sin(towards), along * cos(towards), 0.0});
+      p.weight[i] = 1.0 / (2 * kReach + 1);
+    }
+    const auto clusters = clusters_of(p);
+    ASSERT_EQ(clusters.size(), 1U) << direction;
+    EXPECT_NEAR(clusters[0].sigma_m(), std::sqrt(kReach * (kReach + 1) / 3.0), 1e-9) << direction;
+  }
+}
+
 TEST(Clusters, TellTheirScale) {
   Particles p = particles_of({{0, 0, 0, 5, 1, 0.25}, {0, 0, 0, 5, 1, 0.75}}, 100);
   std::fill(p.log_scale.begin() + 100, p.log_scale.end(), 0.1);

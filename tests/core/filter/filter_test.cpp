@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -31,6 +32,66 @@ Moments moments(const Particles& p) {
   }
   for (std::size_t i = 0; i < p.size(); ++i) m.variance_east += p.weight[i] * std::pow(p.east_m[i] - m.mean.east_m, 2);
   return m;
+}
+
+TEST(Filter, DrawsParticlesAroundAProposalAsItsCovarianceSays) {
+  FilterOptions options;
+  options.max_particles = 40'000;
+  Filter filter(options, {kSquare}, 7);
+  const PoseCovariance told{{{25.0, -12.0, 0.02}, {-12.0, 16.0, -0.1}, {0.02, -0.1, 0.01}}};
+  const GridPose mean{{500.0, 400.0}, Angle::degrees(30.0)};
+  start_at(filter, {mean, told, 1.0});
+  const Particles& p = filter.particles();
+  PoseCovariance drawn{};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::array<double, 3> off{p.east_m[i] - mean.position.east_m, p.north_m[i] - mean.position.north_m,
+                                    p.heading_rad[i] - mean.heading.radians()};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) drawn[a][b] += off[a] * off[b] / options.max_particles;
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      // Five times the sampling error of a covariance.
+      const double error = std::sqrt((told[a][a] * told[b][b] + told[a][b] * told[a][b]) / options.max_particles);
+      EXPECT_NEAR(drawn[a][b], told[a][b], 5.0 * error) << a << ", " << b;
+    }
+  }
+}
+
+TEST(Filter, DrawsAllParticlesOfACircleWithinIt) {
+  PoseRegion circle = kSquare;
+  circle.circle = GridCircle{{300.0, 500.0}, 80.0};
+  Filter filter({}, {kSquare}, 7);
+  filter.start_uniformly(circle);
+  const Particles& p = filter.particles();
+  double mean_square = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double off_m = distance_m({p.east_m[i], p.north_m[i]}, circle.circle->centre);
+    ASSERT_LE(off_m, 80.0);
+    mean_square += off_m * off_m / static_cast<double>(p.size());
+  }
+  EXPECT_NEAR(mean_square, 80.0 * 80.0 / 2.0, 100.0) << "as far out as a uniform density lies";
+}
+
+TEST(Filter, MovesCopiesOfAParticleApartAndLeavesWhatWasDrawnOnce) {
+  FilterOptions options;
+  options.adapts_count = false;
+  options.effective_share = 1.0;
+  options.injected_share = 0.0;
+  Filter filter(options, {kSquare}, 7);
+  filter.start_uniformly(kSquare);
+  const Particles before = filter.particles();
+  ASSERT_TRUE(filter.correct(std::vector<double>(before.size(), 0.0)).resampled);
+  EXPECT_EQ(filter.particles(), before) << "each was drawn once";
+  std::vector<double> only_the_third(before.size(), -1000.0);
+  only_the_third[2] = 0.0;
+  ASSERT_TRUE(filter.correct(only_the_third).resampled);
+  const Particles& copies = filter.particles();
+  EXPECT_EQ(copies.east_m[0], before.east_m[2]);
+  for (std::size_t i = 1; i < copies.size(); ++i) ASSERT_NE(copies.east_m[i], before.east_m[2]);
+  EXPECT_NEAR(distance_m({copies.east_m[1], copies.north_m[1]}, {before.east_m[2], before.north_m[2]}), 0.0,
+              6.0 * options.roughening_m);
 }
 
 TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
@@ -168,6 +229,8 @@ TEST(Filter, DoubtsItsBeliefAfterMeasurementsThatFitWorseAndDrawsElsewhere) {
   feed(-3.0, 15);
   EXPECT_GT(filter.doubt(), 0.3);
   EXPECT_GT(clusters_of(filter.particles()).size(), 20U);
+  filter.start_uniformly(kSquare);
+  EXPECT_EQ(filter.doubt(), 0.0) << "a belief that begins has no past";
 }
 
 TEST(Filter, DrawsNothingElsewhereForMeasurementsThatFitNowBetterAndNowWorse) {

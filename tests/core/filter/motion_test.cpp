@@ -83,6 +83,34 @@ TEST(PlanarMotion, CarriesParticlesWithTheirWind) {
   EXPECT_NEAR(end.north_m, -2.0, 1e-12);
 }
 
+/// Of the drift to the east after ten seconds, m2/s2, begun at none and moved in so many steps.
+double drift_variance(const auto& motion, int steps, int particles) {
+  double variance = 0.0;
+  for (int i = 0; i < particles; ++i) {
+    ParticleState state;
+    for (int k = 0; k < steps; ++k) {
+      RandomStream random(Draw::kMotion, {7, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(i)});
+      motion(state, random);
+    }
+    variance += state.drift_east_m_s * state.drift_east_m_s / particles;
+  }
+  return variance;
+}
+
+TEST(Motion, ChangesTheWindAsMuchInOneStepAsInMany) {
+  constexpr int kParticles = 5'000;
+  constexpr double kWalk = 0.5;
+  constexpr double kVariance = kWalk * kWalk * 10.0;
+  const double tolerance = 5.0 * std::sqrt(2.0 / kParticles) * kVariance;
+  for (const int steps : {1, 10, 100}) {
+    const double seconds = 10.0 / steps;
+    const PlanarMotion planar{{0.0, 0.0}, {0.0, 0.0}, seconds, kWalk};
+    EXPECT_NEAR(drift_variance(planar, steps, kParticles), kVariance, tolerance) << steps;
+    EXPECT_NEAR(drift_variance(OdometryMotion({}, {}, seconds, kWalk), steps, kParticles), kVariance, tolerance)
+        << steps;
+  }
+}
+
 std::string refusal(const Odometry& odometry, const OdometryCovariance& covariance) {
   try {
     const OdometryMotion motion(odometry, covariance);

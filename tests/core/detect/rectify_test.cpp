@@ -18,17 +18,18 @@ namespace {
 using testing::kFrame;
 using testing::level_camera;
 
+/// Of checkered ground, right and back of the nadir.
+bool is_dark(cv::Point2d ground, double side_m) {
+  return (static_cast<int>(std::floor(ground.x / side_m)) + static_cast<int>(std::floor(ground.y / side_m))) % 2 == 0;
+}
+
 /// A frame whose pixels say which ground they see, painted through the independent ground_of.
 cv::Mat checkered(const FrameCamera& camera, double side_m) {
   cv::Mat frame(kFrame, CV_8UC1);
   for (int y = 0; y < frame.rows; ++y) {
     for (int x = 0; x < frame.cols; ++x) {
       const auto ground = ground_of(camera, *lens_of(camera, kFrame).ray_of({x + 0.5, y + 0.5}));
-      const bool dark =
-          ground &&
-          (static_cast<int>(std::floor(ground->x / side_m)) + static_cast<int>(std::floor(ground->y / side_m))) % 2 ==
-              0;
-      frame.at<uchar>(y, x) = dark ? 0 : 255;
+      frame.at<uchar>(y, x) = ground && is_dark(*ground, side_m) ? 0 : 255;
     }
   }
   return frame;
@@ -38,23 +39,38 @@ TEST(Rectify, PutsTheGroundBackInPlace) {
   FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(12);
   camera.roll = Angle::degrees(-7);
-  constexpr double kSide = 20.0;
-  const GroundView view = rectify(checkered(camera, kSide), {}, camera, {0.5, 400, 1e7});
-  int right = 0;
-  int seen = 0;
-  for (int y = 0; y < view.image.pixels.rows; ++y) {
-    for (int x = 0; x < view.image.pixels.cols; ++x) {
-      if (view.image.observed.at<uchar>(y, x) == 0) continue;
-      const double ground_x = (x + 0.5 - view.nadir_px.x) * 0.5;
-      const double ground_y = (y + 0.5 - view.nadir_px.y) * 0.5;
-      const bool dark =
-          (static_cast<int>(std::floor(ground_x / kSide)) + static_cast<int>(std::floor(ground_y / kSide))) % 2 == 0;
-      right += dark == (view.image.pixels.at<uchar>(y, x) < 128);
-      ++seen;
+  // The frame's pixels are 0.32 m: for 1 m those of three by three are averaged.
+  for (const double gsd_m : {0.5, 1.0}) {
+    const double side_m = 40.0 * gsd_m;
+    const GroundView view = rectify(checkered(camera, side_m), {}, camera, {gsd_m, 400, 1e7});
+    int right = 0;
+    int seen = 0;
+    for (int y = 0; y < view.image.pixels.rows; ++y) {
+      for (int x = 0; x < view.image.pixels.cols; ++x) {
+        if (view.image.observed.at<uchar>(y, x) == 0) continue;
+        const bool dark = is_dark(gsd_m * (cv::Point2d(x + 0.5, y + 0.5) - view.nadir_px), side_m);
+        right += dark == (view.image.pixels.at<uchar>(y, x) < 128);
+        ++seen;
+      }
     }
+    EXPECT_GT(seen * gsd_m * gsd_m, 25'000.0) << gsd_m;
+    EXPECT_GT(static_cast<double>(right) / seen, 0.97) << gsd_m;  // edges of the squares are half a pixel wide
   }
-  EXPECT_GT(seen, 100'000);
-  EXPECT_GT(static_cast<double>(right) / seen, 0.97);  // edges of the squares are half a pixel wide
+}
+
+TEST(Rectify, ObservesNoGroundThatTheFrameShowsWhereItWasNotObservedItself) {
+  const cv::Mat frame(kFrame, CV_8UC1, cv::Scalar(90));
+  cv::Mat observed(kFrame, CV_8UC1, cv::Scalar(255));
+  observed.colRange(0, kFrame.width / 2).setTo(0);
+  for (const double gsd_m : {0.25, 1.0}) {
+    const GroundView view = rectify(frame, observed, level_camera(), {gsd_m, 400, 1e7});
+    const int nadir = static_cast<int>(std::lround(view.nadir_px.x));
+    ASSERT_NEAR(nadir * gsd_m, 100.0, 1.0);
+    const int clear = 3;  // pixels, of the edge between both
+    EXPECT_EQ(cv::countNonZero(view.image.observed.colRange(0, nadir - clear)), 0) << gsd_m;
+    const cv::Mat right = view.image.observed.colRange(nadir + clear, view.image.observed.cols - clear);
+    EXPECT_GT(cv::countNonZero(right), 0.95 * static_cast<double>(right.total())) << gsd_m;
+  }
 }
 
 TEST(Rectify, LeavesCornersOutsideTheFrameUnobserved) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -91,6 +92,14 @@ TEST(GeoBoxAround, AndTheGridBoxAroundThatHoldTheBox) {
   EXPECT_TRUE(grown(back, kCentimetre).contains(city.min));
   EXPECT_TRUE(grown(back, kCentimetre).contains(city.max));
   EXPECT_LT(back.width_m(), 1.01 * city.width_m() + 200.0) << "turned by the convergence, half a degree";
+}
+
+TEST(GeoBox, GoesAcrossTheAntimeridianOnlyWhereItsEastLiesMoreThanHalfATurnWestOfItsWest) {
+  const std::array<double, 4> fiji{179.0, -18.0, -179.0, -16.0};
+  EXPECT_EQ(geo_box_of(fiji).north_east.lon_deg, 181.0);
+  const std::array<double, 4> swapped{-11.0, 57.0, -12.0, 58.0};
+  EXPECT_EQ(geo_box_of(swapped).north_east.lon_deg, -12.0) << "no belt round the Earth";
+  EXPECT_TRUE(geo_box_of(swapped).empty());
 }
 
 TEST(GeoBox, IsEmptyWhereACornerIsNoNumber) {

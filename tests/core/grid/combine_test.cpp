@@ -49,6 +49,13 @@ TEST(Combined, AFrameTurnedRightPutsItsForwardEdgeToTheRight) {
   EXPECT_EQ(to_ascii(combined(parts, kPlenty).cells), ".....#\n.....#\n.....#\n");
 }
 
+TEST(Combined, KeepsAllThatATurnedFrameSawFarAheadOfItsNadir) {
+  FeatureMap ahead = map_of("# . . .");
+  ahead.nadir.row = 3.5;  // in the middle of the nearest cell
+  const PlacedFeatures parts[] = {{map_of("."), {}}, {ahead, {0.0, 0.0, Angle::degrees(90)}}};
+  EXPECT_EQ(to_ascii(combined(parts, kPlenty).cells), "...#\n");
+}
+
 TEST(Combined, WhatNoFrameSawStaysUnobserved) {
   const PlacedFeatures parts[] = {{map_of("#? .."), {}}, {map_of(".? ?#"), {4.0, 4.0, {}}}};
   EXPECT_EQ(to_ascii(combined(parts, kPlenty).cells), "??.?\n???#\n#???\n..??\n");

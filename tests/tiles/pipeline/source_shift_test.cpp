@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/grid/resample.hpp"
@@ -59,6 +60,26 @@ TEST(SourceShift, IsNoneWhereTheyAgreeOrHaveNothingInCommon) {
   EXPECT_FALSE(shift_of(shared_evidence(1, -1), kCellM)) << "no more than a step";
   EXPECT_FALSE(shift_of(shared_evidence(0, 0, 6), kCellM)) << "another town";
   EXPECT_FALSE(shift_of({}, kCellM));
+}
+
+TEST(SourceShift, IsNoneThatMayGoOnBeyondTheShiftsThatWereTried) {
+  EXPECT_TRUE(shift_of(shared_evidence(48, 0), kCellM));
+  EXPECT_FALSE(shift_of(shared_evidence(50, 0), kCellM));
+  EXPECT_FALSE(shift_of(shared_evidence(51, 0), kCellM));
+  EXPECT_FALSE(shift_of(shared_evidence(0, -51), kCellM));
+}
+
+/// So many of the nine tiles lie in place, the others too far east.
+SharedEvidence in_place_but(int in_place, int east) {
+  SharedEvidence result = shared_evidence(east, 0);
+  const SharedEvidence same = shared_evidence(0, 0);
+  std::copy_n(same.tiles.begin(), in_place, result.tiles.begin());
+  return result;
+}
+
+TEST(SourceShift, IsNoneThatFitsHardlyBetterThanTheSourceInItsPlace) {
+  EXPECT_TRUE(shift_of(in_place_but(1, 4), kCellM));
+  EXPECT_FALSE(shift_of(in_place_but(3, 4), kCellM));
 }
 
 TEST(SourceShift, StandsForARegistrationErrorWhoseEllipseOf95PercentHoldsTheOtherSide) {
@@ -127,6 +148,7 @@ TEST(SourceShift, IsNoneOfANarrowOverlapThatFitsInPlace) {
 
 TEST(SourceShift, IsNoneWhereTooLittleGroundIsSharedToTell) {
   EXPECT_FALSE(shift_of(overlapping(16, 12, -8), kCellM));
+  EXPECT_FALSE(shift_of(overlapping(70, 12, -8), kCellM)) << "0.22 km^2";
   EXPECT_TRUE(shift_of(overlapping(100, 12, -8), kCellM));
 }
 
@@ -171,6 +193,13 @@ TEST(SourceShift, IsHardlyEverOneOfFewRoadsThatHaveNothingInCommon) {
   EXPECT_LE(shifts, 1) << "of 72 overlaps of 0.26 km^2";
 }
 
+/// The part of the town that a tile shows of a source that lies so many cells too far east.
+CellArray part_of(const CellArray& town, TileIndex tile, int east) {
+  CellArray cells(kTileCells, kTileCells);
+  paste(town, cells, east - 100 - kTileCells * (tile.col - 847), -100 - kTileCells * (tile.row + 8165));
+  return cells;
+}
+
 /// Sources of four tiles of one town, each so many cells too far east.
 class MeasuredShifts : public ::testing::Test {
  protected:
@@ -183,9 +212,7 @@ class MeasuredShifts : public ::testing::Test {
                               .provenance = {.registration_sigma_m = sigma_m}};
     const std::vector<TileIndex> blocks{{847, -8165}, {848, -8165}, {847, -8164}, {848, -8164}};
     for (const TileIndex block : writer.begin_source(record, blocks, true)) {
-      CellArray cells(kTileCells, kTileCells);
-      paste(town, cells, east - 100 - kTileCells * (block.col - 847), -100 - kTileCells * (block.row + 8165));
-      testing::put_block(writer, name, block, cells);
+      testing::put_block(writer, name, block, part_of(town, block, east));
     }
     writer.finish_source(name);
   }
@@ -235,7 +262,7 @@ TEST_F(MeasuredShifts, AreForgottenWhenTheSourceIsReplacedByOneThatFitsOrStatesI
 }
 
 /// Says nothing of a box.
-class BlankSource final : public CellSource {
+class BlankSource : public CellSource {
  public:
   explicit BlankSource(GridBox extent) : extent_(extent) {}
   SourceSummary summary() const override { return {}; }
@@ -262,6 +289,28 @@ TEST_F(MeasuredShifts, OfThoseBesideAReplacedSourceAreMeasuredAnewThoughFusingIt
   EXPECT_TRUE(ingest(source, elsewhere, writer, {.replace = true}).shifts.beside.empty());
   ASSERT_EQ(sources().size(), 2U);
   for (const SourceStatus& status : sources()) EXPECT_FALSE(status.shift) << status.record.name;
+}
+
+/// Says of a tile what it is given.
+class TileSource final : public BlankSource {
+ public:
+  TileSource(TileIndex tile, CellArray cells)
+      : BlankSource(grown(tile_geometry(tile, kCellM).box(), -1.0)), cells_(std::move(cells)) {}
+  CellArray read(const GridGeometry& /*block*/, std::uint64_t /*seed*/) const override { return cells_; }
+
+ private:
+  CellArray cells_;
+};
+
+TEST_F(MeasuredShifts, OfThoseBesideANewSourceAreMeasuredAnew) {
+  put("a", 0);
+  ASSERT_TRUE(measure_shifts(writer, {"a"}).beside.empty());
+  const TileIndex tile{847, -8165};
+  const SourceRecord record{.name = "b", .kind = "roads", .fingerprint = "b"};
+  const auto shifts = ingest(TileSource(tile, part_of(town, tile, 10)), record, writer, {}).shifts.beside;
+  ASSERT_EQ(shifts.size(), 2U);
+  EXPECT_EQ(shifts.at("b").east_m, -20.0);
+  EXPECT_EQ(shifts.at("a").east_m, 20.0);
 }
 
 TEST_F(MeasuredShifts, StayAsTheyWereKnownWhereEvidenceIsDamagedAndItIsSaidWhich) {

@@ -186,6 +186,21 @@ TEST(MapWriter, AReplacedSourceStaysInForceUntilTheNewOneIsComplete) {
   EXPECT_EQ(MapReader(path).info().sources.size(), 1U);
 }
 
+TEST(MapWriter, ASourceBegunAnewWithOtherContentKeepsNothingOfWhatWasBegunBefore) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  MapWriter writer(path, settings_37n());
+  const TestSource begun{"a", 1, some_blocks(2)};
+  const TestSource changed{"a", 2, some_blocks(2)};
+  put_block(writer, "a", writer.begin_source(begun.record(), begun.blocks, false).front(), CellArray(256, 256, kRoad));
+  EXPECT_EQ(writer.begin_source(changed.record(), changed.blocks, true), changed.blocks);
+  EXPECT_EQ(MapReader(path).info().sources.size(), 1U);
+  ingest(writer, changed, true);
+  MapWriter fresh(folder / "fresh.gpkg", settings_37n());
+  ingest(fresh, changed);
+  EXPECT_EQ(tile_bytes(path), tile_bytes(folder / "fresh.gpkg"));
+}
+
 TEST(MapWriter, RemovingASourceLeavesTheMapOfTheOthers) {
   const TemporaryFolder folder;
   MapWriter both(folder / "both.gpkg", settings_37n());

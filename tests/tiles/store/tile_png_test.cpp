@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "core/png/png_codec.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -62,6 +64,18 @@ TEST(TilePngDamage, BytesAfterTheEndAreRefused) {
   auto png = encode_tile(random_cells(1, {}), TileDepth::kFused);
   png.push_back(std::byte{0});
   EXPECT_THROW(decode_tile(png, TileDepth::kFused), CorruptData);
+}
+
+TEST(TilePngDamage, ValuesOfAFusedTileThatAreNoProbabilityAreRefused) {
+  const auto code_of_value = [](unsigned value) {
+    std::vector<std::uint8_t> pixels(std::size_t{2} * kTileCells * kTileCells);
+    pixels[0] = static_cast<std::uint8_t>(value >> 8U);
+    pixels[1] = static_cast<std::uint8_t>(value & 0xffU);
+    const auto png = encode_grey_png(pixels, {kTileCells, kTileCells, 1, 16}, PngFilter::kNone);
+    return testing::code_of([&] { decode_tile(png, TileDepth::kFused); });
+  };
+  for (const unsigned value : {0U, 254U, 65535U}) EXPECT_EQ(code_of_value(value), "no error") << value;
+  for (const unsigned value : {255U, 300U, 65534U}) EXPECT_EQ(code_of_value(value), "tile-corrupt") << value;
 }
 
 }  // namespace

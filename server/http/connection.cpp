@@ -3,6 +3,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -73,9 +74,9 @@ bool Connection::wait(milliseconds time) {
 }
 
 void Connection::begin(milliseconds time) {
-  begun_ = Clock::now();
+  pace_ = {};
   received_ = 0;
-  deadline_ = begun_ + time;
+  deadline_ = pace_.since + time;
 }
 
 bool Connection::peer_has_left() const {
@@ -113,23 +114,44 @@ void Connection::linger(const std::function<bool()>& in_a_hurry) {
 
 bool Connection::is_readable() const { return begin_ < end_ || poll_for(socket_, POLLIN, 0ms); }
 
-bool Connection::is_writable() const { return poll_for(socket_, POLLOUT, limits_.write); }
+bool Connection::is_writable() const {
+  Pace pace;
+  return wait_to_write(pace, on_their_way());
+}
 
-bool Connection::wait_for(short events, milliseconds time, Clock::time_point since, std::size_t bytes) const {
+bool Connection::is_slow(Pace& pace, std::size_t bytes) const {
+  const auto now = Clock::now();
+  const std::chrono::duration<double> time = now - pace.since;
+  if (time <= limits_.grace) return false;
+  if (static_cast<double>(bytes - pace.bytes) < time.count() * static_cast<double>(limits_.bytes_per_s)) return true;
+  pace = {now, bytes};
+  return false;
+}
+
+bool Connection::wait_for(short events, milliseconds time, Pace& pace,
+                          const std::function<std::size_t()>& bytes) const {
   const auto until = Clock::now() + time;
   for (;;) {
+    const bool slow = is_slow(pace, bytes());
     const auto now = Clock::now();
-    const auto passed = std::chrono::duration<double>(now - since);
-    const bool slow = passed > limits_.grace &&
-                      static_cast<double>(bytes) < passed.count() * static_cast<double>(limits_.bytes_per_s);
     if (now >= until || (slow && limits_.others_wait())) return false;
     if (poll_for(socket_, events, std::min(kSlice, std::chrono::ceil<milliseconds>(until - now)))) return true;
   }
 }
 
+/// The system takes megabytes for a peer that reads none: only what has left it counts.
+bool Connection::wait_to_write(Pace& pace, std::size_t to_peer) const {
+  return wait_for(POLLOUT, limits_.write, pace, [&] { return to_peer - on_their_way(); });
+}
+
+std::size_t Connection::on_their_way() const {
+  int bytes = 0;
+  return ::ioctl(socket_, TIOCOUTQ, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
+}
+
 bool Connection::fill() {
   const auto left = std::chrono::ceil<milliseconds>(deadline_ - Clock::now());
-  if (left <= 0ms || !wait_for(POLLIN, left, begun_, received_)) {
+  if (left <= 0ms || !wait_for(POLLIN, left, pace_, [this] { return received_; })) {
     failure_ = Clock::now() < deadline_ ? Failure::kLetGo : Failure::kTimeout;
     return false;
   }
@@ -162,7 +184,8 @@ ssize_t Connection::read(char* data, std::size_t size) {
 }
 
 ssize_t Connection::write(const char* data, std::size_t size) {
-  const auto begun = Clock::now();
+  Pace pace;
+  const std::size_t before = on_their_way();
   std::size_t sent = 0;
   while (sent < size) {
     const ssize_t n = ::send(socket_, data + sent, size - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -170,7 +193,7 @@ ssize_t Connection::write(const char* data, std::size_t size) {
       sent += static_cast<std::size_t>(n);
       has_written_ = true;
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
-      if (!wait_for(POLLOUT, limits_.write, begun, sent)) return -1;
+      if (!wait_to_write(pace, before + sent)) return -1;
     } else if (errno != EINTR) {
       return -1;
     }

@@ -19,7 +19,7 @@ struct ConnectionLimits {
   std::chrono::milliseconds body{60'000};  ///< for the whole body
   std::chrono::milliseconds write{30'000};
   std::size_t head_bytes = 64 << 10;
-  /// While others wait for a thread, a peer that sends or takes less than so much is let go of after the grace.
+  /// While others wait for a thread, a peer that sends or takes less than so much over the grace is let go of.
   std::chrono::milliseconds grace{2'000};
   std::size_t bytes_per_s = 4 << 10;
   std::function<bool()> others_wait = [] { return false; };
@@ -62,11 +62,25 @@ class Connection : public httplib::Stream {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Since when a peer is watched, and how many bytes had passed by then.
+  struct Pace {
+    Clock::time_point since = Clock::now();
+    std::size_t bytes = 0;
+  };
+
   /// From now on the peer has that long, and its pace is counted.
   void begin(std::chrono::milliseconds time);
   bool fill();
-  /// Waits at most `time`, or until the peer holds up others; `bytes` have passed since `since`.
-  bool wait_for(short events, std::chrono::milliseconds time, Clock::time_point since, std::size_t bytes) const;
+  /// Whether the peer was slow for longer than the grace; `bytes` have passed in all. Once it was fast enough it is
+  /// watched anew, so that what went quickly makes up for no standstill later.
+  bool is_slow(Pace& pace, std::size_t bytes) const;
+  /// Waits at most `time`, or until the peer holds up others; `bytes` tells how many have passed.
+  bool wait_for(short events, std::chrono::milliseconds time, Pace& pace,
+                const std::function<std::size_t()>& bytes) const;
+  /// Waits until more can be written. `to_peer` bytes were on their way to it since `pace` began.
+  bool wait_to_write(Pace& pace, std::size_t to_peer) const;
+  /// Bytes written of which the peer has not said that they came.
+  std::size_t on_their_way() const;
 
   const int socket_;
   const ConnectionLimits limits_;
@@ -76,9 +90,9 @@ class Connection : public httplib::Stream {
   bool at_end_ = false;
   bool in_head_ = true;
   std::size_t head_bytes_ = 0;
-  std::optional<ChunkCheck> chunks_;        ///< of a chunked body
-  Clock::time_point begun_ = Clock::now();  ///< of the head or body that is being read
-  std::size_t received_ = 0;                ///< since then
+  std::optional<ChunkCheck> chunks_;  ///< of a chunked body
+  Pace pace_;                         ///< of the head or body that is being read
+  std::size_t received_ = 0;          ///< of it
   Clock::time_point deadline_ = Clock::time_point::max();
   Failure failure_ = Failure::kNone;
   bool has_written_ = false;

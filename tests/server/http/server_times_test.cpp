@@ -11,6 +11,12 @@ using testing::eventually;
 
 class HttpServerTimes : public testing::HttpServerTest {
  protected:
+  static constexpr std::size_t kLargeAnswer = std::size_t{64} << 20;  // more than the system takes for its reader
+  void add_large_answer() {
+    router_.add({"GET", "/large", {}, Load::kLight, [](const Request&) {
+                   return Response{200, "image/png", std::string(kLargeAnswer, 'x')};
+                 }});
+  }
   /// Has a thread, has sent a part of its body, and sends no more.
   std::unique_ptr<testing::RawConnection> stalled() const {
     auto slow = std::make_unique<testing::RawConnection>(port_);
@@ -63,6 +69,53 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   ASSERT_TRUE(echo) << "the only thread was kept by a client that sends nothing";
   EXPECT_EQ(echo->body, "alive");
   EXPECT_THAT(slow->read_all(), ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServerTimes, LetsGoOfASenderThatStandsStillHoweverMuchItSentBefore) {
+  settings_.threads = 1;
+  settings_.body_time = 10min;
+  settings_.crowded_time = 10ms;
+  const auto server = started();
+  testing::RawConnection slow(port_);
+  slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10000000\r\n\r\n" + std::string(1'000'000, 'x'));
+  wait_for_figure("roadfix_connections 1\n");
+  httplib::Client other = client();
+  other.set_read_timeout(60s);
+  ASSERT_TRUE(other.Get("/echo?text=alive")) << "a million bytes made up for minutes of silence";
+  EXPECT_THAT(slow.read_all(), ::testing::HasSubstr("request-timeout"));
+}
+
+TEST_F(HttpServerTimes, LetsGoOfAReaderThatStandsStillWhileOthersWaitForItsThread) {
+  add_large_answer();
+  settings_.threads = 1;
+  settings_.write_time = 10min;
+  settings_.crowded_time = 10ms;
+  const auto server = started();
+  testing::RawConnection deaf(port_);
+  deaf.send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
+  wait_for_figure("roadfix_connections 1\n");
+  httplib::Client other = client();
+  other.set_read_timeout(60s);
+  ASSERT_TRUE(other.Get("/echo?text=alive")) << "the only thread was kept by a client that reads nothing";
+  EXPECT_LT(deaf.read_all().size(), kLargeAnswer);
+}
+
+TEST_F(HttpServerTimes, WaitsForAReaderThatIsSlowButReads) {
+  add_large_answer();
+  settings_.threads = 1;
+  settings_.crowded_time = 1s;
+  const auto server = started();
+  httplib::Client slow = client();
+  std::size_t read = 0;
+  std::jthread other;
+  const auto pieces = [&](const char*, std::size_t size) {
+    if (read == 0) other = std::jthread([&] { client().Get("/echo?text=waiting"); });
+    read += size;
+    std::this_thread::sleep_for(size * std::chrono::nanoseconds(2s) / kLargeAnswer);
+    return true;
+  };
+  ASSERT_TRUE(slow.Get("/large", httplib::Headers{{"Connection", "close"}}, pieces));
+  EXPECT_EQ(read, kLargeAnswer);
 }
 
 TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhenItIsStopped) {

@@ -40,7 +40,7 @@ bool ChunkCheck::follow_byte(char byte) {
       if (byte == '\r') part_ = Part::kSizeEnd;
       return byte != '\n';
     case Part::kSizeEnd:
-      part_ = left_ == 0 ? Part::kRest : Part::kData;
+      part_ = left_ == 0 ? Part::kTrailersOrEnd : Part::kData;
       return byte == '\n';
     case Part::kDataEnd:
       part_ = Part::kDataLineFeed;
@@ -48,11 +48,27 @@ bool ChunkCheck::follow_byte(char byte) {
     case Part::kDataLineFeed:
       part_ = Part::kSize;
       return byte == '\n';
+    case Part::kTrailersOrEnd:
+      part_ = byte == '\r' ? Part::kLastLineFeed : Part::kTrailer;
+      return byte != '\n';
+    case Part::kTrailer:
+      if (byte == '\r') part_ = Part::kTrailerLineFeed;
+      return byte != '\n';
+    case Part::kTrailerLineFeed:
+      part_ = Part::kTrailersOrEnd;
+      return byte == '\n';
+    case Part::kLastLineFeed:
+      part_ = Part::kRest;
+      return byte == '\n';
     case Part::kData:
     case Part::kRest:
       break;
   }
   return true;
+}
+
+bool ChunkCheck::is_trailer(char next) const {
+  return (part_ == Part::kTrailersOrEnd && next != '\r') || part_ == Part::kTrailer || part_ == Part::kTrailerLineFeed;
 }
 
 bool ChunkCheck::in_size(char byte) {

@@ -9,11 +9,25 @@ namespace roadfix::http {
 
 class ChunkCheck {
  public:
-  /// False once these are no chunks. What follows the last chunk, trailers and all, is not looked at.
+  /// False once these are no chunks. What follows the body is not looked at.
   bool follow(std::string_view bytes);
+  /// Whether the next byte is one of the trailers, which may stand between the last chunk and the empty line.
+  bool is_trailer(char next) const;
 
  private:
-  enum class Part { kSize, kExtension, kSizeEnd, kData, kDataEnd, kDataLineFeed, kRest };
+  enum class Part {
+    kSize,
+    kExtension,
+    kSizeEnd,
+    kData,
+    kDataEnd,
+    kDataLineFeed,
+    kTrailersOrEnd,
+    kTrailer,
+    kTrailerLineFeed,
+    kLastLineFeed,
+    kRest
+  };
 
   bool follow_byte(char byte);
   bool in_size(char byte);

@@ -167,8 +167,19 @@ bool Connection::fill() {
   return true;
 }
 
+bool Connection::skip_trailers() {
+  while (chunks_ && chunks_->is_trailer(buffer_[begin_])) {
+    if (!chunks_->follow({buffer_.data() + begin_, 1}) || ++head_bytes_ > limits_.head_bytes) {
+      failure_ = Failure::kBadChunks;
+      return false;
+    }
+    if (++begin_ == end_ && !fill()) return false;
+  }
+  return true;
+}
+
 ssize_t Connection::read(char* data, std::size_t size) {
-  if (begin_ == end_ && !fill()) return at_end_ ? 0 : -1;
+  if ((begin_ == end_ && !fill()) || !skip_trailers()) return at_end_ ? 0 : -1;
   const std::size_t n = std::min(size, end_ - begin_);
   if (in_head_ && (head_bytes_ += n) > limits_.head_bytes) {
     failure_ = Failure::kHeadTooLarge;

@@ -81,6 +81,8 @@ class Connection : public httplib::Stream {
   bool wait_to_write(Pace& pace, std::size_t to_peer) const;
   /// Bytes written of which the peer has not said that they came.
   std::size_t on_their_way() const;
+  /// cpp-httplib refuses the trailers of a chunked body (RFC 9112 7.1.2), and nobody here asks for them.
+  bool skip_trailers();
 
   const int socket_;
   const ConnectionLimits limits_;
@@ -89,7 +91,7 @@ class Connection : public httplib::Stream {
   std::size_t end_ = 0;
   bool at_end_ = false;
   bool in_head_ = true;
-  std::size_t head_bytes_ = 0;
+  std::size_t head_bytes_ = 0;        ///< with the trailers
   std::optional<ChunkCheck> chunks_;  ///< of a chunked body
   Pace pace_;                         ///< of the head or body that is being read
   std::size_t received_ = 0;          ///< of it

@@ -15,6 +15,7 @@
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "server/http/errors.hpp"
+#include "server/http/gunzip.hpp"
 
 namespace roadfix::http {
 namespace {
@@ -96,10 +97,9 @@ void take_over(httplib::Request& head, Exchange& exchange) {
   const bool gzip = accepts_gzip(head.get_header_value("Accept-Encoding"));
   head.headers.erase("Accept-Encoding");
   if (gzip) head.headers.emplace("Accept-Encoding", "gzip");
-  // The library unpacks what is called so in small letters only, and passes on anything else as it came.
-  if (const auto coding = head.headers.find("Content-Encoding");
-      coding != head.headers.end() && is_gzip(coding->second))
-    coding->second = "gzip";
+  exchange.packed =
+      is_gzip(head.get_header_value("Content-Encoding")) && head.get_header_value_count("Content-Encoding") == 1;
+  if (exchange.packed) head.headers.erase("Content-Encoding");
   exchange.asked_to_close = asks_to_close(head);
   // The library does not notice all that ask for it, and says that it keeps some that it closes.
   if (exchange.asked_to_close || (head.version == "HTTP/1.0" && head.get_header_value("Connection") != "Keep-Alive")) {
@@ -144,8 +144,8 @@ bool announces_body(const Request& request) {
 }
 
 void check_body_headers(const Request& request, std::size_t max_bytes) {
-  const std::string encoding = lower_case(request.header("content-encoding"));
-  if (!encoding.empty() && encoding != "identity" && encoding != "gzip") {
+  const std::string encoding = lower_case(request.header("content-encoding"));  // not gzip: see take_over()
+  if (!encoding.empty() && encoding != "identity") {
     throw InvalidField(
         "unsupported-content-encoding", "Content-Encoding",
         fmt::format("Content-Encoding '{}' is not supported; send the body with gzip or unencoded", encoding));
@@ -172,14 +172,19 @@ void read_body(Exchange& exchange, const httplib::ContentReader& reader, const B
   std::string& body = exchange.request.body;
   bool too_large = false;
   bool no_room = false;
-  const bool whole = reader([&](const char* data, std::size_t size) {
+  const auto take = [&](const char* data, std::size_t size) {
     too_large = body.size() + size > limits.bytes;
     no_room = !too_large && !exchange.body_memory.take(*limits.memory, size);
     if (too_large || no_room) return false;
     body.append(data, size);
     return true;
+  };
+  std::optional<Gunzip> gunzip;
+  if (exchange.packed) gunzip.emplace();
+  const bool whole = reader([&](const char* data, std::size_t size) {
+    return gunzip ? gunzip->unpack({data, size}, take) : take(data, size);
   });
-  if (whole) return;
+  if (whole && (!gunzip || gunzip->is_whole())) return;
   if (too_large) throw body_too_large(limits.bytes);
   if (no_room) throw Busy("the bodies of other requests take all memory that is for them; try again", 1s);
   switch (exchange.connection->failure()) {
@@ -195,7 +200,7 @@ void read_body(Exchange& exchange, const httplib::ContentReader& reader, const B
       throw InvalidInput("body-cut-off",
                          fmt::format("the body ended after {} bytes, before its announced end", body.size()));
     default:
-      throw InvalidInput("bad-body-encoding", "the body's chunks or its gzip stream are damaged");
+      throw InvalidInput("bad-body-encoding", "the body's chunks or its gzip stream are damaged or cut off");
   }
 }
 

@@ -27,6 +27,7 @@ struct Exchange {
   Target target;
   RouteMatch match;
   std::string content_type;
+  bool packed = false;  ///< the body, by gzip
   std::string problem;  ///< code of the error that is answered
   Clock::time_point started = Clock::now();
   bool head_read = false;
@@ -36,7 +37,8 @@ struct Exchange {
 };
 
 /// Called with the head of the request before cpp-httplib acts on it. Takes from it what it would act on in a way we
-/// do not want: multipart parsing without limits, byte ranges of generated answers, slow Brotli.
+/// do not want: multipart parsing without limits, byte ranges of generated answers, slow Brotli, gzip up to anywhere
+/// in the stream.
 void take_over(httplib::Request& head, Exchange& exchange);
 
 /// Method, headers, id and client; not yet target, body and route.

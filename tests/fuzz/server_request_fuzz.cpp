@@ -1,5 +1,5 @@
 // Requests to the service: the target of the request line, and bodies of POST .../fix and .../match.
-// The first byte chooses: 't' target, 'j' JSON, 'm' form with the boundary "b", 'p' PNG, 'a' Accept.
+// The first byte chooses: 't' target, 'j' JSON, 'm' form with the boundary "b", 'p' PNG, 'a' Accept, 'z' gzip.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "server/api/flight_request.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
+#include "server/http/gunzip.hpp"
 #include "server/http/url.hpp"
 
 namespace {
@@ -70,6 +71,13 @@ void read_body(const std::string& type, std::string_view body, const http::Param
   api::features_of(content, {NoRoads(), 2.0}, limits);
 }
 
+void read_packed(std::string_view stream) {
+  constexpr std::size_t kMost = 100'000;
+  http::Gunzip gunzip;
+  std::size_t unpacked = 0;
+  gunzip.unpack(stream, [&](const char*, std::size_t size) { return (unpacked += size) < kMost; });
+}
+
 void read_request(char kind, std::string_view text) {
   constexpr std::array<api::Media, 2> kOffered{{{"png", "image/png"}, {"json", "application/json"}}};
   switch (kind) {
@@ -84,6 +92,8 @@ void read_request(char kind, std::string_view text) {
     case 'a':
       api::negotiated(text, kOffered);
       return;
+    case 'z':
+      return read_packed(text);
     default:
       return;
   }

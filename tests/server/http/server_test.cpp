@@ -179,16 +179,6 @@ TEST_F(HttpServer, TellsCachesOfEveryAnswerThatItMayPack) {
   }
 }
 
-TEST_F(HttpServer, UnpacksGzipInAnyCaseAndUnderItsOldName) {
-  const auto server = started();
-  // gzip of "abc"
-  const std::string packed("\x1f\x8b\x08\0\0\0\0\0\x02\xff\x4b\x4c\x4a\x06\0\xc2\x41\x24\x35\x03\0\0\0", 23);
-  for (const char* coding : {"gzip", "GZIP", "x-gzip", "X-Gzip"}) {
-    EXPECT_EQ(client().Post("/length", httplib::Headers{{"Content-Encoding", coding}}, packed, "text/plain")->body, "3")
-        << coding;
-  }
-}
-
 TEST_F(HttpServer, RefusesHeaderNamesThatOthersReadDifferently) {
   const auto server = started();
   EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nTransfer-Encoding : chunked\r\n\r\nx"),

@@ -54,6 +54,7 @@ class Server::Impl : public httplib::Server {
   Response failed(const Exchange& exchange, std::exception_ptr thrown) const;
   void complete_headers(Exchange& exchange, Response& response) const;
   void reply(Exchange& exchange, httplib::Response& out, Response response) const;
+  std::exception_ptr refusal_of_head(const Exchange& exchange, int status) const;
   HandlerResponse complete_error(httplib::Response& out);
   void finished(const httplib::Request& head, const httplib::Response& out);
 

@@ -31,6 +31,11 @@ bool is_packed_on_request(const std::string& content_type) {
          (content_type.starts_with("text/") && content_type != "text/event-stream");
 }
 
+/// cpp-httplib reads the header before it asks anyone.
+InvalidInput bad_range() {
+  return {"bad-header", "the Range header is not one of bytes=FIRST-LAST: leave it out, since answers come whole"};
+}
+
 LimitExceeded url_too_long(std::size_t limit) {
   return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
 }
@@ -205,16 +210,25 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
   fill(out, std::move(response));
 }
 
+/// `status` is what cpp-httplib would answer.
+std::exception_ptr Server::Impl::refusal_of_head(const Exchange& exchange, int status) const {
+  switch (status) {
+    case 414:
+      return std::make_exception_ptr(url_too_long(settings_.target_bytes));
+    case 416:
+      return std::make_exception_ptr(bad_range());
+    default:
+      return failure_of_head(exchange, settings_.head_bytes);
+  }
+}
+
 /// What cpp-httplib answers by itself (a broken request line or header) gets the body that all errors have.
 HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
   Exchange& exchange = *t_exchange;
   identify(exchange);
   exchange.must_close = true;
-  const bool long_line = out.status == 414;
-  const auto thrown = long_line ? std::make_exception_ptr(url_too_long(settings_.target_bytes))
-                                : failure_of_head(exchange, settings_.head_bytes);
-  reply(exchange, out, failed(exchange, thrown));
+  reply(exchange, out, failed(exchange, refusal_of_head(exchange, out.status)));
   return HandlerResponse::Handled;
 }
 

@@ -179,6 +179,17 @@ TEST_F(HttpServer, TellsCachesOfEveryAnswerThatItMayPack) {
   }
 }
 
+TEST_F(HttpServer, SendsAnswersWholeAndSaysThatARangeCannotBeRead) {
+  const auto server = started();
+  const auto with_range = [&](const std::string& range) {
+    return raw("GET /echo?text=abc HTTP/1.1\r\nHost: x\r\nConnection: close\r\nRange: " + range + "\r\n\r\n");
+  };
+  EXPECT_THAT(with_range("bytes=0-1"), ::testing::EndsWith("\r\n\r\nabc"));
+  for (const char* range : {"bytes=abc", "items=0-1"}) {
+    EXPECT_THAT(with_range(range), ::testing::EndsWith("\r\n\r\nbad-header")) << range;
+  }
+}
+
 TEST_F(HttpServer, RefusesHeaderNamesThatOthersReadDifferently) {
   const auto server = started();
   EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\nTransfer-Encoding : chunked\r\n\r\nx"),

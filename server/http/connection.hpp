@@ -41,6 +41,8 @@ class Connection : public httplib::Stream {
   /// Whether the peer has closed its side or the connection broke. Half closed looks no different from here.
   bool peer_has_left() const;
 
+  const ConnectionLimits& limits() const { return limits_; }
+
   void begin_head();
   void begin_body(bool chunked);
   Failure failure() const { return failure_; }

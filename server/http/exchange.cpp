@@ -195,7 +195,9 @@ void read_body(Exchange& exchange, const httplib::ContentReader& reader, const B
                                     body.size(), std::chrono::duration<double>(limits.time).count()));
     case Connection::Failure::kLetGo:
       throw Interrupted("request-timeout",
-                        "the body came slower than 4 KiB/s while other clients waited: send it again, or send less");
+                        fmt::format("the body came slower than {} KiB/s while other clients waited: send it again, or "
+                                    "send less",
+                                    exchange.connection->limits().bytes_per_s >> 10));
     case Connection::Failure::kCutOff:
       throw InvalidInput("body-cut-off",
                          fmt::format("the body ended after {} bytes, before its announced end", body.size()));

@@ -53,6 +53,8 @@ struct Application::Parts {
     metrics.gauge("roadfix_maps", "Maps being served.", [this] { return static_cast<double>(maps.maps().size()); });
     metrics.gauge("roadfix_maps_unreadable", "Map files that cannot be served.",
                   [this] { return static_cast<double>(maps.unreadable().size()); });
+    metrics.gauge("roadfix_maps_folder_readable", "1 where the last look at the map folder saw its files, else 0.",
+                  [this] { return maps.problem() ? 0.0 : 1.0; });
     metrics.gauge("roadfix_map_cache_bytes", "Decoded tiles in memory.",
                   [this] { return static_cast<double>(maps.cached_bytes()); });
     metrics.gauge("roadfix_search_cache_bytes", "What searches built of maps, kept for the next ones.",

@@ -14,7 +14,8 @@ http::Response health(const Service& /*unused*/, const http::Request& /*unused*/
 http::Response ready(const Service& service, const http::Request& /*unused*/) {
   const auto maps = service.maps.maps().size();
   json answer{{"status", "ready"}, {"maps", maps}, {"unreadable_maps", service.maps.unreadable().size()}};
-  // Maps are served without it, so that it is no reason to send requests elsewhere.
+  // Maps are served all the same, so that neither is a reason to send requests elsewhere.
+  if (const auto problem = service.maps.problem()) answer["maps_problem"] = *problem;
   const auto problem = service.tracks.problem();
   answer["tracks"] = problem ? "unavailable" : "ready";
   if (problem) answer["tracks_problem"] = *problem;

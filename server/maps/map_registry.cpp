@@ -81,17 +81,16 @@ MapRegistry::~MapRegistry() { stop(); }
 
 void MapRegistry::watch(std::chrono::milliseconds interval) {
   watcher_ = std::jthread([this, interval](std::stop_token stop) {
-    std::string problem;
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+      const std::optional<std::string> before = problem_;
       lock.unlock();
-      const std::string before = std::exchange(problem, {});
       try {
         refresh();
-        if (!before.empty()) spdlog::info("the maps folder {} can be read again", folder_.string());
+        if (before) spdlog::info("the maps folder {} can be read again", folder_.string());
       } catch (const std::exception& error) {
-        problem = error.what();
-        if (problem != before) spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), problem);
+        if (error.what() != before)
+          spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), error.what());
       }
       lock.lock();
     }
@@ -169,6 +168,18 @@ void MapRegistry::forget_missing(const std::map<std::string, fs::path>& present)
 
 void MapRegistry::refresh() {
   const std::lock_guard one_at_a_time(refresh_mutex_);
+  try {
+    look();
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    problem_ = error.what();
+    throw;
+  }
+  const std::lock_guard lock(mutex_);
+  problem_.reset();
+}
+
+void MapRegistry::look() {
   const auto files = map_files(folder_);
   for (const auto& [name, path] : files) {
     const Stamp stamp = stamp_of(path);
@@ -186,6 +197,11 @@ void MapRegistry::refresh() {
     entries_[name] = std::move(current);
   }
   forget_missing(files);
+}
+
+std::optional<std::string> MapRegistry::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
 }
 
 std::vector<std::shared_ptr<const ServedMap>> MapRegistry::maps() const {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,12 +46,15 @@ class MapRegistry {
   MapRegistry(const MapRegistry&) = delete;
   MapRegistry& operator=(const MapRegistry&) = delete;
 
-  /// Looks at the folder now. A map that a writer keeps locked stays as it was until the next look.
+  /// Looks at the folder now. A map that a writer keeps locked stays as it was until the next look. Throws IoFailure
+  /// ("maps-folder-unreadable"); all maps stay as they were then.
   void refresh();
   /// Refreshes in a thread of its own, again and again.
   void watch(std::chrono::milliseconds interval);
   void stop();
 
+  /// Why the last look at the folder failed; nullopt where it did not.
+  std::optional<std::string> problem() const;
   std::vector<std::shared_ptr<const ServedMap>> maps() const;
   std::vector<UnreadableMap> unreadable() const;
   /// The name is the file's without .gpkg. Throws NotFound ("map-not-found"), IoFailure ("map-unreadable") with the
@@ -78,6 +82,7 @@ class MapRegistry {
   static Stamp stamp_of(const std::filesystem::path& path);
   Entry seen(const Entry& known, const std::filesystem::path& path, const Stamp& stamp) const;
   Entry opened(const std::filesystem::path& path, const Stamp& stamp) const;
+  void look();
   bool is_current(const Entry& entry, const std::filesystem::path& path, const Stamp& stamp) const;
   void forget_missing(const std::map<std::string, std::filesystem::path>& present);
 
@@ -88,6 +93,7 @@ class MapRegistry {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::map<std::string, Entry> entries_;
+  std::optional<std::string> problem_;
   std::jthread watcher_;
 };
 

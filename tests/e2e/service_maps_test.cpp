@@ -55,6 +55,25 @@ TEST(ServiceMaps, NoticesMapsThatAppearChangeBreakAndLeave) {
   EXPECT_TRUE(eventually([&] { return status() == "none"; }));
 }
 
+TEST(ServiceMaps, SaysThatTheirFolderIsGoneAndServesWhatItHas) {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "maps");
+  testing::write_map_file(folder / "maps" / "town.gpkg", testing::Town().roads, 2.0);
+  const testing::ServiceProcess service(folder / "maps");
+  httplib::Client client = testing::client_of(service);
+  const auto problem = [&] { return testing::json_of(client.Get("/readyz")).value("maps_problem", ""); };
+  EXPECT_EQ(problem(), "");
+  EXPECT_THAT(client.Get("/metrics")->body, HasSubstr("roadfix_maps_folder_readable 1\n"));
+
+  std::filesystem::rename(folder / "maps", folder / "away");
+  EXPECT_TRUE(eventually([&] { return !problem().empty(); }));
+  EXPECT_THAT(client.Get("/metrics")->body, HasSubstr("roadfix_maps_folder_readable 0\n"));
+  EXPECT_EQ(client.Get("/v1/maps/town")->status, 200);
+
+  std::filesystem::rename(folder / "away", folder / "maps");
+  EXPECT_TRUE(eventually([&] { return problem().empty(); }));
+}
+
 TEST(ServiceMaps, AMapWithoutLatitudeAndLongitudeHidesNoOther) {
   const testing::TemporaryFolder folder;
   const testing::Town town;

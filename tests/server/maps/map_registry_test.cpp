@@ -1,5 +1,6 @@
 #include "server/maps/map_registry.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
@@ -236,6 +237,21 @@ TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
   spdlog::set_default_logger(usual);
   EXPECT_EQ(said("cannot be read"), 1) << "a folder that stays away for a night is no night of messages";
   EXPECT_EQ(said("can be read again"), 1);
+}
+
+TEST(MapRegistry, SaysWhyItsFolderCannotBeReadAndServesWhatItHas) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "maps");
+  make_map(folder / "maps" / "city.gpkg", 1);
+  MapRegistry registry(folder / "maps", kCache);
+  EXPECT_FALSE(registry.problem());
+  fs::rename(folder / "maps", folder / "away");
+  EXPECT_EQ(code_of([&] { registry.refresh(); }), "maps-folder-unreadable");
+  EXPECT_THAT(registry.problem(), ::testing::Optional(::testing::HasSubstr((folder / "maps").string())));
+  EXPECT_EQ(registry.maps().size(), 1U);
+  fs::rename(folder / "away", folder / "maps");
+  registry.refresh();
+  EXPECT_FALSE(registry.problem());
 }
 
 TEST(MapRegistry, SaysOfAFolderThatItMayNotReadThatItMayNot) {

@@ -9,6 +9,7 @@
 #include <exception>
 #include <mutex>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -20,6 +21,7 @@ namespace roadfix::server {
 namespace {
 
 constexpr std::int64_t kPageBytes = 4096;
+constexpr int kMiB = 1 << 20;
 constexpr int kEndedKept = 100;
 constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
 constexpr int kVersion = 4;              // of what a state holds, too
@@ -38,16 +40,25 @@ void require_writable_folder(const std::filesystem::path& path) {
   if (errno == EACCES || errno == EROFS) throw not_writable(path);
 }
 
-/// What a refusal of SQLite means for this store.
-std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail) {
+/// SQLite does not tell a full disk from its own limit: whoever reads this can.
+IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes) {
+  std::error_code unknown;
+  const std::uintmax_t free_bytes = std::filesystem::space(path, unknown).available;
+  return {"track-store-full",
+          fmt::format("{}: no space left for the tracks (serve --tracks-size allows {} MiB, and its disk has {} MiB "
+                      "free): nothing was changed; end tracks or make room, then send the request again",
+                      path.string(), max_bytes / kMiB, unknown ? 0 : free_bytes / kMiB)};
+}
+
+/// What a refusal of SQLite means for this store, which may have `max_bytes`.
+std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail,
+                               std::int64_t max_bytes) {
   using sqlite::Failure;
   using std::make_exception_ptr;
   const std::string file = path.string();
   switch (failure) {
     case Failure::kFull:
-      return make_exception_ptr(IoFailure(
-          "track-store-full",
-          fmt::format("{}: no space left for the tracks: nothing was changed; send the request again later", file)));
+      return make_exception_ptr(full(path, max_bytes));
     case Failure::kNotWritable:
     case Failure::kMoved:
       return make_exception_ptr(not_writable(path));
@@ -104,7 +115,10 @@ class TrackStore::Impl {
   Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
     const std::int64_t version = with([&] {
       require_writable_folder(path_);
-      connection_.emplace(path_, sqlite::Access::kCreate, store_error);
+      connection_.emplace(path_, sqlite::Access::kCreate,
+                          [max_bytes](const auto& file, sqlite::Failure failure, const std::string& detail) {
+                            return store_error(file, failure, detail, max_bytes);
+                          });
       // Who holds the file holds it as long as it runs, and others ask in the meantime.
       connection_->execute("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE");
       return sqlite::number(*connection_, "PRAGMA user_version");
@@ -152,8 +166,8 @@ class TrackStore::Impl {
     }
   }
   sqlite::Connection& connection() { return *connection_; }
-  /// Of work that runs: it wrote, so that what failed before is over.
-  void has_written() { problem_.reset(); }
+  /// Of work that runs: what failed before is over. A track that begins is too small to show that.
+  void has_room() { problem_.reset(); }
   std::optional<std::string> problem() const {
     const std::lock_guard lock(mutex_);
     const auto missing = missing_file();
@@ -188,7 +202,6 @@ void TrackStore::add(const StoredTrack& t) {
                       fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
         .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
         .run();
-    impl_->has_written();
   });
 }
 
@@ -234,7 +247,7 @@ bool TrackStore::add_step(const std::string& id, std::int64_t now_us, std::span<
         .with(id, step.sequence, step.digest, step.answer)
         .run();
     transaction.commit();
-    impl_->has_written();
+    impl_->has_room();
     return true;
   });
 }
@@ -289,7 +302,7 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
         .with(kEndedKept)
         .run();
     transaction.commit();
-    impl_->has_written();
+    impl_->has_room();
     return last;
   });
 }

@@ -46,8 +46,8 @@ class TrackStore {
   TrackStore(const TrackStore&) = delete;
   TrackStore& operator=(const TrackStore&) = delete;
 
-  /// What failed since a track or a step was last written, or that the file was deleted since it was opened; nullopt
-  /// where nothing did.
+  /// What failed since a step was last stored or a track ended, or that the file was deleted since it was opened;
+  /// nullopt where nothing did.
   std::optional<std::string> problem() const;
 
   void add(const StoredTrack& track);

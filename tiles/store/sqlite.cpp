@@ -61,7 +61,7 @@ void Connection::Close::operator()(sqlite3* handle) const { sqlite3_close(handle
 
 Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf error_of,
                        std::chrono::milliseconds patience)
-    : path_(path), error_of_(error_of) {
+    : path_(path), error_of_(std::move(error_of)) {
   const int mode = access == Access::kRead        ? SQLITE_OPEN_READONLY
                    : access == Access::kReadWrite ? SQLITE_OPEN_READWRITE
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

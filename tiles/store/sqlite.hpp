@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,7 +37,8 @@ enum class Failure {
 };
 
 /// The error of core/units/error.hpp to throw for a failure of one kind of file; `detail` is SQLite's message.
-using ErrorOf = std::exception_ptr (*)(const std::filesystem::path& file, Failure failure, const std::string& detail);
+using ErrorOf =
+    std::function<std::exception_ptr(const std::filesystem::path& file, Failure failure, const std::string& detail)>;
 
 class Connection {
  public:

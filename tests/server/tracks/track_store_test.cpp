@@ -120,6 +120,17 @@ TEST(TrackStore, IsAsBeforeWhenItIsFullAndGoesOnWhenThereIsRoom) {
   EXPECT_EQ(store.last_step("a")->answer, "second");
 }
 
+TEST(TrackStore, StaysFullThoughATrackBeginsAndSaysWhoseLimitItMayBe) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", 1 << 20);
+  store.add(track("a"));
+  EXPECT_EQ(code_of([&] { (void)store.add_step("a", 5, state(2 << 20), {0, 0, "first"}); }), "track-store-full");
+  store.add(track("b"));
+  EXPECT_THAT(store.problem(), ::testing::Optional(HasSubstr("--tracks-size allows 1 MiB")));
+  store.end("b", TrackEnd::kFinished);
+  EXPECT_FALSE(store.problem());
+}
+
 TEST(TrackStore, IsHeldByOneServiceAtATime) {
   const testing::TemporaryFolder folder;
   auto first = std::make_unique<TrackStore>(folder / "tracks.sqlite", kPlenty);

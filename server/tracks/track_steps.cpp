@@ -10,6 +10,7 @@
 #include "server/api/json_body.hpp"
 #include "server/api/track_json.hpp"
 #include "server/http/errors.hpp"
+#include "server/http/metrics.hpp"
 
 namespace roadfix::server {
 
@@ -28,17 +29,14 @@ std::optional<StepAnswer> TrackSteps::answered(const std::string& id, std::int64
 void TrackSteps::await_predecessor(const std::string& id, std::int64_t sequence) {
   const std::shared_ptr<LiveTrack> track = tracks_.in_memory(id);
   if (!track) return;
-  std::unique_lock lock(mutex_);
   // Each holds a connection's thread, and a step before it may take as long as a search.
-  if (waiting_ >= tracks_.limits().steps_waiting) {
-    throw http::Busy(fmt::format("{} steps of tracks wait for those before them already; try again", waiting_),
+  const int most = tracks_.limits().steps_waiting;
+  const http::Counted waits(waiting_);
+  if (waiting_ > most) {
+    throw http::Busy(fmt::format("{} steps of tracks wait for those before them already; try again", most),
                      std::chrono::seconds(1));
   }
-  ++waiting_;
-  lock.unlock();
   track->await_predecessor(sequence, tracks_.limits().order_wait);
-  lock.lock();
-  --waiting_;
 }
 
 StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::int64_t digest,

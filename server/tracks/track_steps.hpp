@@ -2,8 +2,8 @@
 // side by side.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -37,8 +37,7 @@ class TrackSteps {
 
  private:
   TrackRegistry& tracks_;
-  std::mutex mutex_;
-  int waiting_ = 0;  ///< steps of all tracks, for those before them
+  std::atomic<int> waiting_ = 0;  ///< steps of all tracks, for those before them
 };
 
 }  // namespace roadfix::server

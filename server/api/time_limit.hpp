@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <utility>
 
 #include "server/http/message.hpp"
 
@@ -22,6 +23,16 @@ class TimeLimit {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::jthread timer_;  ///< last: ends before what it uses
+};
+
+/// The same without a deadline, for work that looks at the clock itself.
+class HangUp {
+ public:
+  explicit HangUp(std::function<bool()> abandoned) : watch_(http::Clock::time_point::max(), std::move(abandoned)) {}
+  std::stop_token token() const { return watch_.token(); }
+
+ private:
+  TimeLimit watch_;
 };
 
 }  // namespace roadfix::api

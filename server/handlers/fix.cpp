@@ -28,6 +28,12 @@ api::PositionTime time_of(const http::Request& request, std::optional<std::int64
   return {std::chrono::duration_cast<std::chrono::microseconds>(now - spent).count(), spent};
 }
 
+api::Features features_of(const Service& service, const http::Request& request, const api::Content& content,
+                          double cell_m) {
+  const api::TimeLimit limit(request.deadline, request.abandoned);
+  return api::flight_features_of(content, {service.detector, cell_m, limit.token()}, service.limits);
+}
+
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Content content =
@@ -36,14 +42,12 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
-  const api::TimeLimit limit(request.deadline, request.abandoned);
-  const api::Features features =
-      api::flight_features_of(content, {service.detector, map->view.cell_m, limit.token()}, service.limits);
+  const api::Features features = features_of(service, request, content, map->view.cell_m);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
   api::shorten(options, request.deadline);
-  const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
-  options.stop = watch.token();
+  const api::HangUp hang_up(request.abandoned);
+  options.stop = hang_up.token();
   const SearchThreads::Share share(service.search_threads);
   options.threads = share.threads();
   auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);

@@ -48,8 +48,8 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.fix = fix_options(service, request);
   const SearchThreads::Share share(service.search_threads);
   query.fix.threads = share.threads();
-  const api::TimeLimit watch(http::Clock::time_point::max(), request.abandoned);
-  query.fix.stop = watch.token();
+  const api::HangUp hang_up(request.abandoned);
+  query.fix.stop = hang_up.token();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = {{"name", map->name}, {"version", map->view.version}};
   return json_response(answer);

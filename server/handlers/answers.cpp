@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <system_error>
 
 #include "core/units/json_text.hpp"
 
@@ -21,8 +22,17 @@ std::string base_url(const http::Request& request) {
   return (request.header("x-forwarded-proto") == "https" ? "https://" : "http://") + host;
 }
 
+std::string build_of(const std::filesystem::path& program) {
+  std::error_code unseen;
+  const auto bytes = std::filesystem::file_size(program, unseen);
+  if (unseen) return {};
+  const auto written = std::filesystem::last_write_time(program, unseen);
+  return fmt::format("{} {}", bytes, written.time_since_epoch().count());
+}
+
 std::string entity_tag(const std::string& version, const std::string& variation) {
-  return fmt::format("\"{:016x}\"", std::hash<std::string>{}(version + '\n' + variation));
+  static const std::string kBuild = build_of("/proc/self/exe");
+  return fmt::format("\"{:016x}\"", std::hash<std::string>{}(kBuild + '\n' + version + '\n' + variation));
 }
 
 bool is_known_to_client(const http::Request& request, const std::string& tag) {

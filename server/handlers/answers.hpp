@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -17,7 +18,10 @@ http::Response json_response(const nlohmann::json& body);
 /// "http://host:port" as the client wrote it, for links in answers.
 std::string base_url(const http::Request& request);
 
-/// A quoted entity tag for what is made from a version of a map and the request's own variation.
+/// Tells one build of a program from another by size and time of its file; empty where that cannot be read.
+std::string build_of(const std::filesystem::path& program);
+
+/// A quoted entity tag for what this build makes from a version of a map and the request's own variation.
 std::string entity_tag(const std::string& version, const std::string& variation);
 /// Whether If-None-Match names the tag (RFC 9110 13.1.2).
 bool is_known_to_client(const http::Request& request, const std::string& tag);

@@ -105,6 +105,7 @@ nlohmann::json json_of(const DetectOptions& options, const FeatureMap& map, cons
           {"rows", map.cells.rows()},
           {"nadir_cell", {map.nadir.col, map.nadir.row}},
           {"nadir_sigma_m", map.nadir_sigma_m},
+          {"nadir_heading_sigma_deg", map.nadir_heading_sigma.degrees()},
           {"observed_cells", map.cells.observed_count()},
           {"mean_probability", mean_probability(map.cells)},
           {"detector", detector},
@@ -118,7 +119,9 @@ std::string text_of(const DetectOptions& options, const FeatureMap& map, const s
       "UAV above column {:.1f}, row {:.1f}{}\n{}",
       options.target, map.cells.cols(), map.cells.rows(), options.cell_m, map.cells.observed_count(),
       mean_probability(map.cells), time.count(), map.nadir.col, map.nadir.row,
-      map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis)", map.nadir_sigma_m) : "",
+      map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis) and {:.1f} degrees",
+                                            map.nadir_sigma_m, map.nadir_heading_sigma.degrees())
+                              : "",
       detector);
 }
 

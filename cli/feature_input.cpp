@@ -56,6 +56,7 @@ api::Features features_in(const std::string& path, const FeatureInputOptions& op
     features.map = feature_map_in(path, told);
   }
   if (options.nadir_sigma_m) features.map.nadir_sigma_m = *options.nadir_sigma_m;
+  if (const auto told = options.nadir_heading_sigma_deg) features.map.nadir_heading_sigma = Angle::degrees(*told);
   return features;
 }
 

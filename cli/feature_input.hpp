@@ -18,6 +18,7 @@ struct FeatureInputOptions {
   std::optional<double> cell_m;         ///< of feature maps that do not tell it themselves
   std::vector<double> nadir;            ///< of feature maps, where told: column and row
   std::optional<double> nadir_sigma_m;  ///< of each, where told: in place of what it says
+  std::optional<double> nadir_heading_sigma_deg;
   FrameOptions frame;
   std::uint64_t seed = 1;
   DetectorChoice detector;

@@ -153,6 +153,12 @@ void add_fix_command(CLI::App& app) {
           "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
           "otherwise 0)")
       ->check(not_negative(1000.0));
+  command
+      ->add_option("--nadir-heading-sigma", o->input.nadir_heading_sigma_deg,
+                   "How far what the input shows may be turned about that point, 1 sigma in degrees (default with "
+                   "--agl: 0.5, and what errors of roll and pitch do to the ground that a leaning camera sees; "
+                   "otherwise 0)")
+      ->check(not_negative(180.0));
   add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
   add_seconds_option(*command, "--proof", o->fix.proof_time,
                      "Search this many seconds for a better place than the best candidate")

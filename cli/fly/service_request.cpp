@@ -25,7 +25,8 @@ Picture picture_of(const FeatureMap& features) {
   return {{{"cell_m", features.cell_m},
            {"nadir_col", features.nadir.col},
            {"nadir_row", features.nadir.row},
-           {"nadir_sigma_m", features.nadir_sigma_m}},
+           {"nadir_sigma_m", features.nadir_sigma_m},
+           {"nadir_heading_sigma_deg", features.nadir_heading_sigma.degrees()}},
           {png.begin(), png.end()}};
 }
 

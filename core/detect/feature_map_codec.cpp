@@ -58,7 +58,8 @@ std::string text_of(const FeatureMap& map) {
                         {"rows", map.cells.rows()},
                         {"cell_m", map.cell_m},
                         {"nadir_cell", {map.nadir.col, map.nadir.row}},
-                        {"nadir_sigma_m", map.nadir_sigma_m}}
+                        {"nadir_sigma_m", map.nadir_sigma_m},
+                        {"nadir_heading_sigma_rad", map.nadir_heading_sigma.radians()}}
       .dump();
 }
 
@@ -74,8 +75,10 @@ bool is_sound(const FeatureMapScale& scale) {
   constexpr double kMaxCellM = 1000.0;
   constexpr double kMaxNadir = 1e6;
   constexpr double kMaxSigmaM = 1000.0;
+  constexpr Angle kMaxHeadingSigma = Angle::degrees(180.0);
   return scale.cell_m > 0.0 && scale.cell_m <= kMaxCellM && std::abs(scale.nadir.col) <= kMaxNadir &&
-         std::abs(scale.nadir.row) <= kMaxNadir && scale.nadir_sigma_m >= 0.0 && scale.nadir_sigma_m <= kMaxSigmaM;
+         std::abs(scale.nadir.row) <= kMaxNadir && scale.nadir_sigma_m >= 0.0 && scale.nadir_sigma_m <= kMaxSigmaM &&
+         scale.nadir_heading_sigma >= Angle() && scale.nadir_heading_sigma <= kMaxHeadingSigma;
 }
 
 FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
@@ -85,8 +88,10 @@ FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
     const auto json = nlohmann::json::parse(text);
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
     const auto& nadir = json.at("nadir_cell");
-    const FeatureMapScale scale{
-        number(json.at("cell_m")), {number(nadir.at(0)), number(nadir.at(1))}, number(json.at("nadir_sigma_m"))};
+    const FeatureMapScale scale{number(json.at("cell_m")),
+                                {number(nadir.at(0)), number(nadir.at(1))},
+                                number(json.at("nadir_sigma_m")),
+                                Angle::radians(number(json.at("nadir_heading_sigma_rad")))};
     if (json.at("cols") != cells.cols() || json.at("rows") != cells.rows() || !is_sound(scale)) refuse_altered(cells);
     return scale;
   } catch (const nlohmann::json::exception&) {
@@ -132,6 +137,7 @@ FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told) {
   map.cell_m = picture.scale->cell_m;
   map.nadir = picture.scale->nadir;
   map.nadir_sigma_m = picture.scale->nadir_sigma_m;
+  map.nadir_heading_sigma = picture.scale->nadir_heading_sigma;
   require_agreement(map, told);
   return map;
 }

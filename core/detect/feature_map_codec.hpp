@@ -15,6 +15,7 @@ struct FeatureMapScale {
   double cell_m = 1.0;
   GridGeometry::CellPosition nadir;
   double nadir_sigma_m = 0.0;
+  Angle nadir_heading_sigma{};
 };
 
 struct FeatureMapPicture {

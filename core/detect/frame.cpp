@@ -48,12 +48,13 @@ FeatureMap detect_features(const RoadDetector& detector, const GroundView& view,
   return {detector.detect(view.image, cell_m, seed, stop),
           cell_m,
           {view.nadir_px.x * cells_per_px, view.nadir_px.y * cells_per_px},
-          view.nadir_sigma_m};
+          view.nadir_sigma_m,
+          view.nadir_heading_sigma};
 }
 
 GroundView rectified(GroundImage image) {
   const cv::Point2d centre(image.pixels.cols / 2.0, image.pixels.rows / 2.0);
-  return {std::move(image), centre, 0.0};
+  return {std::move(image), centre};
 }
 
 }  // namespace roadfix

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/units/error.hpp"
 
@@ -26,6 +27,19 @@ void require_in_the_middle(cv::Point2d principal_px, cv::Size frame) {
 
 /// Cosine of the angle between the optical axis and straight down.
 double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2); }
+
+/// The same as far as errors are told of it.
+double steepness(const FrameCamera& camera) { return std::max(down(camera), cos(kFlattestView)); }
+
+/// From the nadir to the ground on the optical axis, in heights: the tangent of that angle.
+double lean(const FrameCamera& camera) {
+  const double steep = steepness(camera);
+  return std::sqrt(1.0 - steep * steep) / steep;
+}
+
+Angle attitude_sigma(const FrameCamera& camera) {
+  return camera.roll && camera.pitch ? kToldAttitudeSigma : kUntoldAttitudeSigma;
+}
 
 }  // namespace
 
@@ -91,12 +105,16 @@ double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
 }
 
 double nadir_sigma_m(const FrameCamera& camera) {
-  // The ground on the optical axis is agl tan(angle) from the nadir.
-  const double steepness = std::max(down(camera), cos(kFlattestView));
-  const double lean = std::sqrt(1.0 - steepness * steepness) / steepness;
-  const Angle sigma = camera.roll && camera.pitch ? kToldAttitudeSigma : kUntoldAttitudeSigma;
-  const double turned = sigma.radians() / (steepness * steepness);
-  return camera.agl_m * std::hypot(turned, kHeightSigma * lean);
+  const double steep = steepness(camera);
+  const double turned = attitude_sigma(camera).radians() / (steep * steep);
+  return camera.agl_m * std::hypot(turned, kHeightSigma * lean(camera));
+}
+
+Angle nadir_heading_sigma(const FrameCamera& camera) {
+  const double sigma = attitude_sigma(camera).radians();
+  // The lean is no better known than its error, which has two axes.
+  const double turned = sigma * std::hypot(lean(camera), std::numbers::sqrt2 * sigma) / std::numbers::sqrt2;
+  return Angle::radians(std::hypot(turned, kTurnOfScale * kHeightSigma));
 }
 
 }  // namespace roadfix

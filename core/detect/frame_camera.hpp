@@ -64,4 +64,15 @@ inline constexpr double kHeightSigma = 0.05;
 /// seen.
 double nadir_sigma_m(const FrameCamera& camera);
 
+/// A wrong height turns no road, but roads that do not all fit pull at the pose: by that share of the relative error,
+/// as measured with frames and with roads drawn at random.
+inline constexpr double kTurnOfScale = 1.0 / 6.0;
+/// How far errors of roll, pitch and height turn the pose at which the frame fits the ground, 1 sigma.
+///
+/// Errors a and b of roll and pitch, small, shear the ground that is seen. On the optical axis, at an angle t from
+/// straight down, that turns a road by an angle that depends on its direction: from 0 to a tan(t) for the error across
+/// the lean, and up to b tan(t) / 2 to either side for the one along it. Over all directions its mean square is
+/// sigma^2 tan^2(t) / 2.
+Angle nadir_heading_sigma(const FrameCamera& camera);
+
 }  // namespace roadfix

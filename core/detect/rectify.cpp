@@ -143,6 +143,7 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
   view.image = {cv::Mat(size, frame.type()), cv::Mat(size, CV_8UC1), gsd_m};
   view.nadir_px = {-box.x / gsd_m, -box.y / gsd_m};
   view.nadir_sigma_m = nadir_sigma_m(camera);
+  view.nadir_heading_sigma = nadir_heading_sigma(camera);
   for (int first = 0; first < size.height; first += kStripRows) {
     warp_rows(source, scale, placed, cv::Range(first, std::min(first + kStripRows, size.height)), view.image);
   }

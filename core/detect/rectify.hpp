@@ -12,6 +12,7 @@ struct GroundView {
   GroundImage image;
   cv::Point2d nadir_px;  ///< the point below the UAV in continuous pixels ((0, 0) = outer corner), may lie outside
   double nadir_sigma_m = 0.0;  ///< see FeatureMap
+  Angle nadir_heading_sigma{};
 };
 
 /// How finely the ground is shown, and how much of it.

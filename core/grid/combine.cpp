@@ -114,9 +114,11 @@ FeatureMap combined(std::span<const PlacedFeatures> parts, double max_cells) {
   const int cols = std::max(1, static_cast<int>(width));
   const int rows = std::max(1, static_cast<int>(height));
   const CellPosition nadir{-box.left, -box.front};
-  const auto least_sure =
-      std::ranges::max_element(parts, {}, [](const PlacedFeatures& part) { return part.features.nadir_sigma_m; });
-  FeatureMap result{CellArray(cols, rows), cell_m, nadir, least_sure->features.nadir_sigma_m};
+  FeatureMap result{CellArray(cols, rows), cell_m, nadir};
+  for (const PlacedFeatures& part : parts) {
+    result.nadir_sigma_m = std::max(result.nadir_sigma_m, part.features.nadir_sigma_m);
+    result.nadir_heading_sigma = std::max(result.nadir_heading_sigma, part.features.nadir_heading_sigma);
+  }
   LogOddsSums sums{std::vector<float>(result.cells.cells().size()),
                    std::vector<std::uint8_t>(result.cells.cells().size())};
   for (const PlacedFeatures& part : parts) add(part, nadir, cols, rows, sums);

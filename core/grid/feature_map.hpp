@@ -7,6 +7,7 @@
 
 #include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
+#include "core/units/angle.hpp"
 
 namespace roadfix {
 
@@ -18,10 +19,12 @@ struct FeatureMap {
   GridGeometry::CellPosition nadir;
   /// How well that point is known, as far as roll and pitch are: 1 sigma per axis.
   double nadir_sigma_m = 0.0;
+  /// How far what is seen may be turned about it, as far as roll, pitch and height are known: 1 sigma.
+  Angle nadir_heading_sigma{};
 
   static FeatureMap centred(CellArray cells, double cell_m) {
     const GridGeometry::CellPosition centre{cells.cols() / 2.0, cells.rows() / 2.0};
-    return {std::move(cells), cell_m, centre, 0.0};
+    return {std::move(cells), cell_m, centre};
   }
 
   /// The longer side.

@@ -95,14 +95,16 @@ CellArray halved(const CellArray& cells) {
 FeatureMap resampled(const FeatureMap& map, double cell_m, double scale) {
   assert(cell_m > 0.0 && scale > 0.0);
   const double step = cell_m / (scale * map.cell_m);
-  if (step == 1.0) return {map.cells, cell_m, map.nadir, map.nadir_sigma_m};
+  if (step == 1.0) return {map.cells, cell_m, map.nadir, map.nadir_sigma_m, map.nadir_heading_sigma};
   const int cols = std::max(1, static_cast<int>(std::lround(map.cells.cols() / step)));
   const int rows = std::max(1, static_cast<int>(std::lround(map.cells.rows() / step)));
   // The nadir keeps its place on the ground; it is the fixed point of the resampling.
   const CellPosition nadir{map.nadir.col / step, map.nadir.row / step};
-  if (covers_no_cell(map.cells, step)) return {CellArray(cols, rows), cell_m, nadir, map.nadir_sigma_m};
+  FeatureMap result{CellArray(cols, rows), cell_m, nadir, map.nadir_sigma_m, map.nadir_heading_sigma};
+  if (covers_no_cell(map.cells, step)) return result;
   const Placement placement{{0.0, 0.0}, {step, 0.0}, {0.0, step}};
-  return {sampled(map.cells, placement, cols, rows), cell_m, nadir, map.nadir_sigma_m};
+  result.cells = sampled(map.cells, placement, cols, rows);
+  return result;
 }
 
 FeatureMap rotated(const FeatureMap& map, Angle heading) { return FeatureRotator(map).rotated(heading); }

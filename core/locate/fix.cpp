@@ -31,7 +31,8 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
     result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], cells.nadir_sigma_m);
   }
   result.ellipse_heading = ellipse.heading;
-  result.heading_sigma = Angle::radians(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]));
+  result.heading_sigma = Angle::radians(std::hypot(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]),
+                                                   cells.nadir_heading_sigma.radians()));
   result.observed_cells = mode.observed_cells;
   return result;
 }

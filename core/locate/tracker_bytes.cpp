@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3230'5354'4652ULL;  // "RFTS02"
+constexpr std::uint64_t kMagic = 0x3330'5354'4652ULL;  // "RFTS03"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -43,7 +43,8 @@ void pass_members(auto& io, auto& state) {
 
 void pass_frame(auto& io, auto& frame) {
   auto& [features, offset] = frame.placed;
-  io(features.cells, features.cell_m, features.nadir.col, features.nadir.row, features.nadir_sigma_m);
+  io(features.cells, features.cell_m, features.nadir.col, features.nadir.row, features.nadir_sigma_m,
+     features.nadir_heading_sigma);
   io(offset.forward_m, offset.right_m, offset.turn, frame.position_m2, frame.turn_rad2);
 }
 
@@ -182,8 +183,8 @@ bool can_be(const RecentFrames& recent) {
   return std::ranges::all_of(recent.frames(), [&](const Frame& frame) {
     const FeatureMap& features = frame.placed.features;
     return features.cell_m > 0.0 && features.cell_m == recent.frames().front().placed.features.cell_m &&
-           features.nadir_sigma_m >= 0.0 && frame.position_m2 >= 0.0 && frame.turn_rad2 >= 0.0 &&
-           RecentFrames::may_keep(frame);
+           features.nadir_sigma_m >= 0.0 && features.nadir_heading_sigma >= Angle() && frame.position_m2 >= 0.0 &&
+           frame.turn_rad2 >= 0.0 && RecentFrames::may_keep(frame);
   });
 }
 

@@ -128,7 +128,7 @@ const std::vector<std::string>& frame_fields() {
 
 const std::vector<std::string>& feature_fields() {
   static const std::vector<std::string> kFields =
-      joined({{"kind", "nadir_col", "nadir_row", "nadir_sigma_m"}, frame_fields()});
+      joined({{"kind", "nadir_col", "nadir_row", "nadir_sigma_m", "nadir_heading_sigma_deg"}, frame_fields()});
   return kFields;
 }
 
@@ -158,6 +158,10 @@ std::optional<double> told_nadir_sigma_m(const Fields& fields) {
   return fields.optional_number("nadir_sigma_m", {0.0, 1000.0});
 }
 
+std::optional<Angle> told_nadir_heading_sigma(const Fields& fields) {
+  return fields.optional_angle("nadir_heading_sigma_deg", {0.0, 180.0});
+}
+
 Features features_of(const Content& content, const Detection& detection, const Limits& limits) {
   Features features;
   if (content.fields.word("kind", kKinds) == "frame") {
@@ -168,6 +172,7 @@ Features features_of(const Content& content, const Detection& detection, const L
     features.map = given_map(content, limits);
   }
   if (const auto told = told_nadir_sigma_m(content.fields)) features.map.nadir_sigma_m = *told;
+  if (const auto told = told_nadir_heading_sigma(content.fields)) features.map.nadir_heading_sigma = *told;
   return features;
 }
 

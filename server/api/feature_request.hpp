@@ -26,6 +26,8 @@ void require_nothing_seen(const Fields& fields);
 
 /// How well the nadir is known as the client says, 1 sigma per axis: it knows more than a camera's description tells.
 std::optional<double> told_nadir_sigma_m(const Fields& fields);
+/// Likewise how far what is seen may be turned about it.
+std::optional<Angle> told_nadir_heading_sigma(const Fields& fields);
 
 /// The feature map, detected if it is a frame. Cell size and seed of the detection are for frames that name none.
 Features features_of(const Content& content, const Detection& detection, const Limits& limits);

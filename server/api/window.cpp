@@ -143,6 +143,7 @@ json to_json(const FeatureMap& features) {
           {"nadir_col", features.nadir.col},
           {"nadir_row", features.nadir.row},
           {"nadir_sigma_m", features.nadir_sigma_m},
+          {"nadir_heading_sigma_deg", features.nadir_heading_sigma.degrees()},
           {"cells", base64_encoded(features.cells.cells())}};
 }
 

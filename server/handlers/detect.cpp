@@ -38,6 +38,8 @@ http::Response post_detect(const Service& service, const http::Request& request)
   response.headers.emplace_back("Roadfix-Cell-M", fmt::format("{}", features.map.cell_m));
   response.headers.emplace_back("Roadfix-Nadir", fmt::format("{},{}", col, row));
   response.headers.emplace_back("Roadfix-Nadir-Sigma-M", fmt::format("{}", features.map.nadir_sigma_m));
+  response.headers.emplace_back("Roadfix-Nadir-Heading-Sigma-Deg",
+                                fmt::format("{}", features.map.nadir_heading_sigma.degrees()));
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

@@ -187,14 +187,18 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
   const json& schemas = document_.at("components").at("schemas");
   const json prior{{"lat", 1},          {"lon", 2}, {"radius_m", 300}, {"heading_deg", 4}, {"heading_range_deg", 5},
                    {"scale_range", 0.1}};
-  json fix{{"confidence", 0.9}, {"max_modes", 1}, {"proof_s", 0}, {"time_limit_s", 1}, {"nadir_sigma_m", 3}};
+  json fix{{"confidence", 0.9}, {"max_modes", 1},     {"proof_s", 0},
+           {"time_limit_s", 1}, {"nadir_sigma_m", 3}, {"nadir_heading_sigma_deg", 1}};
   fix.update(prior);
   expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
     api::Fields fields;
-    fields.add(body, api::joined({api::prior_fields(), api::fix_option_fields(), {"nadir_sigma_m"}}));
+    fields.add(
+        body,
+        api::joined({api::prior_fields(), api::fix_option_fields(), {"nadir_sigma_m", "nadir_heading_sigma_deg"}}));
     api::parse_prior(fields);
     api::parse_fix_options(fields, limits_);
     api::told_nadir_sigma_m(fields);
+    api::told_nadir_heading_sigma(fields);
   });
   json track{{"map", "m"},
              {"particles", 1000},
@@ -213,13 +217,19 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     fields.add(body, api::track_members());
     api::parse_track(fields, limits_);
   });
-  const json step{{"sequence", 1}, {"time_us", 1},  {"forward_m", 0},
-                  {"right_m", 0},  {"turn_deg", 0}, {"nadir_sigma_m", 0}};
+  const json step{{"sequence", 1},
+                  {"time_us", 1},
+                  {"forward_m", 0},
+                  {"right_m", 0},
+                  {"turn_deg", 0},
+                  {"nadir_sigma_m", 0},
+                  {"nadir_heading_sigma_deg", 0}};
   expect_ranges(schemas.at("StepRequest"), step, [&](const json& body) {
     api::Fields fields;
-    fields.add(body, api::joined({api::step_fields(), {"nadir_sigma_m"}}));
+    fields.add(body, api::joined({api::step_fields(), {"nadir_sigma_m", "nadir_heading_sigma_deg"}}));
     api::parse_step(fields);
     api::told_nadir_sigma_m(fields);
+    api::told_nadir_heading_sigma(fields);
   });
   const std::vector<std::uint8_t> frame = encode_feature_map(CellArray(32, 32, 100));
   expect_ranges(schemas.at("DetectRequest"), {{"cell_m", 2}, {"seed", 1}}, [&](const json& body) {

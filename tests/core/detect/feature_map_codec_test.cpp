@@ -71,7 +71,7 @@ FeatureMap leaning() {
   CellArray cells(12, 9, kNoRoad);
   cells.at(3, 4) = kRoad;
   cells.at(0, 0) = kUnobserved;
-  return {cells, 1.7, {6.25, 20.125}, 4.5};
+  return {cells, 1.7, {6.25, 20.125}, 4.5, Angle::degrees(0.7)};
 }
 
 TEST(FeatureMapCodec, AFeatureMapComesBackWithItsCellSizeAndNadir) {
@@ -114,13 +114,17 @@ TEST(FeatureMapCodec, RefusesAFeatureMapThatWasCutOrScaledSinceItWasMade) {
 }
 
 TEST(FeatureMapCodec, RefusesAScaleThatCannotBe) {
-  const auto told = [](const std::string& cell_m, const std::string& nadir) {
-    return R"({"cols":4,"rows":4,"nadir_sigma_m":0,"cell_m":)" + cell_m + R"(,"nadir_cell":)" + nadir + "}";
+  const auto told = [](const std::string& cell_m, const std::string& nadir, const std::string& heading_sigma = "0") {
+    return R"({"cols":4,"rows":4,"nadir_sigma_m":0,"nadir_heading_sigma_rad":)" + heading_sigma + R"(,"cell_m":)" +
+           cell_m + R"(,"nadir_cell":)" + nadir + "}";
   };
   const CellArray cells(4, 4, kNoRoad);
   EXPECT_EQ(refused_with(told("2", "[2,2]"), cells), "no error");
   for (const char* cell_m : {"0", "-1", "1e9", "1e999", "\"2\"", "null"}) {
     EXPECT_EQ(refused_with(told(cell_m, "[2,2]"), cells), "feature-map-altered") << cell_m;
+  }
+  for (const char* heading_sigma : {"-1", "4", "null"}) {
+    EXPECT_EQ(refused_with(told("2", "[2,2]", heading_sigma), cells), "feature-map-altered") << heading_sigma;
   }
   for (const char* nadir : {"[2]", "2", "[1e9,0]", "[\"a\",0]"}) {
     EXPECT_EQ(refused_with(told("2", nadir), cells), "feature-map-altered") << nadir;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "core/units/error.hpp"
 #include "tests/core/detect/level_camera.hpp"
@@ -69,6 +71,92 @@ TEST(NadirSigma, IsThatOfARollAsOfAPitchAndFiniteAtTheHorizon) {
   EXPECT_NEAR(nadir_sigma_m(rolled), nadir_sigma_m(pitched), 1e-9);
   rolled.roll = Angle::degrees(90.0);
   EXPECT_TRUE(std::isfinite(nadir_sigma_m(rolled)));
+}
+
+/// A frame of a narrower lens, 300 m above a few straight roads that lie anyhow.
+class DrawnRoads {
+ public:
+  explicit DrawnRoads(unsigned seed) : random_(seed) {}
+
+  /// By how much the roads in a frame of `camera` have to be turned that were taken for those of one that is `told`, to
+  /// lie where they do in the sense of least squares across them.
+  double turn(const FrameCamera& camera, const FrameCamera& told) {
+    constexpr int kRoads = 5;
+    cv::Matx33d normal = cv::Matx33d::zeros();
+    cv::Vec3d right;
+    const cv::Matx33d camera_from_level = level_from_camera(camera).t();
+    const Lens lens = lens_of(camera, kFrame);
+    const cv::Point2d middle = *ground_at(camera, {320, 240});
+    for (int road = 0; road < kRoads; ++road) {
+      const cv::Point2d through = *ground_at(camera, {uniform(0, 640), uniform(0, 480)});
+      const double angle = uniform(0, M_PI);
+      const cv::Point2d along(std::cos(angle), std::sin(angle));
+      const cv::Point2d across(-along.y, along.x);
+      const bool ends_there = uniform(0, 3) < 1.0;
+      for (double at_m = ends_there ? 0.0 : -800.0; at_m < 800.0; at_m += 4.0) {
+        const cv::Point2d ground = through + at_m * along;
+        const cv::Vec3d seen = camera_from_level * cv::Vec3d(ground.x, ground.y, camera.agl_m);
+        if (seen[2] <= 0.0) continue;
+        const cv::Point2d ray(seen[0] / seen[2], seen[1] / seen[2]);
+        if (!cv::Rect2d({0, 0}, kFrame).contains(lens.pixels_of({ray})[0])) continue;
+        const cv::Point2d taken_for = *ground_of(told, ray);
+        const cv::Point2d arm = taken_for - middle;
+        const cv::Vec3d row(across.x, across.y, across.dot(cv::Point2d(-arm.y, arm.x)));
+        normal += row * row.t();
+        right += row * across.dot(ground - taken_for);
+      }
+    }
+    return normal.solve(right, cv::DECOMP_SVD)[2];
+  }
+
+  double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
+  double normal(double sigma) { return std::normal_distribution(0.0, sigma)(random_); }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Root of the mean square over cameras that lean by `lean` anywhere, and of which what is told is as wrong as assumed.
+double drawn_turn_rad(Angle lean, bool told_attitude) {
+  constexpr int kDraws = 500;
+  const double sigma = (told_attitude ? kToldAttitudeSigma : kUntoldAttitudeSigma).radians();
+  DrawnRoads roads(7);
+  double squares = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double to = roads.uniform(0, 2 * M_PI);
+    FrameCamera told;
+    told.focal_px = 560.0;
+    told.agl_m = 300.0;
+    told.roll = std::sin(to) * lean;
+    told.pitch = std::cos(to) * lean;
+    FrameCamera camera = told;
+    camera.roll = *told.roll + Angle::radians(roads.normal(sigma));
+    camera.pitch = *told.pitch + Angle::radians(roads.normal(sigma));
+    camera.agl_m *= 1.0 + roads.normal(kHeightSigma);
+    squares += std::pow(roads.turn(camera, told), 2.0);
+  }
+  return std::sqrt(squares / kDraws);
+}
+
+TEST(NadirHeadingSigma, IsHowFarErrorsOfAttitudeAndHeightTurnRoadsDrawnAtRandom) {
+  for (const double lean_deg : {0.0, 15.0, 25.0, 40.0}) {
+    FrameCamera camera = level_camera();
+    camera.roll = Angle();
+    camera.pitch = Angle::degrees(lean_deg);
+    const double drawn_rad = drawn_turn_rad(*camera.pitch, true);
+    EXPECT_NEAR(nadir_heading_sigma(camera).radians(), drawn_rad, 0.25 * drawn_rad) << lean_deg;
+  }
+  const double drawn_rad = drawn_turn_rad(Angle(), false);
+  EXPECT_NEAR(nadir_heading_sigma(level_camera()).radians(), drawn_rad, 0.25 * drawn_rad) << "nobody told the attitude";
+}
+
+TEST(NadirHeadingSigma, IsThatOfARollAsOfAPitchAndFiniteAtTheHorizon) {
+  FrameCamera rolled = level_camera();
+  FrameCamera pitched = level_camera();
+  rolled.roll = pitched.pitch = Angle::degrees(60.0);
+  EXPECT_NEAR(nadir_heading_sigma(rolled).radians(), nadir_heading_sigma(pitched).radians(), 1e-9);
+  rolled.roll = Angle::degrees(90.0);
+  EXPECT_TRUE(std::isfinite(nadir_heading_sigma(rolled).radians()));
 }
 
 TEST(GroundOf, NothingLiesAboveTheHorizon) {

@@ -37,6 +37,15 @@ TEST(Combined, KnowsTheNadirAsWellAsTheLeastKnownOfItsFrames) {
   EXPECT_EQ(combined(std::vector{exact, tilted}, 1e3).nadir_sigma_m, 7.0) << "which may be what tells the place";
 }
 
+TEST(Combined, KnowsTheHeadingAsWellAsTheLeastKnownOfItsFrames) {
+  PlacedFeatures leaning{FeatureMap::centred(CellArray(2, 2, kRoad), 1.0), {}};
+  PlacedFeatures high = leaning;
+  leaning.features.nadir_heading_sigma = Angle::degrees(0.6);
+  high.features.nadir_sigma_m = 7.0;
+  EXPECT_EQ(combined(std::vector{high, leaning}, 1e3).nadir_heading_sigma, Angle::degrees(0.6));
+  EXPECT_EQ(combined(std::vector{leaning, high}, 1e3).nadir_heading_sigma, Angle::degrees(0.6));
+}
+
 TEST(Combined, AFrameFromAheadExtendsTheReferenceForward) {
   const PlacedFeatures parts[] = {{map_of("#.. #.. #.."), {}}, {map_of("### ... ..."), {4.0, 0.0, {}}}};
   const FeatureMap result = combined(parts, kPlenty);

@@ -73,6 +73,17 @@ TEST_F(Locate, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   EXPECT_EQ(fix.probability, exact.probability);
 }
 
+TEST_F(Locate, CountsHowFarTheGroundMayBeTurnedInItsHeading) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  FeatureMap features = observed_at(map_, truth, 250, 250, 1.6, {0.1, 0.1}, random_);  // in other cells than the map's
+  const Fix exact = locate(view_, features, {}, {});
+  features.nadir_heading_sigma = Angle::degrees(1.0);
+  const Fix fix = locate(view_, features, {}, {});
+  ASSERT_FALSE(fix.modes.empty());
+  EXPECT_NEAR(fix.modes[0].heading_sigma.degrees(), std::hypot(exact.modes.at(0).heading_sigma.degrees(), 1.0), 1e-9);
+  EXPECT_EQ(fix.probability, exact.probability);
+}
+
 TEST_F(Locate, TakesFinerCellsThanTheMapHas) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   const Fix fix = locate(view_, cut_out(map_, truth, 600, 600, 0.6), {}, {});

@@ -53,6 +53,7 @@ TrackerState flown() {
   state.last_view = {{{0x123456789abcdef0U, 12.5, 0.25}, {0xfedcba9876543210U, 20.5, 0.5}}, true, {}};
   FeatureMap earlier = FeatureMap::centred(CellArray(3, 2, kRoad), 4.0);
   earlier.nadir_sigma_m = 5.25;
+  earlier.nadir_heading_sigma = Angle::radians(0.01);
   state.last_view.earlier.keep(earlier);
   state.motion = {BodyVelocity{14.5, -0.25}, true, true};
   return state;

@@ -17,11 +17,16 @@
 namespace roadfix::api {
 namespace {
 
-double nadir_sigma_m_of(const nlohmann::json& request) {
+FeatureMap map_of(const nlohmann::json& request) {
   Content content;
   content.fields.add(request, feature_fields());
   content.image = encode_feature_map(CellArray(20, 20, kNoRoad));
-  return features_of(content, {NoRoads(), 2.0}, Limits{}).map.nadir_sigma_m;
+  return features_of(content, {NoRoads(), 2.0}, Limits{}).map;
+}
+
+double nadir_sigma_m_of(const nlohmann::json& request) { return map_of(request).nadir_sigma_m; }
+double nadir_heading_sigma_deg_of(const nlohmann::json& request) {
+  return map_of(request).nadir_heading_sigma.degrees();
 }
 
 TEST(FeatureRequest, ExpectsAnErrorOfADegreeOfAnAttitudeThatIsToldAndOfTheHeightWhereTheCameraLeans) {
@@ -41,9 +46,19 @@ TEST(FeatureRequest, ExpectsThatACameraMayLeanAsFarAsItSaysNothingOfIt) {
   }
 }
 
-TEST(FeatureRequest, TakesThePlaceOfTheNadirInOtherPicturesForExact) {
-  EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}}), 0.0);
-  EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"gsd_m", 0.5}}), 0.0);
+TEST(FeatureRequest, ExpectsThatWhatALeaningCameraSeesIsTurned) {
+  nlohmann::json request{{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"roll_deg", 0}, {"pitch_deg", 0}};
+  const double level_deg = nadir_heading_sigma_deg_of(request);
+  EXPECT_GT(level_deg, 0.0) << "of an error of the height";
+  request["pitch_deg"] = 40;
+  EXPECT_GT(nadir_heading_sigma_deg_of(request), 1.5 * level_deg);
+}
+
+TEST(FeatureRequest, TakesPlaceAndHeadingOfTheNadirInOtherPicturesForExact) {
+  for (const nlohmann::json& exact : {nlohmann::json{{"cell_m", 2}}, {{"kind", "frame"}, {"gsd_m", 0.5}}}) {
+    EXPECT_EQ(nadir_sigma_m_of(exact), 0.0);
+    EXPECT_EQ(nadir_heading_sigma_deg_of(exact), 0.0);
+  }
 }
 
 TEST(FeatureRequest, SaysOfAPictureWithoutAWordHowAFrameIsSent) {
@@ -88,6 +103,10 @@ TEST(FeatureRequest, TakesABlackBorderForGroundThatWasNotSeenWhereItIsToldSo) {
 TEST(FeatureRequest, TakesWhatItIsToldOfTheNadir) {
   EXPECT_EQ(nadir_sigma_m_of({{"cell_m", 2}, {"nadir_sigma_m", 12}}), 12.0);
   EXPECT_EQ(nadir_sigma_m_of({{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"nadir_sigma_m", 0}}), 0.0);
+  EXPECT_DOUBLE_EQ(nadir_heading_sigma_deg_of({{"cell_m", 2}, {"nadir_heading_sigma_deg", 1.5}}), 1.5);
+  EXPECT_EQ(
+      nadir_heading_sigma_deg_of({{"kind", "frame"}, {"fov_deg", 60}, {"agl_m", 40}, {"nadir_heading_sigma_deg", 0}}),
+      0.0);
 }
 
 TEST(FeatureRequest, TakesCellSizeAndNadirFromAFeatureMapThatTellsThem) {

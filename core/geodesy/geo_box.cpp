@@ -1,8 +1,10 @@
 #include "core/geodesy/geo_box.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace roadfix {
 namespace {
@@ -15,6 +17,7 @@ double central_meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 
 /// Degrees; longitudes are counted from the central meridian of the zone.
 struct NearBox {
   double south, north, west, east;
+  bool empty() const { return !(south < north) || !(west < east); }
 };
 
 /// Of the box turned around the Earth.
@@ -33,7 +36,7 @@ NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place,
 
 GridBox on_plane(const UtmZone& zone, const NearBox& part) {
   GridBox result = kNowhere;
-  if (!(part.south < part.north) || !(part.west < part.east)) return result;
+  if (part.empty()) return result;
   // A parallel turns at the central meridian, a meridian at the equator.
   for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
     for (const double lon : {part.west, std::clamp(0.0, part.west, part.east), part.east}) {
@@ -43,6 +46,25 @@ GridBox on_plane(const UtmZone& zone, const NearBox& part) {
   }
   return result;
 }
+
+GridSide meridian_of(const UtmZone& zone, const NearBox& part, double lon) {
+  const auto at = [&](double lat) {
+    const GridPoint p = zone.project({lat, central_meridian_deg(zone) + lon});
+    return GridSide::Point{p.north_m, p.east_m};
+  };
+  return GridSide({at(part.south), at(std::midpoint(part.south, part.north)), at(part.north)});
+}
+
+GridSide parallel_of(const UtmZone& zone, const NearBox& part, double lat) {
+  const auto at = [&](double lon) {
+    const GridPoint p = zone.project({lat, central_meridian_deg(zone) + lon});
+    return GridSide::Point{p.east_m, p.north_m};
+  };
+  return GridSide({at(part.west), at(std::midpoint(part.west, part.east)), at(part.east)});
+}
+
+// The box may reach a place around the Earth, or from both sides.
+constexpr std::array kTurnsDeg{0.0, -360.0};
 
 }  // namespace
 
@@ -79,10 +101,21 @@ GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
 GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
   GridBox result = kNowhere;
   if (place.empty()) return result;
-  for (const double turn_deg : {0.0, -360.0}) {  // it may reach the place around the Earth, or from both sides
+  for (const double turn_deg : kTurnsDeg) {
     result = united(result, on_plane(zone, near_place(zone, box, place, turn_deg)));
   }
   return result;
+}
+
+std::vector<GridQuad> grid_quads_of(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
+  std::vector<GridQuad> quads;
+  for (const double turn_deg : kTurnsDeg) {
+    const NearBox part = near_place(zone, box, place, turn_deg);
+    if (part.empty()) continue;
+    quads.push_back({meridian_of(zone, part, part.west), meridian_of(zone, part, part.east),
+                     parallel_of(zone, part, part.south), parallel_of(zone, part, part.north)});
+  }
+  return quads;
 }
 
 }  // namespace roadfix

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/geodesy/utm.hpp"
+#include "core/units/grid_quad.hpp"
 
 namespace roadfix {
 
@@ -32,5 +34,9 @@ GeoBox geo_box_around(const UtmZone& zone, const GridBox& box);
 /// The smallest box of the plane around what of the geographic one, which is not empty, lies within some kilometres of
 /// `place` (UTM is not defined everywhere); empty where nothing does.
 GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place);
+
+/// What of the geographic box lies within some kilometres of `place`, which is not empty: its sides to centimetres for
+/// a city and to metres for a country. None where nothing does; two where it comes from both sides around the Earth.
+std::vector<GridQuad> grid_quads_of(const UtmZone& zone, const GeoBox& box, const GridBox& place);
 
 }  // namespace roadfix

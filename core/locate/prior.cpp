@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/units/error.hpp"
 
@@ -18,7 +20,7 @@ GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
   return {zone.project(circle.centre), circle.radius_m};
 }
 
-GridBox box_in(const MapView& map, const GeoBox& box) {
+std::vector<GridQuad> quads_in(const MapView& map, const GeoBox& box) {
   if (box.empty()) {
     throw InvalidInput(
         "prior-box-empty",
@@ -26,7 +28,29 @@ GridBox box_in(const MapView& map, const GeoBox& box) {
                     "west of the second",
                     box.south_west.lat_deg, box.south_west.lon_deg, box.north_east.lat_deg, box.north_east.lon_deg));
   }
-  return grid_box_around(map.zone, box, map.extent);
+  return grid_quads_of(map.zone, box, map.extent);
+}
+
+/// The part of the box that one of them reaches into; empty where they do not meet.
+GridBox within(const std::vector<GridQuad>& quads, const GridBox& box) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (const GridQuad& quad : quads) {
+    const GridBox part = quad.within(box);
+    if (!part.empty()) result = united(result, part);
+  }
+  return result;
+}
+
+bool meet(const GridCircle& circle, const GridBox& box) {
+  return !box.empty() && contains(circle, nearest(box, circle.centre));
+}
+
+void require_on_map(const MapView& map, bool condition) {
+  if (condition) return;
+  throw InvalidInput(
+      "prior-outside-map",
+      fmt::format("the prior lies outside the map {}: check its position, or search without it", map.name));
 }
 
 }  // namespace
@@ -40,15 +64,19 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
   region.box = map.extent;
   if (prior.circle) {
     region.circle = circle_in(map.zone, *prior.circle);
+    require_on_map(map, meet(*region.circle, map.extent));
     const auto& [centre, radius_m] = *region.circle;
     region.box = intersection(region.box, grown({centre, centre}, radius_m));
   }
-  if (prior.box) region.box = intersection(region.box, box_in(map, *prior.box));
-  const GridPoint middle = region.box.centre();
-  if (region.box.empty() || (region.circle && !contains(*region.circle, nearest(region.box, region.circle->centre)))) {
-    throw InvalidInput(
-        "prior-outside-map",
-        fmt::format("the prior lies outside the map {}: check its position, or search without it", map.name));
+  if (prior.box) {
+    region.quads = quads_in(map, *prior.box);
+    require_on_map(map, !within(region.quads, map.extent).empty());
+    region.box = within(region.quads, region.box);
+    if (region.circle && !meet(*region.circle, region.box)) {
+      throw InvalidInput("prior-contradictory",
+                         "the circle and the box of the prior have no ground of the map in common: check both, or give "
+                         "one of them");
+    }
   }
   if (prior.heading) {
     const double half_deg = prior.heading->half_width.degrees();
@@ -57,7 +85,7 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
           "prior-heading-out-of-range",
           "the heading range must be given as a heading of -360 to 360 and half a width of 0 to 180 degrees");
     }
-    region.heading = map.zone.grid_from_true(prior.heading->centre, middle);
+    region.heading = map.zone.grid_from_true(prior.heading->centre, region.box.centre());
     region.heading_half_width = Angle::degrees(std::min(half_deg, 180.0));
   }
   return region;

@@ -28,7 +28,7 @@ struct Prior {
 };
 
 /// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing ("prior-outside-map",
-/// "map-unobserved"), and "prior-..." for a prior that makes no sense.
+/// "prior-contradictory", "map-unobserved"), and "prior-..." for a prior that makes no sense.
 PoseRegion region_of(const MapView& map, const Prior& prior);
 
 }  // namespace roadfix

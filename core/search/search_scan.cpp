@@ -49,6 +49,7 @@ PoseRegion SearchScan::enlarged() const {
     const GridPoint centre = region.box.centre();
     result.box = united(result.box, grown({centre, centre}, 0.5 * std::sqrt(wanted_m2)));
     result.circle.reset();
+    result.quads.clear();
     result.heading_half_width = Angle::degrees(180.0);
   }
   if (beyond) result.box = united(region.box, intersection(result.box, *options_.surroundings));

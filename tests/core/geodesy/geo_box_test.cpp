@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace roadfix {
 namespace {
@@ -74,6 +76,56 @@ TEST(GridBoxAround, IsEmptyWhereTheBoxIsFarFromThePlaceOrThereIsNone) {
   EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 100.0}, {42.0, 120.0}}, city).empty());
   EXPECT_TRUE(grid_box_around(zone_of(32637), {{-40.0, 36.0}, {-30.0, 42.0}}, city).empty());
   EXPECT_TRUE(grid_box_around(zone_of(32637), {{36.0, 36.0}, {42.0, 42.0}}, {{1.0, 1.0}, {0.0, 0.0}}).empty());
+}
+
+/// Whether the quads hold of the place what the box does. Points within `near_m` of its sides may be either.
+void expect_same_ground(const UtmZone& zone, const GeoBox& box, const GridBox& place, double near_m) {
+  const std::vector<GridQuad> quads = grid_quads_of(zone, box, place);
+  const auto held = [&](GridPoint p, double grown_by_m) {
+    return std::ranges::any_of(quads, [&](const GridQuad& quad) { return quad.grown(grown_by_m).contains(p); });
+  };
+  constexpr int kSteps = 200;
+  int within = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const GridPoint p{place.min.east_m + place.width_m() * i / kSteps,
+                        place.min.north_m + place.height_m() * j / kSteps};
+      const LatLon at = zone.unproject(p);
+      const double ahead_deg = at.lon_deg - box.south_west.lon_deg;
+      const double east_deg = ahead_deg - 360.0 * std::floor(ahead_deg / 360.0);
+      const bool in_box = at.lat_deg >= box.south_west.lat_deg && at.lat_deg <= box.north_east.lat_deg &&
+                          east_deg <= box.north_east.lon_deg - box.south_west.lon_deg;
+      within += in_box;
+      EXPECT_TRUE(in_box ? held(p, near_m) : !held(p, -near_m)) << at.lat_deg << ", " << at.lon_deg;
+    }
+  }
+  EXPECT_GT(within, 0);
+}
+
+TEST(GridQuadsOf, HoldWhatTheBoxDoes) {
+  const GridBox town{{400'000.0, 7'190'000.0}, {412'000.0, 7'199'000.0}};  // 64.9 N, 27 E is the central meridian
+  expect_same_ground(zone_of(32635), {{64.85, 24.95}, {64.9, 25.0}}, town, 0.01);
+  expect_same_ground(zone_of(32635), {{10.0, 24.95}, {80.0, 24.98}}, town, 0.01);
+  expect_same_ground(zone_of(32635), {{64.86, -170.0}, {64.88, 170.0}}, town, 0.01);
+  const GridBox city{{610'000.0, 4'150'000.0}, {650'000.0, 4'190'000.0}};
+  expect_same_ground(zone_of(32637), {{37.6, 40.3}, {37.7, 40.6}}, city, 0.1);
+  const GridBox country{{200'000.0, 9'800'000.0}, {800'000.0, 10'300'000.0}};  // across the equator
+  expect_same_ground(zone_of(32737), {{-1.0, 37.0}, {2.0, 41.0}}, country, 5.0);
+}
+
+TEST(GridQuadsOf, HoldWhatABoxReachesFromBothSidesAroundTheEarth) {
+  const UtmZone fiji = zone_of(32760);
+  const GridPoint meridian = fiji.project({-17.0, 180.0});
+  const GridBox place = grown({meridian, meridian}, 20'000.0);
+  expect_same_ground(fiji, {{-17.1, -179.95}, {-16.9, 179.9}}, place, 0.1);
+  expect_same_ground(fiji, {{-17.1, -180.0}, {-16.9, 180.0}}, place, 0.1);
+  expect_same_ground(fiji, {{-17.1, 179.9}, {-16.9, 180.1}}, place, 0.1);
+}
+
+TEST(GridQuadsOf, AreNoneWhereTheBoxIsFarFromThePlace) {
+  const GridBox city{{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}};
+  EXPECT_TRUE(grid_quads_of(zone_of(32637), {{36.0, 100.0}, {42.0, 120.0}}, city).empty());
+  EXPECT_TRUE(grid_quads_of(zone_of(32637), {{-40.0, 36.0}, {-30.0, 42.0}}, city).empty());
 }
 
 TEST(GeoBoxAround, AcrossTheAntimeridianIsNarrow) {

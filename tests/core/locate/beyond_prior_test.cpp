@@ -39,6 +39,20 @@ TEST_F(BeyondPrior, TheTruthIsFoundSoThatAPlaceLikeItInsideIsNoFix) {
   EXPECT_LT(distance_m(view_.zone.project(right.modes[0].pose.position), truth_.position), 2.0);
 }
 
+TEST_F(BeyondPrior, ABoxEndsAtItsSidesHoweverHighItIs) {
+  const FeatureMap frame = seen(200);
+  const auto fix_within = [&](double east_of_truth_m) {
+    const LatLon side = view_.zone.unproject({truth_.position.east_m + east_of_truth_m, truth_.position.north_m});
+    Prior prior;
+    prior.box = GeoBox{{side.lat_deg - 1.0, side.lon_deg - 1.0}, {side.lat_deg + 1.0, side.lon_deg}};
+    return locate(view_, frame, prior, {});
+  };
+  EXPECT_EQ(fix_within(-50.0).reason, "better-outside-prior");
+  const Fix right = fix_within(20.0);
+  ASSERT_EQ(right.status, FixStatus::kFix) << right.reason;
+  EXPECT_LT(distance_m(view_.zone.project(right.modes[0].pose.position), truth_.position), 2.0);
+}
+
 // The window lies two sides ahead of the UAV, so that each degree moves it by 14 m.
 TEST_F(BeyondPrior, AHeadingJustBesideTheToldOnesGivesNoFixElsewhere) {
   FeatureMap frame = seen(200);

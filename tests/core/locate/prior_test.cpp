@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -46,6 +50,34 @@ TEST(RegionOf, IsWhatCircleAndBoxHaveInCommon) {
   EXPECT_TRUE(region.circle);
   prior.circle->radius_m = 100.0;
   prior.box = GeoBox{map.zone.unproject({436'000.0, 4'176'000.0}), {42.0, 45.0}};
+  EXPECT_EQ(testing::code_of([&] { region_of(map, prior); }), "prior-contradictory") << "each of them is on the map";
+}
+
+MapView far_north() {  // where grid north is 2.6 degrees off
+  const UtmZone zone = UtmZone::from_epsg(32635).value();
+  const GridPoint middle = zone.project({64.9, 29.9});
+  return map_of(32635, grown({middle, middle}, 20'000.0));
+}
+
+TEST(RegionOf, HoldsNothingBeyondTheSidesOfABox) {
+  const MapView map = far_north();
+  Prior prior;
+  prior.box = GeoBox{{64.7, 29.8}, {65.1, 29.895}};
+  const PoseRegion region = region_of(map, prior);
+  for (const double lat_deg : {64.8, 64.9, 65.0}) {
+    for (const auto& [lon_deg, within] : {std::pair{29.799, false}, {29.801, true}, {29.894, true}, {29.896, false}}) {
+      EXPECT_EQ(region.contains(map.zone.project({lat_deg, lon_deg})), within) << lat_deg << ", " << lon_deg;
+    }
+  }
+  const double told_km2 = 40.0 * 0.095 * 111.3 * std::cos(64.9 * std::numbers::pi / 180.0);  // as high as the map
+  EXPECT_NEAR(region.area_km2(), told_km2, 0.05 * told_km2);
+}
+
+TEST(RegionOf, IsNoBoxBesideTheMapWhoseCornersReachOverIt) {
+  const MapView map = far_north();
+  const LatLon east = map.zone.unproject({map.extent.max.east_m, map.extent.centre().north_m});
+  Prior prior;
+  prior.box = GeoBox{{64.0, east.lon_deg + 0.03}, {65.8, east.lon_deg + 0.04}};  // 1.4 km from it
   EXPECT_EQ(testing::code_of([&] { region_of(map, prior); }), "prior-outside-map");
 }
 

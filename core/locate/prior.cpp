@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -53,6 +54,17 @@ void require_on_map(const MapView& map, bool condition) {
       fmt::format("the prior lies outside the map {}: check its position, or search without it", map.name));
 }
 
+/// The largest difference to that in the middle of the box.
+Angle convergence_range(const UtmZone& zone, const GridBox& box) {
+  const Angle middle = zone.convergence(box.centre());
+  Angle range;
+  for (const GridPoint corner : std::array<GridPoint, 4>{
+           {box.min, {box.min.east_m, box.max.north_m}, {box.max.east_m, box.min.north_m}, box.max}}) {
+    range = std::max(range, angular_distance(zone.convergence(corner), middle));
+  }
+  return range;
+}
+
 }  // namespace
 
 PoseRegion region_of(const MapView& map, const Prior& prior) {
@@ -85,8 +97,10 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
           "prior-heading-out-of-range",
           "the heading range must be given as a heading of -360 to 360 and half a width of 0 to 180 degrees");
     }
+    // Grid north turns across the region, and one range of grid headings serves all of it.
     region.heading = map.zone.grid_from_true(prior.heading->centre, region.box.centre());
-    region.heading_half_width = Angle::degrees(std::min(half_deg, 180.0));
+    region.heading_half_width =
+        std::min(Angle::degrees(half_deg) + convergence_range(map.zone, region.box), Angle::degrees(180.0));
   }
   return region;
 }

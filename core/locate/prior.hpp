@@ -27,8 +27,9 @@ struct Prior {
   std::optional<HeadingRange> heading;
 };
 
-/// The part of the map that the prior leaves. Throws InvalidInput where it leaves nothing ("prior-outside-map",
-/// "prior-contradictory", "map-unobserved"), and "prior-..." for a prior that makes no sense.
+/// The part of the map that the prior leaves, and headings as far as they are within the range somewhere in it. Throws
+/// InvalidInput where it leaves nothing ("prior-outside-map", "prior-contradictory", "map-unobserved"), and "prior-..."
+/// for a prior that makes no sense.
 PoseRegion region_of(const MapView& map, const Prior& prior);
 
 }  // namespace roadfix

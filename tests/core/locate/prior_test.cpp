@@ -81,6 +81,23 @@ TEST(RegionOf, IsNoBoxBesideTheMapWhoseCornersReachOverIt) {
   EXPECT_EQ(testing::code_of([&] { region_of(map, prior); }), "prior-outside-map");
 }
 
+TEST(RegionOf, HasTheHeadingsThatAreToldWhereverInItTheyAre) {
+  const MapView map = map_of(32635, {{600'000.0, 7'190'000.0}, {660'000.0, 7'210'000.0}});
+  Prior prior;
+  prior.heading = HeadingRange{Angle::degrees(33.0), Angle::degrees(0.2)};
+  const PoseRegion region = region_of(map, prior);
+  for (const GridPoint at : {map.extent.min, map.extent.centre(), map.extent.max}) {
+    for (const double told_deg : {32.81, 33.19}) {
+      EXPECT_TRUE(region.contains(map.zone.grid_from_true(Angle::degrees(told_deg), at))) << told_deg;
+    }
+  }
+  EXPECT_LT(region.heading_half_width, Angle::degrees(1.0));
+  prior.circle = GeoCircle{map.zone.unproject(map.extent.max), 500.0};
+  EXPECT_LT(region_of(map, prior).heading_half_width, Angle::degrees(0.21)) << "in a small region";
+  prior.heading->half_width = Angle::degrees(180.0);
+  EXPECT_EQ(region_of(map, prior).heading_half_width, Angle::degrees(180.0));
+}
+
 TEST(RegionOf, TakesBoxesOnEitherSideOfTheAntimeridian) {
   const MapView map = map_of(32701, {{150'000.0, 8'000'000.0}, {250'000.0, 8'010'000.0}});  // Fiji, 179.7 E to 179.4 W
   const double antimeridian_m = map.zone.project({-18.0, 180.0}).east_m;

@@ -86,6 +86,8 @@ void print_text(const Fix& fix) {
 
 void run_fix(const FixArguments& options) {
   const MapView view = view_with_notes(options.map);
+  const Prior prior = prior_of(options);
+  search_region(view, prior, options.fix);  // before the frame, in which roads are looked for
   api::Features input = read_feature_input(options.input, view.cell_m);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
@@ -96,7 +98,7 @@ void run_fix(const FixArguments& options) {
   fix_options.progress = [&](std::int64_t done, std::int64_t total) {
     if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
   };
-  const Fix fix = locate(view, input.map, prior_of(options), fix_options);
+  const Fix fix = locate(view, input.map, prior, fix_options);
   if (options.as_json) {
     nlohmann::json answer = api::to_json(fix, input.detect_time);
     if (input.camera_in_file) answer["camera"] = api::to_json(*input.camera_in_file);

@@ -65,15 +65,6 @@ void refuse_contradicting_frames(Fix& fix) {
   fix.modes.front().weight = fix.probability;
 }
 
-void require_valid(const FixOptions& options, double area_km2) {
-  if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
-    throw InvalidInput("confidence-out-of-range",
-                       fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
-  }
-  require_scale_range(options.scale_range);
-  require_searchable(area_km2, options.max_search_km2);
-}
-
 SearchOptions search_options_of(const FixOptions& options, const MapView& map,
                                 std::chrono::steady_clock::time_point started) {
   SearchOptions result;
@@ -125,10 +116,20 @@ void name_too_few_roads(Fix& fix) {
 
 }  // namespace
 
+PoseRegion search_region(const MapView& map, const Prior& prior, const FixOptions& options) {
+  PoseRegion region = region_of(map, prior);
+  if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
+    throw InvalidInput("confidence-out-of-range",
+                       fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
+  }
+  require_scale_range(options.scale_range);
+  require_searchable(region.area_km2(), options.max_search_km2);
+  return region;
+}
+
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  const PoseRegion region = region_of(map, prior);
-  require_valid(options, region.area_km2());
+  const PoseRegion region = search_region(map, prior, options);
   const FeatureMap cells = in_cells_of(map, features);
   const FeatureMap compared = compared_cells(cells);
   // As it was given, too: of one smaller than a cell of the map next to nothing is left.

@@ -73,6 +73,10 @@ struct Fix {
   std::chrono::duration<double, std::milli> search_time{};
 };
 
+/// What locate() searches. Throws what that does of the map, the prior and the options: to be asked before roads are
+/// looked for in a frame, which takes long.
+PoseRegion search_region(const MapView& map, const Prior& prior, const FixOptions& options);
+
 /// Search (core/search/search.hpp), then decide (calibration.hpp says where probabilities come from).
 /// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all,
 /// LimitExceeded and Interrupted by the options.

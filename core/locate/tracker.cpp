@@ -63,9 +63,13 @@ Tracker::Tracker(MapView map, TrackSettings settings)
   if (settings_.start == TrackStart::kSearch) require_searchable(start_.area_km2(), settings_.max_search_km2);
 }
 
-StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
+void Tracker::require_possible(const TrackerState& before, const StepInput& step) {
   require_in_order(before, step);
   require_possible_speed(before, step);
+}
+
+StepResult Tracker::advance(const TrackerState& before, const StepInput& step, const StepLimits& limits) const {
+  require_possible(before, step);
   return Step(*this, before, step, limits).run();
 }
 

@@ -42,6 +42,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
+  search_region(map->view, prior, options);  // before the frame, which costs a turn among the searches
   const api::Features features = features_of(service, request, content, map->view.cell_m);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;

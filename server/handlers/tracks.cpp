@@ -119,7 +119,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   const StoredTrack& track = step.track;
   StepInput& input = step.input;
   const std::int64_t digest = digest_of(step.content);
-  if (auto answer = service.steps.answered(track.id, input.sequence, digest)) {
+  if (auto answer = service.steps.answered(track.id, input, digest)) {
     return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);

@@ -9,12 +9,13 @@ LiveTrack::LiveTrack(std::shared_ptr<const ServedMap> map, const TrackSettings& 
       tracker_(map_->view, settings),
       state_(std::make_shared<const TrackerState>(std::move(state))) {}
 
+std::shared_ptr<const TrackerState> LiveTrack::last_state() const {
+  const std::lock_guard lock(state_mutex_);
+  return state_;
+}
+
 std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
-  std::shared_ptr<const TrackerState> last;
-  {
-    const std::lock_guard lock(state_mutex_);
-    last = state_;
-  }
+  const std::shared_ptr<const TrackerState> last = last_state();
   return last->started ? tracker_.particles(*last, count) : std::vector<GeoPose>();
 }
 

@@ -14,8 +14,7 @@
 
 namespace roadfix::server {
 
-std::optional<StepAnswer> TrackSteps::answered(const std::string& id, std::int64_t sequence,
-                                               std::int64_t digest) const {
+std::optional<StepAnswer> TrackSteps::stored(const std::string& id, std::int64_t sequence, std::int64_t digest) const {
   auto taken = tracks_.step(id, sequence);
   if (!taken) return std::nullopt;
   if (taken->digest != digest) {
@@ -24,6 +23,16 @@ std::optional<StepAnswer> TrackSteps::answered(const std::string& id, std::int64
         fmt::format("step {} was already processed with different content: continue with the next number", sequence));
   }
   return StepAnswer{api::stored_json(taken->answer), std::move(taken->answer), true};
+}
+
+std::optional<StepAnswer> TrackSteps::answered(const std::string& id, const StepInput& input,
+                                               std::int64_t digest) const {
+  const std::shared_ptr<LiveTrack> track = tracks_.in_memory(id);
+  // Before the store: a step that is taken meanwhile is not late, but answered.
+  const auto before = track ? track->last_state() : nullptr;
+  auto answer = stored(id, input.sequence, digest);
+  if (!answer && before) Tracker::require_possible(*before, input);
+  return answer;
 }
 
 void TrackSteps::await_predecessor(const std::string& id, std::int64_t sequence) {
@@ -43,7 +52,7 @@ StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::
                             const StepLimits& limits, TrackTimes::Clock::time_point came) {
   const std::shared_ptr<LiveTrack> track = tracks_.live(id);
   LiveTrack::Turn turn(*track, input.sequence, tracks_.limits().order_wait);
-  if (auto before = answered(id, input.sequence, digest)) return *std::move(before);
+  if (auto before = stored(id, input.sequence, digest)) return *std::move(before);
   if (turn.is_doubtful()) turn.settle(tracks_.stored_state(id));
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   nlohmann::json answer = api::to_json(result.estimate);

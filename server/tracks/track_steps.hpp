@@ -23,9 +23,10 @@ class TrackSteps {
  public:
   explicit TrackSteps(TrackRegistry& tracks) : tracks_(tracks) {}
 
-  /// What a step was answered, if it was taken already. Throws InvalidInput ("step-differs") where that was another
-  /// step of the same number.
-  std::optional<StepAnswer> answered(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
+  /// What a step was answered, if it was taken already. Throws InvalidInput: "step-differs" where that was another step
+  /// of the same number; of a track in memory what Tracker::require_possible does, before roads are looked for in the
+  /// step's frame.
+  std::optional<StepAnswer> answered(const std::string& id, const StepInput& input, std::int64_t digest) const;
   /// Gives the steps that this one overtook the time that they may have to be taken first. They may need a turn among
   /// the searches for that, so that it holds none meanwhile. Throws Busy where too many wait.
   void await_predecessor(const std::string& id, std::int64_t sequence);
@@ -36,6 +37,8 @@ class TrackSteps {
                   TrackTimes::Clock::time_point came = TrackTimes::Clock::now());
 
  private:
+  std::optional<StepAnswer> stored(const std::string& id, std::int64_t sequence, std::int64_t digest) const;
+
   TrackRegistry& tracks_;
   std::atomic<int> waiting_ = 0;  ///< steps of all tracks, for those before them
 };

@@ -128,6 +128,11 @@ TEST_F(ServiceFix, SearchesOnlyWhereThePriorAllows) {
             "422 prior-outside-map");
 }
 
+TEST_F(ServiceFix, RefusesAWrongPriorBeforeItLooksForRoads) {
+  const std::string url = "/v1/maps/town/fix?kind=frame&gsd_m=0.5&lat=10&lon=20&radius_m=50";
+  EXPECT_EQ(testing::refusal(client_.Post(url, "no picture", "image/png")), "422 prior-outside-map");
+}
+
 TEST_F(ServiceFix, FixesWhatWasSeenFromAnAltitudeKnownRoughly) {
   // The cells of 2 m are said to be of 2.2 m.
   const std::string url = "/v1/maps/town/fix?cell_m=2.2&scale_range=";

@@ -57,6 +57,8 @@ TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {
   send(client, id, steps[3]);
   EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id).c_str()))["last"]["missed_steps"], 1);
   EXPECT_EQ(testing::refusal(send(client, id, steps[2])), "409 step-late");
+  EXPECT_EQ(testing::refusal(send(client, id, {steps[2].query, "no picture"})), "409 step-late")
+      << "before its picture is looked at";
 
   const auto refused = [&](const json& step) {
     return testing::refusal(client.Post(("/v1/tracks/" + id + "/steps").c_str(), step.dump(), "application/json"));

@@ -34,6 +34,23 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
   EXPECT_FALSE(tracks->times().age_of_step(id, 0));
 }
 
+TEST_F(TrackStepsTest, RefusesWhatCannotFollowBeforeItsRoadsAreLookedFor) {
+  const auto tracks = registry();
+  const std::string id = begin(*tracks);
+  TrackSteps steps(*tracks);
+  EXPECT_FALSE(steps.answered(id, step_of(2), 2)) << "the first one";
+  const StepAnswer taken = steps.take(id, step_of(2), 2, {});
+  EXPECT_EQ(steps.answered(id, step_of(2), 2).value().text, taken.text);
+  const auto refusal = [&](const StepInput& step) { return code_of([&] { steps.answered(id, step, step.sequence); }); };
+  EXPECT_EQ(refusal(step_of(3)), "no error");
+  EXPECT_EQ(refusal(step_of(1)), "step-late");
+  StepInput step = step_of(3);
+  step.time_us = step_of(2).time_us;
+  EXPECT_EQ(refusal(step), "time-backwards");
+  step.time_us += 1000;
+  EXPECT_EQ(refusal(step), "impossible-speed");
+}
+
 TEST_F(TrackStepsTest, ShowsParticlesWhileAStepIsUnderWay) {
   const auto map = maps_.find("town");
   LiveTrack track(map, {});

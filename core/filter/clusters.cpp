@@ -69,7 +69,6 @@ UnionFind joined(const std::vector<CoarseBin>& bins) {
 
 Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
   Cluster cluster;
-  cluster.particles = members.size();
   double sine = 0.0;
   double cosine = 0.0;
   for (const std::size_t i : members) {

@@ -15,7 +15,6 @@ struct Cluster {
   double radius95_m = 0.0;  ///< holds 95 % of the cluster's weight
   double log_scale = 0.0;   ///< mean
   double log_scale_sigma = 0.0;
-  std::size_t particles = 0;
 
   /// 1 sigma along the major axis.
   double sigma_m() const;

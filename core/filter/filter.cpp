@@ -82,14 +82,14 @@ Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, std
 Filter::Filter(const FilterOptions& options, const AcceptanceRegion& region, FilterState state, int threads)
     : options_(options), region_(region), threads_(threads), state_(std::move(state)), started_(true) {}
 
-void Filter::start_uniformly(const PoseRegion& over) { start_from({}, 1.0, over); }
+void Filter::start_uniformly(const PoseRegion& over) { start_anew_from({}, 1.0, over); }
 
-void Filter::start_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
+void Filter::start_anew_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   if (std::exchange(started_, true)) ++state_.resets;
-  restart_from(proposals, uniform_share, over);
+  redraw_from(proposals, uniform_share, over);
 }
 
-void Filter::restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
+void Filter::redraw_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   ++state_.step;
   state_.slow_support = state_.fast_support = 0.5;
   const ProposalDraw around(proposals, region_);

@@ -74,9 +74,9 @@ class Filter {
   /// The uniform belief of the paper over a region. Counts as a reset unless it is the first.
   void start_uniformly(const PoseRegion& over);
   /// Draws around the proposals by their weights, and the rest uniformly. Counts as start_uniformly() does.
-  void start_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
-  /// The same where a search tells more about a belief that has just begun; no further reset.
-  void restart_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
+  void start_anew_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
+  /// The same where a search tells more about a belief that has just begun: not a reset.
+  void redraw_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
 
   /// Moves the particles; those that the region does not keep lose their weight. Returns the share of the weight that
   /// it keeps: 0 where that was less than half, and the belief became uniform over the region.

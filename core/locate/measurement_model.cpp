@@ -32,8 +32,7 @@ double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t fram
     const double seen = samples_per_cell * static_cast<double>(sums.n);
     log_ratio = expected_correlation * (seen * contrasted_pearson(sums) - 0.5 * samples * expected_correlation);
   }
-  // exp() cannot overflow: log_ratio is at most a few thousand samples times a fraction, so it is bounded first.
-  constexpr double kMax = 300.0;
+  constexpr double kMax = 300.0;  // exp() overflows beyond 709, and large footprints may give thousands
   return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * log_ratio, kMax)));
 }
 

@@ -41,8 +41,8 @@ bool Tracker::Step::start_by_search() {
   const std::optional<Fix> fix = search_within(*prior, seen, 1.0);
   if (!fix || fix->modes.empty()) return false;
   const double uniform_share = std::clamp(1.0 - probability_of_all(*fix), 1.0 - kMaxFixShare, 0.9);
-  filter_.restart_from(proposals_of(map_, *fix, *features_), uniform_share,
-                       first ? tracker_.start_ : tracker_.region_.poses);
+  filter_.redraw_from(proposals_of(map_, *fix, *features_), uniform_share,
+                      first ? tracker_.start_ : tracker_.region_.poses);
   outcome_.measurement = Measurement::kSearched;
   if (fix->status == FixStatus::kFix && search_.holds_at_other_scales(*fix, seen, *prior)) confirm(*fix);
   return true;
@@ -105,7 +105,7 @@ void Tracker::Step::recover() {
     filter_.inject(proposals_of(map_, *fix, *features_), kInjectedShare);
     state_.claim.reopen();
   } else {
-    filter_.start_from(proposals_of(map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
+    filter_.start_anew_from(proposals_of(map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
     outcome_.measurement = Measurement::kSearched;
     forget_support();
     state_.searched = true;

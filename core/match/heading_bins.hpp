@@ -1,6 +1,8 @@
 // Headings as integers: a full turn in an even number of equal bins, each bin of one level split in two on the next.
 #pragma once
 
+#include <numbers>
+
 #include "core/units/angle.hpp"
 
 namespace roadfix {

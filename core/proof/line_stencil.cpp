@@ -1,5 +1,6 @@
 #include "core/proof/line_stencil.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -21,8 +21,9 @@ std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
 class GroundAround {
  public:
-  /// Of `headings` that footprints will be turned to, where the level has bins in quarters, those a quarter turn apart
-  /// may share a footprint if that pays. `complete()` is false, and the rest must not be used, if time was over before.
+  /// Wide enough for the footprint up to `cells` away from each pose. `headings` says how many headings footprints will
+  /// be turned to: where they are many, those a quarter turn apart share a footprint. `complete()` is false, and the
+  /// rest must not be used, if time was over before.
   GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
                const std::vector<LatticePose>& poses);
 

@@ -113,8 +113,8 @@ struct SearchResult {
   std::optional<SearchProof> proof;  ///< where one was asked for
   /// Share of the poses that were scored at the coarse cells before the deadline; of the others nothing is known.
   double scanned_share = 1.0;
-  bool refined =
-      true;  ///< what the scan found was followed to the finest cells; else the modes are only near the peaks
+  /// What the scan found was followed to the finest cells; else the modes are only near the peaks.
+  bool refined = true;
 
   bool complete() const { return refined && scanned_share == 1.0; }
 };

@@ -27,7 +27,7 @@ struct FoundModes {
   std::vector<SearchMode> modes;
   std::optional<SearchMode> nearby;
   std::vector<SearchMode> outside;
-  bool complete = true;  ///< false where the deadline ended it after the first mode
+  bool complete = true;  ///< false where the deadline ended it, after the first mode at the earliest
 };
 
 /// Modes from the best poses within the region; those that were flanks of one peak give one.

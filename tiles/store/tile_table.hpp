@@ -25,6 +25,9 @@ class TileTable {
   /// an equal tile is left as it is.
   void put(int zoom, TileIndex index, std::span<const std::byte> png);
 
+  /// Box of the observed cells of the finest level; empty() when there is none.
+  GridBox observed_extent();
+
   // Those that follow may be called from several threads at once, while nothing is put.
 
   /// nullopt where there is none. Throws CorruptData naming the tile.
@@ -32,9 +35,6 @@ class TileTable {
   /// What the tile should be: of the finest level what the evidence in force says, above it what the four tiles below
   /// do. nullopt where there are none. Throws CorruptData naming the evidence or the tile below.
   std::optional<CellArray> derived(int zoom, TileIndex index);
-
-  /// Box of the observed cells of the finest level; empty() when there is none.
-  GridBox observed_extent();
 
  private:
   std::optional<CellArray> fused_evidence(TileIndex index);

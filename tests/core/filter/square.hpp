@@ -11,7 +11,9 @@ namespace roadfix::testing {
 inline const PoseRegion kSquare{{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)};
 
 /// All particles drawn around one place.
-inline void start_at(Filter& filter, const Proposal& place) { filter.start_from(std::span(&place, 1), 0.0, kSquare); }
+inline void start_at(Filter& filter, const Proposal& place) {
+  filter.start_anew_from(std::span(&place, 1), 0.0, kSquare);
+}
 
 /// Log-likelihood of seeing the place with an error of `sigma_m` per axis.
 inline std::vector<double> seen_at(const Particles& p, GridPoint place, double sigma_m) {

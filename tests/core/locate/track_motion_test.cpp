@@ -11,7 +11,7 @@ const LearnedMotion kFlewAt20MS{BodyVelocity{16.0, 12.0}, false, false};
 
 Filter filter_at(const StepMotion& motion, GridPose pose) {
   Filter filter(FilterOptions::paper(100), motion.region(), 1);
-  filter.start_from(std::vector<Proposal>{{pose}}, 0.0, kFlight.poses);
+  filter.start_anew_from(std::vector<Proposal>{{pose}}, 0.0, kFlight.poses);
   return filter;
 }
 

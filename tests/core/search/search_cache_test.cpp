@@ -52,7 +52,7 @@ TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
 
 TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
   constexpr int kMany = 20'000;
-  SearchCache cache(10 * kMany);
+  SearchCache cache(std::size_t{10} * kMany);
   const auto time_of = [&](int first) {
     const std::clock_t begin = std::clock();
     for (int col = first; col < first + kMany; ++col) cache.get<Piece>(window(col), {}, [] { return Piece{}; });

@@ -30,6 +30,11 @@ class BadRequests : public ::testing::Test {
     EXPECT_EQ(testing::client_of(*service).Get("/healthz")->status, 200) << "the service goes on";
   }
 
+  static std::string here() {
+    const testing::Town town;
+    return "lat=" + std::to_string(town.place.lat_deg) + "&lon=" + std::to_string(town.place.lon_deg);
+  }
+
   std::string raw(const std::string& request, bool finish = true) const {
     RawConnection connection(service->port());
     connection.send(request);
@@ -41,6 +46,7 @@ class BadRequests : public ::testing::Test {
   inline static testing::ServiceProcess* service = nullptr;
   httplib::Client client_ = testing::client_of(*service);
   const std::string fix_ = "/v1/maps/town/fix";
+  const std::string fix_near_ = fix_ + "?" + here() + "&radius_m=200";  // in little enough ground
   const std::string match_ = "/v1/maps/town/match";
 };
 
@@ -76,24 +82,26 @@ TEST_F(BadRequests, SayWhichMethodsThereAre) {
 TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "text/plain")), "415 unsupported-media-type Content-Type");
-  EXPECT_EQ(refusal(client_.Post(fix_, png, "image/png")), "400 missing-parameter cell_m");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", "", "image/png")), "400 missing-parameter image");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", "not a picture", "image/png")), "422 image-format");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png.substr(0, png.size() / 2), "image/png")), "422 image-damaged");
+  EXPECT_EQ(refusal(client_.Post(fix_near_, png, "image/png")), "400 missing-parameter cell_m");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&cell_m=2", "", "image/png")), "400 missing-parameter image");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&cell_m=2", "not a picture", "image/png")), "422 image-format");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&cell_m=2", png.substr(0, png.size() / 2), "image/png")),
+            "422 image-damaged");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&lat=57.7", png, "image/png")), "400 missing-parameter lon");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&bbox=1,2,3", png, "image/png")), "400 bad-parameter bbox");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&gsd_m=1", png, "image/png")), "400 bad-parameter gsd_m");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1&nadir_col=3", png, "image/png")),
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&cell_m=2&gsd_m=1", png, "image/png")), "400 bad-parameter gsd_m");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame&gsd_m=1&nadir_col=3", png, "image/png")),
             "400 bad-parameter nadir_col");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=20", png, "image/png")), "400 parameter-out-of-range gsd_m");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1e-4", png, "image/png")),
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame&gsd_m=20", png, "image/png")),
             "400 parameter-out-of-range gsd_m");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame", png, "image/png")), "400 missing-parameter fov_deg");
-  const std::string camera = fix_ + "?kind=frame&agl_m=50&focal_px=64";
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame&gsd_m=1e-4", png, "image/png")),
+            "400 parameter-out-of-range gsd_m");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame", png, "image/png")), "400 missing-parameter fov_deg");
+  const std::string camera = fix_near_ + "&kind=frame&agl_m=50&focal_px=64";
   EXPECT_EQ(refusal(client_.Post(camera + "&distortion=0.1", png, "image/png")), "400 bad-parameter distortion");
   EXPECT_EQ(refusal(client_.Post(camera + "&lens=fisheye", png, "image/png")), "422 frame-camera");
   EXPECT_EQ(refusal(client_.Post(camera + "&principal_px=64,64", png, "image/png")), "422 frame-camera");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?kind=frame&gsd_m=1&lens=fisheye", png, "image/png")),
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame&gsd_m=1&lens=fisheye", png, "image/png")),
             "400 bad-parameter lens");
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
 }
@@ -117,22 +125,18 @@ TEST_F(BadRequests, WithAFrameOfMoreGroundThanADetectorCanLookAtAreTooLarge) {
 TEST_F(BadRequests, WithNumbersBeyondAllSenseNameThem) {
   const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
   for (const std::string field : {"time_us", "time_limit_s", "proof_s", "radius_m", "nadir_col", "max_modes"}) {
-    EXPECT_EQ(refusal(client_.Post(
-                  fix_ + "?cell_m=2&lat=57&lon=22&" + (field == "radius_m" ? "" : "radius_m=9&") + field + "=1e300",
-                  png, "image/png")),
+    const std::string prior = here() + (field == "radius_m" ? "&" : "&radius_m=9&");
+    EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&" + prior + field + "=1e300", png, "image/png")),
               "400 parameter-out-of-range " + field);
   }
   EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2&time_us=1.5", png, "image/png")), "400 bad-parameter time_us");
 }
 
 TEST_F(BadRequests, WithAConstantOrUnobservedFeatureMapGetNoFix) {
-  const testing::Town town;
-  const std::string near =
-      "?cell_m=2&radius_m=200&lat=" + std::to_string(town.place.lat_deg) + "&lon=" + std::to_string(town.place.lon_deg);
   for (const auto& [fill, reason] :
        {std::pair{kNoRoad, "too-few-roads"}, {kRoad, "too-few-roads"}, {kUnobserved, "footprint-unobserved"}}) {
-    const auto answer = testing::json_of(
-        client_.Post(fix_ + near, testing::text_of(encode_feature_map(CellArray(64, 64, fill))), "image/png"));
+    const auto answer = testing::json_of(client_.Post(
+        fix_near_ + "&cell_m=2", testing::text_of(encode_feature_map(CellArray(64, 64, fill))), "image/png"));
     EXPECT_EQ(answer["status"], "no_fix");
     EXPECT_EQ(answer["reason"], reason);
   }
@@ -141,7 +145,7 @@ TEST_F(BadRequests, WithAConstantOrUnobservedFeatureMapGetNoFix) {
 TEST_F(BadRequests, WithAPngBombAreRefusedByItsHeader) {
   // 60000 x 60000 pixels in a header and nothing behind it.
   const std::string bomb("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xea\x60\0\0\xea\x60\x08\x06\0\0\0\0\0\0\0", 33);
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", bomb, "image/png")), "413 image-too-large");
+  EXPECT_EQ(refusal(client_.Post(fix_near_ + "&cell_m=2", bomb, "image/png")), "413 image-too-large");
   EXPECT_EQ(refusal(client_.Post("/v1/detect?gsd_m=1", bomb, "image/png")), "413 image-too-large");
 }
 

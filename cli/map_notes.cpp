@@ -14,8 +14,7 @@ void note_waiting_tiles(const std::filesystem::path& file, const MapInfo& info) 
   if (info.pending == 0) return;
   fmt::print(stderr,
              "note: {}: {} of its tiles still show what the map held before the last ingest or remove, which is "
-             "running or was "
-             "interrupted. Repeat it if it does not run\n",
+             "running or was interrupted. Repeat it if it does not run\n",
              file.string(), info.pending);
 }
 

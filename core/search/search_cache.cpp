@@ -1,14 +1,12 @@
 #include "core/search/search_cache.hpp"
 
 #include <cmath>
-#include <utility>
+#include <exception>
+#include <string_view>
+
+#include "core/units/fnv.hpp"
 
 namespace roadfix {
-
-std::size_t SearchCache::bytes() const {
-  const std::lock_guard lock(mutex_);
-  return bytes_;
-}
 
 SearchCache::Key SearchCache::key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters) {
   return {type,
@@ -16,54 +14,40 @@ SearchCache::Key SearchCache::key_of(std::type_index type, const GridGeometry& w
            parameters[0], parameters[1], parameters[2]}};
 }
 
-std::shared_ptr<const void> SearchCache::entry(const Key& key, const std::function<Value()>& build) {
-  std::promise<Value> promise;
-  std::shared_future<Value> value = promise.get_future().share();
-  Keys fresh{key};
-  Entry* builds = nullptr;
+std::size_t SearchCache::KeyHash::operator()(const Key& key) const {
+  const auto& [type, numbers] = key;
+  Fnv1a64 hash;
+  hash.add({reinterpret_cast<const char*>(numbers.data()), sizeof(numbers)});
+  return hash.value() ^ type.hash_code();
+}
+
+SearchCache::Pointer SearchCache::entry(const Key& key, const std::function<Value()>& build) {
+  std::promise<Pointer> promise;
+  std::shared_future<Pointer> result;
   {
     const std::lock_guard lock(mutex_);
-    const auto [found, is_new] = entries_.try_emplace(key, Entry{value, fresh.begin()});
-    Entry& entry = found->second;
+    if (auto kept = kept_.find(key)) return *kept;
+    const auto [found, is_new] = being_built_.try_emplace(key);
     if (is_new) {
-      being_built_.splice(being_built_.begin(), fresh);
-      builds = &entry;
+      found->second = promise.get_future().share();
     } else {
-      if (entry.kept) kept_.splice(kept_.begin(), kept_, entry.place);
-      value = entry.value;
+      result = found->second;
     }
   }
-  if (builds == nullptr) return value.get().value;
+  if (result.valid()) return result.get();
   try {
-    Value built = build();
-    keep(*builds, built.bytes);
-    promise.set_value(std::move(built));
+    const Value built = build();
+    const std::lock_guard lock(mutex_);
+    kept_.insert(key, built.value, built.bytes);
+    being_built_.erase(key);
+    promise.set_value(built.value);
+    return built.value;
   } catch (...) {
-    forget(key);
+    const std::lock_guard lock(mutex_);
+    being_built_.erase(key);
     promise.set_exception(std::current_exception());
+    throw;
   }
-  return value.get().value;
-}
-
-void SearchCache::keep(Entry& entry, std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
-  kept_.splice(kept_.begin(), being_built_, entry.place);
-  entry.kept = true;
-  entry.bytes = bytes;
-  bytes_ += bytes;
-  while (bytes_ > max_bytes_) {
-    const auto oldest = entries_.find(kept_.back());
-    bytes_ -= oldest->second.bytes;
-    entries_.erase(oldest);
-    kept_.pop_back();
-  }
-}
-
-void SearchCache::forget(const Key& key) {
-  const std::lock_guard lock(mutex_);
-  const auto found = entries_.find(key);
-  being_built_.erase(found->second.place);
-  entries_.erase(found);
 }
 
 }  // namespace roadfix

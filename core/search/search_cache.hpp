@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <future>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "core/grid/geometry.hpp"
+#include "core/units/lru_cache.hpp"
 
 namespace roadfix {
 
@@ -24,7 +24,7 @@ class SearchCache {
   /// What beside the window tells two things of one type apart.
   using Parameters = std::array<int, 3>;
 
-  explicit SearchCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+  explicit SearchCache(std::size_t max_bytes) : kept_(max_bytes) {}
 
   /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
   template <typename T, typename Build>
@@ -36,33 +36,25 @@ class SearchCache {
     return std::static_pointer_cast<const T>(built);
   }
 
-  std::size_t bytes() const;
+  std::size_t bytes() const { return kept_.bytes(); }
 
  private:
   using Key = std::pair<std::type_index, std::array<std::int64_t, 8>>;
-  struct Value {
-    std::shared_ptr<const void> value;
-    std::size_t bytes = 0;
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const;
   };
-  using Keys = std::list<Key>;
-  struct Entry {
-    std::shared_future<Value> value;
-    Keys::iterator place;  ///< in being_built_ or kept_
-    bool kept = false;
+  using Pointer = std::shared_ptr<const void>;
+  struct Value {
+    Pointer value;
     std::size_t bytes = 0;
   };
 
   static Key key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters);
-  std::shared_ptr<const void> entry(const Key& key, const std::function<Value()>& build);
-  void keep(Entry& entry, std::size_t bytes);
-  void forget(const Key& key);
+  Pointer entry(const Key& key, const std::function<Value()>& build);
 
-  const std::size_t max_bytes_;
-  mutable std::mutex mutex_;
-  std::map<Key, Entry> entries_;
-  Keys being_built_;
-  Keys kept_;  ///< most recently asked for first
-  std::size_t bytes_ = 0;
+  LruCache<Key, Pointer, KeyHash> kept_;
+  std::mutex mutex_;  ///< of what is being built, and so that it is kept once it is no longer
+  std::map<Key, std::shared_future<Pointer>> being_built_;
 };
 
 /// From the cache, or without one just built.

@@ -59,8 +59,7 @@ bool holds_exported_roads(GDALDataset& dataset) {
 
 bool is_bare_copy_of_roads(GDALDataset& dataset) {
   const bool map = EQUAL(dataset.GetDriverName(), "GPKG");
-  return !map && holds_exported_roads(dataset) && !is_feature_map(dataset) &&
-         provenance_in(dataset).registration_sigma_m == 0.0;
+  return !map && !is_feature_map(dataset) && provenance_in(dataset).registration_sigma_m == 0.0;
 }
 
 std::vector<std::pair<std::string, std::string>> provenance_items(const Provenance& provenance) {

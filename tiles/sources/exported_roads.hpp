@@ -22,7 +22,7 @@ bool is_called_as_maps_are(GDALDataset& dataset);
 /// Then bytes are probabilities k / 254.
 bool holds_exported_roads(GDALDataset& dataset);
 
-/// Whether another program made it of a map or an export, without what those tell of themselves.
+/// Of what holds exported roads: whether another program made it, without what a map or an export tells of itself.
 bool is_bare_copy_of_roads(GDALDataset& dataset);
 
 /// Names and values of the metadata that tell it; nothing of what is not known.

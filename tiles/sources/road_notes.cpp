@@ -101,8 +101,7 @@ void add_notes(const LineCounts& counts, const RoadRules& rules, RoadNetwork& ne
 std::string why_none_is_drawn(const LineCounts& counts, const RoadNetwork& network, const RoadRules& rules) {
   if (counts.lines == 0) {
     return fmt::format(
-        "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, "
-        "{}",
+        "none of them is a line; points and areas are not drawn, centrelines are. To use areas of road, {}",
         kAreasAsRaster);
   }
   if (counts.without_class == counts.lines) {

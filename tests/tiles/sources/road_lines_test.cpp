@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -83,6 +84,31 @@ TEST_F(RoadLines, OfOpenStreetMapAreToldApartByAnyTagHoweverManyNodesWithTagsCom
   EXPECT_EQ(network.lines.size(), 1U);
   EXPECT_EQ(network.left_out, 1);
   EXPECT_THAT(network.notes, IsEmpty());
+}
+
+TEST_F(RoadLines, OfOpenStreetMapBeyondMemoryAskForRoomAndAreNotCalledDamaged) {
+  const std::string path = (folder / "large.osm").string();
+  {
+    std::ofstream file(path);
+    file << "<?xml version='1.0'?><osm version='0.6'>";
+    for (int i = 1; i <= 4000; ++i) {  // far apart, each takes half a kilobyte
+      file << fmt::format("<node id='{}' version='1' lat='37.7' lon='38.{:04}'/>", 64 * i, i);
+    }
+    file << "<way id='1' version='1'><nd ref='64'/><nd ref='128'/><tag k='highway' v='primary'/></way></osm>";
+  }
+  require_gdal();
+  const auto read = [&](const std::string& temporary) {
+    keep_temporary_files_beside(temporary + "/m.gpkg");
+    std::string code = code_of([&] { read_road_network({path}, {}, RoadRules(), kZone); });
+    CPLSetConfigOption("CPL_TMPDIR", nullptr);
+    return code;
+  };
+  const char* const asked = CPLGetConfigOption("TMPDIR", CPLGetConfigOption("TEMP", nullptr));
+  if (asked != nullptr) GTEST_SKIP() << "the environment says where temporary files are";
+  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", "1");
+  EXPECT_EQ(read((folder / "not there").string()), "temporary-files-refused");
+  EXPECT_EQ(read(folder.path().string()), "no error");
+  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", nullptr);
 }
 
 TEST_F(RoadLines, RiversBesideClassifiedRoadsAreNotDrawnAndSaidSo) {
@@ -301,184 +327,6 @@ TEST_F(RoadLines, FilesThatHoldNoRoadsAreRefused) {
   options.extent = "12,13,11,14";
   const std::string roads = geojson({feature(R"("highway":"primary")", at(0, 0), at(9, 9))});
   EXPECT_EQ(code_of([&] { read_road_network({roads}, options, RoadRules(), kZone); }), "extent-unreadable");
-}
-
-TEST_F(RoadLines, AcrossThe180thMeridianAskForAnExtent) {
-  const auto road = [](double lon) {
-    return fmt::format(
-        R"({{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[{},-16.5],[{},-16.4]]}}}})",
-        lon, lon);
-  };
-  const std::string path = geojson({road(179.99), road(-179.99)});
-  const auto read = [&](const std::string& extent) {
-    return read_road_network({path}, {.crs = "", .layer = "", .extent = extent}, RoadRules(),
-                             *UtmZone::from_epsg(32760));
-  };
-  EXPECT_EQ(code_of([&] { read(""); }), "roads-around-the-earth");
-  EXPECT_THAT(message_of([&] { read(""); }), HasSubstr("from longitude -179.99 to 179.99"));
-  EXPECT_EQ(read("179.5,-17,-179.5,-16").lines.size(), 2U);
-}
-
-TEST_F(RoadLines, OfATownAcrossThe180thMeridianAskForTheExtentOfTheTown) {
-  std::vector<std::string> roads;
-  for (int i = 0; i < 40; ++i) {
-    const double lon = 179.99 + 0.0005 * i;
-    roads.push_back(fmt::format(
-        R"({{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[{0},-16.5],[{0},-16.49]]}}}})",
-        lon > 180.0 ? lon - 360.0 : lon));
-  }
-  const std::string path = geojson(roads);
-  const auto read = [&] { read_road_network({path}, {}, RoadRules(), *UtmZone::from_epsg(32760)); };
-  EXPECT_EQ(code_of(read), "roads-around-the-earth");
-  EXPECT_THAT(message_of(read), HasSubstr("--extent 179.9"));
-}
-
-TEST_F(RoadLines, OfDegreesThatAreDeclaredAsMetresAreRefused) {
-  const std::string road = feature(R"("highway":"primary")", at(-50, -50), at(50, 50));
-  for (const char* crs : {"EPSG:32637", "EPSG:3857", "EPSG:2263"}) {
-    const std::string path = geojson({road});
-    VectorOptions options;
-    options.crs = crs;
-    EXPECT_EQ(code_of([&] { centre_of_roads({path}, options); }), "degrees-as-metres") << crs;
-    EXPECT_EQ(code_of([&] { read_road_network({path}, options, RoadRules(), kZone); }), "degrees-as-metres") << crs;
-    options.extent = testing::extent_around_centre(100);
-    EXPECT_THAT(message_of([&] { read_road_network({path}, options, RoadRules(), kZone); }),
-                HasSubstr("give --crs EPSG:4326"));
-  }
-}
-
-TEST_F(RoadLines, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {
-  const std::string empty = (folder / "empty.geojson").string();
-  std::ofstream(empty) << R"({"type":"FeatureCollection","features":[]})";
-  EXPECT_THAT(message_of([&] { read_road_network({empty}, {}, RoadRules(), kZone); }), HasSubstr("it is empty"));
-  EXPECT_THAT(message_of([&] { centre_of_roads({empty}, {}); }), HasSubstr("it is empty"));
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  EXPECT_EQ(read_road_network({empty, roads}, {}, RoadRules(), kZone).lines.size(), 1U);
-  EXPECT_NEAR(kZone.project(centre_of_roads({empty, roads}, {})).east_m, kCentre.east_m, 1.0);
-}
-
-TEST_F(RoadLines, ALayerIsTakenFromThoseFilesOfAFolderThatHaveIt) {
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  const std::string rivers = (folder / "rivers.geojson").string();
-  std::filesystem::copy_file(roads, rivers);
-  VectorOptions options;
-  options.layer = "roads";
-  EXPECT_EQ(read_road_network({rivers, roads}, options, RoadRules(), kZone).lines.size(), 1U);
-  EXPECT_NEAR(kZone.project(centre_of_roads({rivers, roads}, options)).east_m, kCentre.east_m, 1.0);
-}
-
-TEST_F(RoadLines, TablesWithoutGeometriesBesideTheRoadsAreNoConcern) {
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  const std::string path = (folder / "project.gpkg").string();
-  {
-    const DatasetPtr from = open_dataset(roads, GDAL_OF_VECTOR);
-    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
-    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    to->CreateLayer("layer_styles", nullptr, wkbNone, nullptr);
-    to->CopyLayer(from->GetLayer(0), "roads");
-  }
-  EXPECT_EQ(read_road_network({path}, {}, RoadRules(), kZone).lines.size(), 1U);
-}
-
-TEST_F(RoadLines, TablesThatGdalCannotReadBesideThemAreNoConcern) {
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  const std::string path = (folder / "project.gpkg").string();
-  {
-    const DatasetPtr from = open_dataset(roads, GDAL_OF_VECTOR);
-    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
-    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    to->CopyLayer(from->GetLayer(0), "roads");
-    to->ExecuteSQL("CREATE TABLE keys (id TEXT PRIMARY KEY) WITHOUT ROWID", nullptr, nullptr);
-  }
-  for (const char* layer : {"", "roads"}) {
-    EXPECT_EQ(read_road_network({path}, {.crs = "", .layer = layer, .extent = ""}, RoadRules(), kZone).lines.size(), 1U)
-        << layer;
-  }
-}
-
-TEST_F(RoadLines, TheCentreIsThatOfTheLinesWhateverAreasAndPointsLieBesideThem) {
-  require_gdal();
-  const auto another = [&](const std::string& name, const std::string& geometry) {
-    std::ofstream(folder / name) << R"({"type":"Feature","properties":{},"geometry":)" + geometry + "}";
-    return std::string(folder / name);
-  };
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  const std::string countries =
-      another("countries.geojson", R"({"type":"Polygon","coordinates":[[[-180,-80],[180,-80],[180,80],[-180,-80]]]})");
-  const std::string points = another("points.geojson", R"({"type":"Point","coordinates":[7,50]})");
-  const std::string project = (folder / "project.gpkg").string();
-  {
-    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
-    const DatasetPtr to(driver.Create(project.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    for (const std::string& from : {countries, points, roads}) {
-      to->CopyLayer(open_dataset(from, GDAL_OF_VECTOR)->GetLayer(0), std::filesystem::path(from).stem().c_str());
-    }
-  }
-  for (const std::vector<std::string>& source : {std::vector{project}, {countries, points, roads}}) {
-    EXPECT_NEAR(kZone.project(centre_of_roads(source, {})).east_m, kCentre.east_m, 1.0) << source.front();
-  }
-  EXPECT_NEAR(centre_of_roads({points}, {}).lon_deg, 7.0, 0.01) << "where there is nothing else";
-}
-
-TEST_F(RoadLines, AloneAreTheGroundThatWasSeenWhateverPointsAndAreasShareTheirLayer) {
-  const std::string beside[] = {R"({"type":"Point","coordinates":[9,9]})",
-                                R"({"type":"Polygon","coordinates":[[[9,9],[9.1,9],[9.1,9.1],[9,9]]]})",
-                                R"({"type":"LineString","coordinates":[[9,9],[9,9]]})"};
-  for (const char* properties : {R"("highway":"primary")", R"("name":"Yol")"}) {
-    std::vector<std::string> features{feature(properties, at(-100, -100), at(100, 100))};
-    for (const std::string& geometry : beside) {
-      features.push_back(
-          fmt::format(R"({{"type":"Feature","properties":{{{}}},"geometry":{}}})", properties, geometry));
-    }
-    const std::string path = geojson(features);
-    EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
-    const RoadNetwork network = read_road_network({path}, {}, RoadRules(), kZone);
-    ASSERT_EQ(network.covered.size(), 1U);
-    EXPECT_NEAR(network.covered.front().box().width_m(), 200.0, 10.0) << properties;
-    EXPECT_EQ(network.lines.size(), 1U);
-    EXPECT_EQ(network.left_out, 3);
-  }
-}
-
-TEST_F(RoadLines, TheCentreIsWhereTheyAreWhateverAGeoPackageStates) {
-  require_gdal();
-  const std::string roads = geojson({feature(R"("highway":"primary")", at(-50, 0), at(50, 0))});
-  const std::string path = (folder / "roads.gpkg").string();
-  {
-    GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("GPKG");
-    const DatasetPtr to(driver.Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    to->CopyLayer(open_dataset(roads, GDAL_OF_VECTOR)->GetLayer(0), "roads");
-  }
-  {
-    const DatasetPtr stale(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
-    stale->ExecuteSQL("UPDATE gpkg_contents SET min_x = -180, min_y = -90, max_x = 180, max_y = 90", nullptr, nullptr);
-  }
-  EXPECT_NEAR(kZone.project(centre_of_roads({path}, {})).east_m, kCentre.east_m, 1.0);
-}
-
-TEST_F(RoadLines, OfOpenStreetMapBeyondMemoryAskForRoomAndAreNotCalledDamaged) {
-  const std::string path = (folder / "large.osm").string();
-  {
-    std::ofstream file(path);
-    file << "<?xml version='1.0'?><osm version='0.6'>";
-    for (int i = 1; i <= 4000; ++i) {  // far apart, each takes half a kilobyte
-      file << fmt::format("<node id='{}' version='1' lat='37.7' lon='38.{:04}'/>", 64 * i, i);
-    }
-    file << "<way id='1' version='1'><nd ref='64'/><nd ref='128'/><tag k='highway' v='primary'/></way></osm>";
-  }
-  require_gdal();
-  const auto read = [&](const std::string& temporary) {
-    keep_temporary_files_beside(temporary + "/m.gpkg");
-    std::string code = code_of([&] { read_road_network({path}, {}, RoadRules(), kZone); });
-    CPLSetConfigOption("CPL_TMPDIR", nullptr);
-    return code;
-  };
-  const char* const asked = CPLGetConfigOption("TMPDIR", CPLGetConfigOption("TEMP", nullptr));
-  if (asked != nullptr) GTEST_SKIP() << "the environment says where temporary files are";
-  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", "1");
-  EXPECT_EQ(read((folder / "not there").string()), "temporary-files-refused");
-  EXPECT_EQ(read(folder.path().string()), "no error");
-  CPLSetConfigOption("OSM_MAX_TMPFILE_SIZE", nullptr);
 }
 
 }  // namespace

@@ -1,14 +1,16 @@
 #include "core/locate/odometry_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadfix {
 
-OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise) {
-  constexpr double kLeastM = 0.3;
+OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const VehicleNoise& noise) {
+  constexpr double kLeastM = 0.3;  // of a step of a second or less
   constexpr Angle kLeastTurn = Angle::degrees(0.5);
-  const double metres = kLeastM + noise.odometry_share * distance_m(odometry);
-  const double turn = kLeastTurn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
+  const double walked = std::sqrt(std::max(1.0, seconds));
+  const double metres = walked * kLeastM + noise.odometry_share * distance_m(odometry);
+  const double turn = walked * kLeastTurn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
   return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
 }
 

@@ -8,9 +8,10 @@
 
 namespace roadfix {
 
-/// Covariance of (forward m, right m, turn rad): sigmas are a share of what was travelled, and at least a little, as
-/// `noise` says.
-OdometryCovariance covariance_of(const Odometry& odometry, const VehicleNoise& noise);
+/// Covariance of (forward m, right m, turn rad) of a step of so many seconds: sigmas are a share of what was travelled,
+/// as `noise` says, and a little that grows with the root of the seconds beyond the first. A minute in one step is
+/// about as uncertain as in sixty.
+OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const VehicleNoise& noise);
 
 /// The odometry of a step and of `lost` steps before it, of which nothing is known: they are taken to have been like
 /// this one, give or take half of it (1 sigma).

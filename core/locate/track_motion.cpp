@@ -28,7 +28,8 @@ constexpr double kTriedShare = 0.1;  // of the particles, before it is found wro
 }  // namespace
 
 OdometryCovariance StepMotion::odometry_covariance() const {
-  return told_.covariance ? *told_.covariance : covariance_of(*told_.odometry, vehicle_);
+  if (told_.covariance) return *told_.covariance;
+  return covariance_of(*told_.odometry, told_.seconds / static_cast<double>(1 + told_.lost_steps), vehicle_);
 }
 
 bool StepMotion::covers_ground() const { return wind().is_none() && told_.lost_steps == 0; }

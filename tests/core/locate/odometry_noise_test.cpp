@@ -19,14 +19,21 @@ void expect_sigmas(const OdometryCovariance& covariance, double metres, double d
 
 TEST(OdometryNoise, IsFivePercentAnd30CentimetresOrHalfADegree) {
   const VehicleNoise unsaid;
-  expect_sigmas(covariance_of({0.0, 0.0, {}}, unsaid), 0.3, 0.5);
-  expect_sigmas(covariance_of({30.0, -40.0, Angle::degrees(-20.0)}, unsaid), 0.3 + 2.5, 0.5 + 1.0);
+  expect_sigmas(covariance_of({0.0, 0.0, {}}, 1.0, unsaid), 0.3, 0.5);
+  expect_sigmas(covariance_of({0.0, 0.0, {}}, 0.0, unsaid), 0.3, 0.5);
+  expect_sigmas(covariance_of({30.0, -40.0, Angle::degrees(-20.0)}, 0.2, unsaid), 0.3 + 2.5, 0.5 + 1.0);
+}
+
+TEST(OdometryNoise, IsAboutThatOfStepsOfASecondInAStepOfManySeconds) {
+  const VehicleNoise unsaid;
+  expect_sigmas(covariance_of({0.0, 0.0, {}}, 64.0, unsaid), 8.0 * 0.3, 8.0 * 0.5);
+  expect_sigmas(covariance_of({30.0, -40.0, Angle::degrees(-20.0)}, 64.0, unsaid), 2.4 + 2.5, 4.0 + 1.0);
 }
 
 TEST(OdometryNoise, IsTheShareThatIsTold) {
   VehicleNoise vehicle;
   vehicle.odometry_share = 0.2;
-  expect_sigmas(covariance_of({0.0, 100.0, Angle::degrees(10.0)}, vehicle), 0.3 + 20.0, 0.5 + 2.0);
+  expect_sigmas(covariance_of({0.0, 100.0, Angle::degrees(10.0)}, 1.0, vehicle), 0.3 + 20.0, 0.5 + 2.0);
 }
 
 TEST(OdometryNoise, IsHalfOfWhatLostStepsMayHaveMoved) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/grid/resample.hpp"
+#include "core/locate/match_poses.hpp"
 #include "core/locate/track_geometry.hpp"
 
 namespace roadfix {
@@ -16,6 +17,12 @@ constexpr double kMaxLookRadiusM = 150.0;  // where as much was flown since the 
 const Angle kLookHeading = Angle::degrees(15.0);
 const Angle kNearHeading = Angle::degrees(3.0);  // as kNearM below
 const Angle kMaxNearHeading = Angle::degrees(6.0);
+
+constexpr double kSigmas = 2.0;  // of the belief, within which it may be off
+
+FeatureMap at_scale_of(const Cluster& belief, const FeatureMap& frame) {
+  return resampled(frame, frame.cell_m, std::exp(belief.log_scale));
+}
 
 /// Probability of the poses within this distance and angle of a belief.
 double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zone, double radius_m, Angle angle) {
@@ -34,7 +41,6 @@ Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& z
   constexpr double kMaxShareBeside = 0.2;  // of the best place's probability
   constexpr double kNearM = 15.0;
   constexpr double kMaxNearM = 30.0;  // however wide the belief: all that was searched lies near it then
-  constexpr double kSigmas = 2.0;
   using Outcome = Look::Outcome;
   if (!fix.complete) return Outcome::kOpen;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
@@ -43,9 +49,10 @@ Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& z
       probability_near(fix, belief, zone, std::min(near_m, kMaxNearM), std::min(turned, kMaxNearHeading));
   if (borne_out > kMinProbability) return Outcome::kBorneOut;
   const bool found = fix.status != FixStatus::kNoFix && fix.probability > kMinProbability;
-  const bool beside =
-      found && probability_near(fix, belief, zone, near_m, kLookHeading) < kMaxShareBeside * fix.probability;
-  return beside ? Outcome::kBeside : Outcome::kOpen;
+  if (!found) return Outcome::kOpen;
+  const double little = kMaxShareBeside * fix.probability;
+  if (probability_near(fix, belief, zone, near_m, kLookHeading) < little) return Outcome::kBeside;
+  return probability_near(fix, belief, zone, near_m, turned) < little ? Outcome::kTurned : Outcome::kOpen;
 }
 
 }  // namespace
@@ -56,16 +63,29 @@ bool LookAge::is_outdated() const {
   return us >= kOpenLooks * kLookEvery.us || flown_m >= kOpenLooks * kLookEvery.flown_m;
 }
 
+bool fits_better_turned(const MapView& map, const FeatureMap& frame, const Cluster& belief) {
+  const FeatureMap seen = at_scale_of(belief, frame);
+  const auto rho = [&](Angle turn) {
+    return rho_at(map, seen, {belief.mean.position, belief.mean.heading + turn}).value_or(0.0);
+  };
+  const double straight = rho({});
+  const Angle sure = kSigmas * Angle::radians(std::sqrt(belief.covariance[2][2]));
+  for (Angle turn = kNearHeading; turn <= kLookHeading; turn += kNearHeading) {
+    if (turn > sure && std::max(rho(turn), rho(-turn)) > straight) return true;
+  }
+  return false;
+}
+
 Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
                  double flown_m) {
   const double radius_m = std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM);
   const auto around = prior_near(map, belief.mean, radius_m, kLookHeading);
   if (!around) return {};
-  const FeatureMap seen = resampled(frame, frame.cell_m, std::exp(belief.log_scale));
+  const FeatureMap seen = at_scale_of(belief, frame);
   const std::optional<Fix> fix = search.find(seen, *around, {.looks_beyond_prior = false});
   if (!fix) return {};
   Look look{outcome_of(*fix, belief, map.zone), {}};
-  if (look.outcome == Look::Outcome::kBeside) {
+  if (look.outcome == Look::Outcome::kBeside || look.outcome == Look::Outcome::kTurned) {
     look.places = proposals_of(map, *fix, seen);
     for (Proposal& place : look.places) place.log_scale += belief.log_scale;
   }

@@ -26,10 +26,14 @@ struct LookAge {
 
 /// What a search around a belief says of it.
 struct Look {
-  enum class Outcome { kBorneOut, kBeside, kOpen };
+  enum class Outcome { kBorneOut, kTurned, kBeside, kOpen };  ///< turned: there, with another heading
   Outcome outcome = Outcome::kOpen;
-  std::vector<Proposal> places;  ///< that are likely instead; only of kBeside
+  std::vector<Proposal> places;  ///< that are likely instead; only of kTurned and kBeside
 };
+
+/// Whether the frame fits better where the vehicle is believed to be if that is turned: a sign, for a look to follow,
+/// that one turn was told wrong.
+bool fits_better_turned(const MapView& map, const FeatureMap& frame, const Cluster& belief);
 
 /// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. Open where
 /// that lies beyond the map or is too much to search.

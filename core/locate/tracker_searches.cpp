@@ -53,8 +53,9 @@ void Tracker::Step::look_around_if_due() {
   if (!settings_.recovers || !sure || outcome_.measurement == Measurement::kUseless) return;
   const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
   const LookAge last{since_us, state_.claim.flown_m};
-  if (state_.claim.looked_time_us && !last.is_due()) return;
   const Cluster belief = clusters_of(filter_.particles()).front();
+  const bool due = !state_.claim.looked_time_us || last.is_due();
+  if (!due && !fits_better_turned(map_, *features_, belief)) return;
   take(look_around(search_, map_, *features_, belief, last.flown_m), last);
 }
 
@@ -68,8 +69,10 @@ void Tracker::Step::take(const Look& look, LookAge last) {
       if (last.is_outdated()) state_.claim.looked_time_us.reset();
       break;
     case Look::Outcome::kBeside:
-      state_.claim.reject();
       motion_.learn_drift(filter_);
+      [[fallthrough]];
+    case Look::Outcome::kTurned:
+      state_.claim.reject();
       filter_.inject(look.places, kMovedShare);
   }
 }

@@ -30,6 +30,12 @@ class Track : public ::testing::Test {
     return distance_m(view_.zone.project(estimate.clusters.at(0).pose.position), truth.position);
   }
 
+  Angle heading_error(const TrackEstimate& estimate, const GridPose& truth) const {
+    const GeoPose& claimed = estimate.clusters.at(0).pose;
+    const Angle grid = view_.zone.grid_from_true(claimed.heading, view_.zone.project(claimed.position));
+    return angular_distance(grid, truth.heading);
+  }
+
   TrackEstimate advance(const Tracker& tracker, const StepInput& step) {
     StepResult result = tracker.advance(state_, step);
     state_ = std::move(result.state);

@@ -69,14 +69,33 @@ TEST_F(TrackLook, IsOpenAlongASingleStraightRoad) {
   }
 }
 
-TEST_F(TrackLook, BearsOutNoPlaceWhereTheVehicleHeadsElsewhere) {
+TEST_F(TrackLook, FindsTheVehicleThereWithTheHeadingThatItHas) {
   const auto turned = [&](double degrees) {
-    return look_from({truth_.position, truth_.heading + Angle::degrees(degrees)}).outcome;
+    return look_from({truth_.position, truth_.heading + Angle::degrees(degrees)});
   };
-  EXPECT_EQ(turned(2.0), Look::Outcome::kBorneOut);
-  EXPECT_EQ(turned(-2.0), Look::Outcome::kBorneOut);
-  EXPECT_EQ(turned(5.0), Look::Outcome::kOpen);
-  EXPECT_EQ(turned(-8.0), Look::Outcome::kOpen);
+  EXPECT_EQ(turned(2.0).outcome, Look::Outcome::kBorneOut);
+  EXPECT_EQ(turned(-2.0).outcome, Look::Outcome::kBorneOut);
+  for (const double degrees : {5.0, -8.0}) {
+    const Look look = turned(degrees);
+    ASSERT_EQ(look.outcome, Look::Outcome::kTurned) << degrees;
+    EXPECT_LT(angular_distance(look.places.at(0).mean.heading, truth_.heading).degrees(), 1.0);
+  }
+}
+
+TEST_F(TrackLook, SeesThatAFrameFitsBetterTurnedBeyondWhatTheBeliefLeavesOpen) {
+  const auto better = [&](double degrees, double sigma_deg = 1.0) {
+    Cluster belief;
+    belief.mean = {truth_.position, truth_.heading + Angle::degrees(degrees)};
+    belief.covariance[2][2] = std::pow(Angle::degrees(sigma_deg).radians(), 2);
+    return fits_better_turned(view_, frame_, belief);
+  };
+  EXPECT_FALSE(better(0.0));
+  EXPECT_FALSE(better(1.0));
+  EXPECT_FALSE(better(-1.0));
+  EXPECT_TRUE(better(4.0));
+  EXPECT_TRUE(better(-8.0));
+  EXPECT_TRUE(better(12.0));
+  EXPECT_FALSE(better(4.0, 4.0));
 }
 
 TEST_F(TrackLook, BearsOutNoPlaceFarFromTheVehicleHoweverUnsureTheBelief) {

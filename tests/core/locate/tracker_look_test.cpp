@@ -84,6 +84,28 @@ TEST_F(Track, FollowsAVehicleWhoseOdometryTellsAThirdTooLittleOrTooMuch) {
   }
 }
 
+TEST_F(Track, ClaimsNoHeadingThatOneWrongTurnTold) {
+  const Tracker tracker(view_, settings());
+  int claims = 0;
+  for (const double wrong_deg : {6.0, -9.0}) {
+    for (const std::uint64_t seed : {5U, 7U}) {
+      Flight flight(map_, start_, seed);
+      state_ = {};
+      ASSERT_TRUE(fly(tracker, flight, 12).converged);
+      for (int i = 0; i < 4; ++i) {
+        StepInput step = flight.step();
+        if (i == 0) step.odometry->turn += Angle::degrees(wrong_deg);
+        const TrackEstimate estimate = advance(tracker, step);
+        if (!estimate.converged) continue;
+        ++claims;
+        const double off_deg = heading_error(estimate, flight.pose()).degrees();
+        EXPECT_LT(off_deg, 3.0) << wrong_deg << " at seed " << seed << ", step " << i;
+      }
+    }
+  }
+  EXPECT_GE(claims, 4) << "of 16";
+}
+
 TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
   Calibration doubts = default_calibration();
   doubts.highest = 0.45;

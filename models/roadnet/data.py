@@ -45,7 +45,7 @@ class Level:
     image: np.ndarray
     label: np.ndarray
     weight: np.ndarray
-    another_day: np.ndarray | None = None  # a second picture of the same ground
+    another_day: tuple[np.ndarray, np.ndarray] | None = None  # a second picture of the same ground, and the weight there
 
 
 class Pair:
@@ -145,14 +145,16 @@ def load_pairs(options, root):
 
 
 def join_days(pairs):
-    """Gives each picture the one that shows its place on another day."""
+    """Gives each picture the one that shows its place on another day, with no weight where that day did not see the ground."""
     places = {}
     for pair in pairs:
         places.setdefault(place_of(pair.name), []).append(pair)
     for days in places.values():
         for pair, other in zip(days, days[1:] + days[:1]):
             for level, same in zip(pair.levels, other.levels):
-                level.another_day = same.image if other is not pair and same.image.shape == level.image.shape else None
+                if other is not pair and same.image.shape == level.image.shape:
+                    seen = cv2.resize(other.seen * np.uint8(255), level.weight.shape[::-1], interpolation=cv2.INTER_AREA)
+                    level.another_day = same.image, np.minimum(level.weight, seen)
 
 
 def oblique(size, tilt, distance):
@@ -166,7 +168,7 @@ def oblique(size, tilt, distance):
 
 def warp(level, gsd_m, size, angle, flip, centre, view):
     """A square of `size` pixels of `gsd_m` round `centre` (in the level's pixels), turned by `angle` and seen through the
-    homography `view` of its pixels: picture, label, weight, and the picture of another day or, without one, the same."""
+    homography `view` of its pixels: picture, label, weight, and picture and weight of another day or, without one, the same."""
     step = gsd_m / level.gsd_m
     cos, sin = math.cos(angle) * step, math.sin(angle) * step
     matrix = np.array([[cos * flip, -sin, 0.0], [sin * flip, cos, 0.0]])
@@ -174,11 +176,16 @@ def warp(level, gsd_m, size, angle, flip, centre, view):
     matrix[:, 2] = np.array(centre) - matrix[:, :2] @ np.array([middle, middle])
     matrix = np.vstack([matrix, [0.0, 0.0, 1.0]]) @ view
     how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    days = [cv2.warpPerspective(picture, matrix, (size, size), flags=how, borderValue=(FILL,) * 3)
-            for picture in (level.image, level.another_day) if picture is not None]
-    label = cv2.warpPerspective(level.label, matrix, (size, size), flags=how, borderValue=0)
-    weight = cv2.warpPerspective(level.weight, matrix, (size, size), flags=how, borderValue=0)
-    return days[0], label.astype(np.float32) / 255, (weight > 191).astype(np.float32), days[-1]
+
+    def warped(values, beyond=0):
+        return cv2.warpPerspective(values, matrix, (size, size), flags=how, borderValue=beyond)
+
+    def day(picture, weight):
+        return warped(picture, (FILL,) * 3), (warped(weight) > 191).astype(np.float32)
+
+    image, weight = day(level.image, level.weight)
+    another = day(*level.another_day) if level.another_day else (image, weight)
+    return image, warped(level.label).astype(np.float32) / 255, weight, *another
 
 
 class Crops:
@@ -208,13 +215,13 @@ class Crops:
     def __getitem__(self, index):
         rng = np.random.default_rng([self.seed, index])
         chosen = int(rng.choice(len(self.pairs), p=self.shares))
-        image, label, weight, another = self.crop(chosen, self.size, rng)
+        image, label, weight, another, weight_there = self.crop(chosen, self.size, rng)
         strength = min(1.0, 0.2 + index / self.ramp)
         changed, kept, seen = augment.apply(image, label, weight, self.gsd_m, rng, strength)
         clean = image, ~augment.weight_is_unseen(image, weight)
         parts = [changed, seen, *clean, label * 255, kept]
         if self.twice:
-            changed, kept, seen = augment.apply(another, label, weight, self.gsd_m, rng, WILDER * strength)
+            changed, kept, seen = augment.apply(another, label, weight_there, self.gsd_m, rng, WILDER * strength)
             parts += [changed, seen, kept]
         return tuple(map(channels_first, parts))
 

@@ -12,7 +12,7 @@ import with_torch  # noqa: F401
 import cv2
 import numpy as np
 import torch
-from roadnet import alignment, data
+from roadnet import alignment, augment, data
 
 FOOTPRINT = alignment.Footprint(row=11, col=5, side=40)
 
@@ -101,26 +101,51 @@ class Alignment(unittest.TestCase):
 
 
 class TwoPictures(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder = Path(place.name)
+
+    def crops(self, unseen_later=0):
+        """Of three places on two days, of which the second shows none of the first `unseen_later` columns."""
+        for part in ("images", "masks"):
+            (self.folder / part).mkdir()
+        mask = np.zeros((160, 160), np.uint8)
+        cv2.line(mask, (20, 10), (140, 150), 255, 9)
+        for place in "abc":
+            for day, value in (("pre", 40), ("post", 210)):
+                picture = np.full((160, 160, 3), value, np.uint8)
+                picture[mask > 0] = 125
+                if day == "post":
+                    picture[:, :unseen_later] = 0
+                cv2.imwrite(f"{self.folder}/images/{place}_{day}.png", picture)
+                cv2.imwrite(f"{self.folder}/masks/{place}_{day}.png", mask)
+        options = data.SetOptions("own", "images", "masks", 1.0, nodata="black")
+        return data.Crops([options], self.folder, 1.0, 96, 3, 10 ** 9, twice=True)
+
     def test_of_a_crop_are_two_days_of_one_place_in_one_geometry(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for part in ("images", "masks"):
-                (Path(folder) / part).mkdir()
-            mask = np.zeros((160, 160), np.uint8)
-            cv2.line(mask, (20, 10), (140, 150), 255, 9)
-            for place in "abc":
-                for day, value in (("pre", 40), ("post", 210)):
-                    picture = np.full((160, 160, 3), value, np.uint8)
-                    picture[mask > 0] = 125
-                    cv2.imwrite(f"{folder}/images/{place}_{day}.png", picture)
-                    cv2.imwrite(f"{folder}/masks/{place}_{day}.png", mask)
-            crops = data.Crops([data.SetOptions("own", "images", "masks", 1.0)], folder, 1.0, 96, 3, 10 ** 9, twice=True)
-            changed, _, clean, _, label, _, another, *_ = crops[4]
-            self.assertEqual([part.shape for part in (changed, another)], [(3, 96, 96)] * 2)
-            *_, later = crops.crop(0, 96, np.random.default_rng(1))
-            first, _, _, again = crops.crop(0, 96, np.random.default_rng(1))
-            np.testing.assert_array_equal(later, again)
-            self.assertEqual({*np.unique(first)} & {40, 210} | {*np.unique(again)} & {40, 210}, {40, 210})
-            np.testing.assert_array_equal(first == 125, again == 125)
+        crops = self.crops()
+        changed, _, clean, _, label, _, another, *_ = crops[4]
+        self.assertEqual([part.shape for part in (changed, another)], [(3, 96, 96)] * 2)
+        first, _, weight, again, weight_again = crops.crop(0, 96, np.random.default_rng(1))
+        self.assertEqual({*np.unique(first)} & {40, 210} | {*np.unique(again)} & {40, 210}, {40, 210})
+        np.testing.assert_array_equal(first == 125, again == 125)
+        np.testing.assert_array_equal(weight, weight_again)
+
+    def test_ground_that_the_second_did_not_see_is_not_told_as_seen(self):
+        crops, shares = self.crops(unseen_later=80), []
+        for seed in range(20):
+            _, label, _, another, weight = crops.crop(0, 96, np.random.default_rng(seed))
+            unseen = (another == data.FILL).all(2) & (label == 0)  # where a road blurs into the ground, some pixels are as grey
+            self.assertTrue(augment.weight_is_unseen(another, weight)[unseen].all())
+            shares.append(unseen.mean())
+        self.assertTrue(min(shares) < 0.2 and max(shares) > 0.5)
+
+    def test_a_second_that_saw_nothing_of_the_ground_teaches_nothing(self):
+        crops = self.crops(unseen_later=160)
+        for number in range(5):
+            *_, seen, weight = crops[number]
+            self.assertFalse(seen.any() or weight.any())
 
 
 if __name__ == "__main__":

@@ -36,6 +36,17 @@ class SetOptions:
     terms: str = ""
     attribution: str = ""
 
+    def __post_init__(self):
+        for field, words in (("label", ("surface", "centreline")), ("nodata", ("", "black", "white"))):
+            self.require(field, getattr(self, field) in words, f"one of {', '.join(map(repr, words))}")
+        for field, least in (("gsd_m", 0.001), ("share", 0), ("ignore_band_m", 0), ("close_holes_m", 0), ("hold_out_every", 0)):
+            value = getattr(self, field)
+            self.require(field, isinstance(value, (int, float)) and least <= value < math.inf, f"a number of at least {least}")
+
+    def require(self, field, holds, what):
+        if not holds:
+            raise SystemExit(f"set '{self.name}': {field} is {getattr(self, field)!r}, which must be {what}")
+
 
 @dataclass
 class Level:
@@ -206,6 +217,8 @@ class Crops:
                 shares.append(options.share)
             self.held_out += held_out
             print(f"{options.name}: {len(training)} pairs to train on, {len(held_out)} held out", flush=True)
+        if not self.pairs:
+            raise SystemExit("there is nothing to train on: no set with a share above 0 has pairs that are not held out")
         self.shares = np.array(shares) / sum(shares)
         self.areas = [np.array([p.levels[0].weight.mean() * p.seen.size * p.levels[0].gsd_m ** 2 for p in pairs]) for pairs in self.pairs]
 

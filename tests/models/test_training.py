@@ -126,6 +126,20 @@ class Parts(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, f"{broken}: .* cannot be read"):
                     data.load_pairs(options, place)
 
+    def test_a_set_with_a_wrong_word_or_number_is_refused_by_set_and_field(self):
+        for field, value in (("label", "Surface"), ("nodata", "Black"), ("gsd_m", 0.0), ("gsd_m", float("nan")), ("share", -1.0),
+                             ("share", "1"), ("ignore_band_m", -3), ("close_holes_m", -1.0), ("hold_out_every", -1)):
+            with self.assertRaisesRegex(SystemExit, f"'own': {field} is {value!r}"):
+                data.SetOptions(**{"name": "own", "images": "", "masks": "", "gsd_m": 1.0, field: value})
+
+    def test_sets_of_which_nothing_is_left_to_train_on_are_refused(self):
+        with tempfile.TemporaryDirectory() as place:
+            draw_pairs(Path(place) / "pairs", count=2, size=32)
+            for field, value in (("hold_out_every", 1), ("share", 0)):
+                options = data.SetOptions("own", "pairs/images", "pairs/masks", 1.0, **{field: value})
+                with self.assertRaisesRegex(SystemExit, "nothing to train on"):
+                    data.Crops([options], place, 1.0, 64, 3)
+
     def test_the_band_round_a_centreline_is_ignored_and_its_middle_is_road(self):
         mask = np.zeros((60, 60), np.uint8)
         mask[28:32] = 255

@@ -207,18 +207,19 @@ class Crops:
 
     def __init__(self, sets, root, gsd_m, size, seed, ramp=1, twice=False):
         self.gsd_m, self.size, self.seed, self.ramp, self.twice = gsd_m, size, seed, ramp, twice
-        self.pairs, self.held_out, shares = [], [], []
+        self.sets, self.pairs, self.held_out = [], [], []  # sets to train on, the pairs of each, and what is held out of all
         for options in sets:
             training, held_out = load_pairs(options, root)
             if twice:
                 join_days(training)
             if training and options.share > 0:
+                self.sets.append(options)
                 self.pairs.append(training)
-                shares.append(options.share)
             self.held_out += held_out
             print(f"{options.name}: {len(training)} pairs to train on, {len(held_out)} held out", flush=True)
         if not self.pairs:
             raise SystemExit("there is nothing to train on: no set with a share above 0 has pairs that are not held out")
+        shares = [options.share for options in self.sets]
         self.shares = np.array(shares) / sum(shares)
         self.areas = [np.array([p.levels[0].weight.mean() * p.seen.size * p.levels[0].gsd_m ** 2 for p in pairs]) for pairs in self.pairs]
 

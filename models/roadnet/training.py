@@ -60,10 +60,19 @@ def save(path, **state):
     partial.replace(path)
 
 
+def identity_of(options, crops):
+    """What a run learns from and how: all but how long it takes, where it runs, and what it reports and saves when."""
+    how = ("seed", "batch", "size", "rate", "cool", "ramp", "trust", "align")
+    sets = [{name: value for name, value in vars(each).items() if name not in ("terms", "attribution")} for each in crops.sets]
+    return {"gsd_m": crops.gsd_m, "widths": tuple(options.widths), **{name: getattr(options, name) for name in how},
+            "begin_with": str(options.begin_with), "teacher": list(map(str, options.teacher)),
+            "sets": [each["name"] for each in sets], **{f"set {number}": each for number, each in enumerate(sets, 1)}}
+
+
 def require_same_run(state, checkpoint, wanted):
     for name, value in wanted.items():
-        if state[name] != value:
-            raise SystemExit(f"{checkpoint} is of a run with {name} {state[name]}, not {value}: name another folder with --out, "
+        if state.get(name) != value:
+            raise SystemExit(f"{checkpoint} is of a run with {name} {state.get(name)}, not {value}: name another folder with --out, "
                              "or begin anew with --restart")
 
 
@@ -81,7 +90,7 @@ class Run:
     def __init__(self, options, crops):
         self.device = torch.device(options.device)
         self.precision = torch.autocast(self.device.type, torch.bfloat16, enabled=options.bf16)
-        self.identity = {"gsd_m": crops.gsd_m, "seed": options.seed, "widths": tuple(options.widths)}
+        self.identity = identity_of(options, crops)
         self.checkpoint = Path(options.out) / "checkpoint.pt"
         start = read_network([options.begin_with]) if options.begin_with else RoadNet(options.widths)
         if start.widths != self.identity["widths"]:

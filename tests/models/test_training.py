@@ -10,12 +10,14 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from with_torch import MODELS
 
 import cv2
 import numpy as np
 import torch
+import train
 from roadnet import augment, checkpoints, data, export, losses, metrics, network, unfold
 
 
@@ -72,7 +74,7 @@ class Training(unittest.TestCase):
                     process.kill()
 
     def test_a_users_own_pairs_become_a_network_that_opencv_runs(self):
-        self.train("pairs", "run", "--steps", 30)
+        self.train("pairs", "run", "--steps", 30, "--ramp", 1000000)
         self.assertIn("resume from", self.train("pairs", "run", "--steps", 60, "--ramp", 1000000))
         self.assertGreater(f1_of(self.folder / "run/checkpoint.pt", self.folder), 0.5)
 
@@ -100,13 +102,23 @@ class Training(unittest.TestCase):
         for name, value in whole["averaged"].items():
             torch.testing.assert_close(killed["averaged"][name], value, rtol=0, atol=0)
 
-    def test_a_run_of_another_seed_or_scale_is_not_gone_on_with(self):
-        self.train("pairs", "run", "--steps", 1)
-        for option in (("--seed", 2), ("--gsd", 0.8)):
-            done = subprocess.run(arguments_of(*self.command("pairs", "run", "--steps", 2, *option)), capture_output=True, text=True)
-            self.assertEqual(done.returncode, 1)
-            self.assertIn("--restart", done.stderr)
+    def test_a_run_that_differs_in_what_it_learns_or_how_is_not_gone_on_with(self):
+        def train_on(pairs, *more):
+            arguments = [*self.command(pairs, "run", "--steps", 1, "--report", 1), *more]
+            with mock.patch.object(sys, "argv", list(map(str, arguments))):
+                train.main()
 
+        train_on("pairs")
+        checkpoint = self.folder / "run/checkpoint.pt"
+        for option, value in (("seed", 2), ("gsd", 0.8), ("batch", 2), ("size", 64), ("rate", 1e-3), ("cool", 0.5), ("ramp", 9),
+                              ("trust", 1), ("align", 1.6), ("begin_with", checkpoint), ("teacher", checkpoint)):
+            with self.subTest(option), self.assertRaisesRegex(SystemExit, f"{option}.*, not .*--restart"):
+                train_on("pairs", "--" + option.replace("_", "-"), value)
+        for pairs, what in (("others", "sets"), ("elsewhere/pairs", "set 1")):
+            shutil.copytree(self.folder / "pairs", self.folder / pairs)
+            with self.subTest(what), self.assertRaisesRegex(SystemExit, f"{what} .*, not .*--restart"):
+                train_on(pairs)
+        train_on("pairs", "--report", 5, "--save-every", 5)
 
 class Parts(unittest.TestCase):
     def test_the_same_seed_and_number_give_the_same_crop(self):

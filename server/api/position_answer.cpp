@@ -28,6 +28,10 @@ std::optional<autopilot::Position> position_of(const nlohmann::json& answer, Ang
                              std::max(sigma_m[0], sigma_m[1])};
 }
 
+void read_id(const Fields& fields, const std::string& name, std::uint8_t& id) {
+  if (const auto told = fields.optional_integer(name, 1, 255)) id = static_cast<std::uint8_t>(*told);
+}
+
 /// nullopt where there is nothing to be said.
 std::optional<std::string> encoded(const autopilot::PositionReport& report, const PositionFormat& format) {
   if (format.name == "global_position_sensor") return autopilot::global_position_sensor(report, format.sender);
@@ -40,8 +44,8 @@ std::optional<std::string> encoded(const autopilot::PositionReport& report, cons
 }  // namespace
 
 const std::vector<std::string>& position_fields() {
-  static const std::vector<std::string> kFields{"format",     "alt_m",  "camera_yaw_deg",
-                                                "satellites", "system", "component"};
+  static const std::vector<std::string> kFields{"format", "alt_m",  "camera_yaw_deg", "satellites",
+                                                "system", "sensor", "component"};
   return kFields;
 }
 
@@ -53,10 +57,9 @@ PositionFormat parse_position_format(const http::Request& request, const Fields&
   format.altitude_msl_m = fields.optional_number("alt_m", {-1000.0, 50'000.0});
   format.camera_yaw = fields.optional_angle("camera_yaw_deg", kDegrees).value_or(Angle());
   format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
-  format.sender.system = static_cast<std::uint8_t>(fields.optional_integer("system", 1, 255).value_or(1));
-  if (const auto component = fields.optional_integer("component", 1, 255)) {
-    format.sender.component = static_cast<std::uint8_t>(*component);
-  }
+  read_id(fields, "system", format.sender.system);
+  read_id(fields, "sensor", format.sender.sensor);
+  read_id(fields, "component", format.sender.component);
   return format;
 }
 

@@ -35,6 +35,7 @@ struct MavlinkSender {
   std::uint8_t system = 1;       ///< the vehicle's
   std::uint8_t component = 197;  ///< MAV_COMP_ID_VISUAL_INERTIAL_ODOMETRY
   std::uint8_t sequence = 0;     ///< counts the packets of one link
+  std::uint8_t sensor = 1;       ///< in messages of sensors; 0 is none to PX4
 };
 
 struct MavlinkMessage {

@@ -40,7 +40,7 @@ std::optional<std::string> global_position_sensor(const PositionReport& report, 
       .add(kUnknown)  // 1 sigma of the height
       .add(sender.system)
       .add(kEveryComponent)
-      .add(std::uint8_t{0})  // the first sensor
+      .add(sender.sensor)
       .add(kSourceVision)
       .add(std::uint8_t{0});  // healthy, not the vehicle's own estimate
   return mavlink_packet(kGlobalPositionSensor, payload, sender);

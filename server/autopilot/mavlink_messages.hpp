@@ -14,7 +14,7 @@ namespace roadfix::autopilot {
 std::int32_t degrees_e7(double degrees);
 
 /// GLOBAL_POSITION_SENSOR (296), source VISION, to all components of the sender's system; heights are NaN where they
-/// are not known. PX4 fuses it with EKF2_AGP.
+/// are not known. PX4 fuses that of the sensor of EKF2_AGP0_ID.
 std::optional<std::string> global_position_sensor(const PositionReport& report, const MavlinkSender& sender);
 
 /// MAV_CMD_EXTERNAL_POSITION_ESTIMATE (43003) in COMMAND_INT (75), to the autopilot of the sender's system. ArduPilot's

@@ -65,7 +65,7 @@ class Lines(unittest.TestCase):
         names = [schema["components"]["parameters"][p["$ref"].split("/")[-1]]["name"] if "$ref" in p else p["name"]
                  for p in parameters]
         of_the_step = {"sequence", "time_us", "forward_m", "right_m", "turn_deg", "covariance",
-                       "format", "alt_m", "camera_yaw_deg", "satellites", "system", "component"}
+                       "format", "alt_m", "camera_yaw_deg", "satellites", "system", "sensor", "component"}
         self.assertEqual(set(names) - of_the_step, set(PICTURE_FIELDS))
 
     def test_that_cannot_be_read_say_so(self):

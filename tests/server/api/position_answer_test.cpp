@@ -57,8 +57,13 @@ TEST(PositionFormat, TakesWhatTheClientKnowsOfItsVehicle) {
   EXPECT_EQ(told.satellites, 10);
   EXPECT_EQ(told.sender.system, 7);
   EXPECT_EQ(told.sender.component, 42);
-  for (const auto& [name, value] :
-       {std::pair("alt_m", 50'001), {"satellites", 100}, {"system", 0}, {"system", 256}, {"component", 0}}) {
+  for (const auto& [name, value] : {std::pair("alt_m", 50'001),
+                                    {"satellites", 100},
+                                    {"system", 0},
+                                    {"system", 256},
+                                    {"sensor", 0},
+                                    {"sensor", 256},
+                                    {"component", 0}}) {
     EXPECT_EQ(refused_format({{name, value}}), std::string("parameter-out-of-range ") + name);
   }
 }
@@ -100,6 +105,15 @@ TEST(PositionAnswer, IsInTheFormatAskedForWithItsStatusBeside) {
     EXPECT_THAT(response.headers, Contains(Pair("Roadfix-Status", "fix"))) << name;
     EXPECT_THAT(response.headers, Contains(Pair("Vary", "Accept"))) << "caches must tell the formats apart";
   }
+}
+
+/// To PX4 an id of 0 is that of a slot which is off.
+TEST(PositionAnswer, IsThatOfSensorOneUnlessTheClientNamesAnother) {
+  constexpr std::size_t kId = 10 + 38;  // header, and what precedes it in message 296
+  json request{{"format", "global_position_sensor"}};
+  EXPECT_EQ(position_response(kKnown, format_of(request), kTime).body.at(kId), 1);
+  request["sensor"] = 3;
+  EXPECT_EQ(position_response(kKnown, format_of(request), kTime).body.at(kId), 3);
 }
 
 TEST(PositionAnswer, OfWhatIsNotKnownTellsNoPosition) {

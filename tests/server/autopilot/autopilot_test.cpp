@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr MavlinkSender kSender{7, 197, 41};
+constexpr MavlinkSender kSender{7, 197, 41, 3};
 
 /// Of 2025-11-21 11:34:56.25 UTC, a quarter of a second ago.
 PositionReport known() {

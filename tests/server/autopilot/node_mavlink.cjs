@@ -61,11 +61,11 @@ const messages = {
   }],
   global_position_sensor: [new GlobalPositionSensor(), {
     timeUsec: 1763724896500000n, processingTime: 250000, lat: 377632123, lon: -1222571987, altEllipsoid: NaN,
-    alt: 512.25, eph: 2.5, epv: NaN, targetSystem: 7, targetComponent: 0, id: 0, source: 2, flags: 0,
+    alt: 512.25, eph: 2.5, epv: NaN, targetSystem: 7, targetComponent: 0, id: 3, source: 2, flags: 0,
   }],
   global_position_sensor_unknown: [new GlobalPositionSensor(), {
     timeUsec: 1763724896250000n, processingTime: 0, lat: 377632123, lon: -1222571987, altEllipsoid: NaN, alt: NaN,
-    eph: NaN, epv: NaN, targetSystem: 7, targetComponent: 0, id: 0, source: 2, flags: 0,
+    eph: NaN, epv: NaN, targetSystem: 7, targetComponent: 0, id: 3, source: 2, flags: 0,
   }],
 };
 

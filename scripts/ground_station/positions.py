@@ -7,8 +7,12 @@ import time
 
 #: These say nothing of their age: a late position would move a flying vehicle back to where it was.
 FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
-#: ArduPilot flies on no GPS_INPUT without a height.
 FORMATS_OF_GPS_INPUT = ("gps_input", "mavproxy")
+#: Fields of a step without which ArduPilot does not fly on GPS_INPUT, and why.
+WANTED_BY_ARDUPILOT = {
+    "alt_m": "(height above the sea): its position is a 2D fix, which ArduPilot does not use for flight",
+    "satellites": "(--frame satellites=10): its position counts 0, and ArduPilot begins to use none with fewer than 6",
+}
 #: These say how long the service took, but nothing of the way to it and back: where in the payload, in which unit.
 PROCESSING = {"global_position_sensor": ("<8xI", 1e-6), "command_int": ("<4xf", 1.0)}
 #: ArduPilot sets its position by one of these, moved on by its velocity, and takes those of more than 5 s ago for 5 s
@@ -35,14 +39,16 @@ class Sender:
         self._socket = socket.socket(family, kind, protocol)
         self._format = packet_format
         self._max_age_s = max_age_s
-        self._missed_height = False
+        self._missed = set()
 
     def expect(self, fields):
-        """Of a step, whose position is to be sent. Says once that it will be of no use."""
-        if self._format in FORMATS_OF_GPS_INPUT and "alt_m" not in fields and not self._missed_height:
-            self._missed_height = True
-            print("a step says no alt_m (height above the sea): its position is a 2D fix, which ArduPilot does not use "
-                  "for flight", file=sys.stderr)
+        """Of a step, whose position is to be sent. Says once of each missing field that it will be of no use."""
+        if self._format not in FORMATS_OF_GPS_INPUT:
+            return
+        for name, why in WANTED_BY_ARDUPILOT.items():
+            if name not in fields and name not in self._missed:
+                self._missed.add(name)
+                print(f"a step says no {name} {why}", file=sys.stderr)
 
     def send(self, captured, packet):
         """`captured`: when, by time.monotonic()."""

@@ -89,6 +89,27 @@ class Senders(unittest.TestCase):
                                     (0.2, 8.0, False), (1.0, 0.4, False), (1.0, float("nan"), False)):
             self.assertEqual(self.sent("command_int", age_s, command(told_s)), sent, (age_s, told_s))
 
+    def expecting(self, packet_format, *steps):
+        sender = self.sender(packet_format)
+        with said() as words:
+            for fields in steps:
+                sender.expect(fields)
+        return words.getvalue().splitlines()
+
+    def test_say_once_of_each_field_that_ardupilot_uses_no_position_without_it(self):
+        for packet_format in ("gps_input", "mavproxy"):
+            height, satellites = self.expecting(packet_format, {}, {"time_us": 5}, {"satellites": 10}, {"alt_m": 512})
+            self.assertIn("no alt_m (height above the sea): its position is a 2D fix", height)
+            self.assertIn("no satellites (--frame satellites=10): its position counts 0", satellites)
+            self.assertEqual(self.expecting(packet_format, {"alt_m": 512, "satellites": 10}), [])
+            for told, missed in (("alt_m", "satellites"), ("satellites", "alt_m")):
+                words, = self.expecting(packet_format, {told: 10}, {told: 10})
+                self.assertIn(f"a step says no {missed} ", words)
+
+    def test_want_neither_height_nor_satellites_in_other_formats(self):
+        for packet_format in ("global_position_sensor", "command_int", "nmea"):
+            self.assertEqual(self.expecting(packet_format, {}), [])
+
     def test_say_that_a_packet_cannot_be_sent_and_go_on(self):
         sender = self.sender("nmea")
         with mock.patch.object(sender, "_socket") as broken, said() as words:

@@ -71,6 +71,7 @@ FilterOptions FilterOptions::paper(int particles) {
   options.injection = Injection::kFixedShare;
   options.roughening_m = 0.0;
   options.roughening_heading = Angle();
+  options.least_kept = 0.0;
   return options;
 }
 
@@ -119,7 +120,7 @@ double Filter::keep_within_region() {
     if (!region_.keeps({p.east_m[i], p.north_m[i]})) lost += std::exchange(p.weight[i], 0.0);
   }
   // Those that lag behind a vehicle that has left are no belief.
-  if (lost <= 0.5 && normalise(p.weight)) return 1.0 - lost;
+  if (lost <= 1.0 - options_.least_kept && normalise(p.weight)) return 1.0 - lost;
   start_uniformly(region_.poses);
   return 0.0;
 }

@@ -32,9 +32,10 @@ struct FilterOptions {
   double injected_share = 0.15;  ///< of kFixedShare; the most of kLikelihoodAverages
   double roughening_m = 1.0;     ///< 1 sigma by which copies of a particle are moved apart
   Angle roughening_heading = Angle::degrees(0.5);
+  double least_kept = 0.5;  ///< of the weight, when particles leave the region: with less the belief is thrown away
 
   /// The paper's: a fixed number, resampling after every measurement, 15 % drawn uniformly in every step, copies stay
-  /// copies.
+  /// copies, and however many particles leave the region, the others go on.
   static FilterOptions paper(int particles);
 };
 
@@ -79,7 +80,8 @@ class Filter {
   void redraw_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over);
 
   /// Moves the particles; those that the region does not keep lose their weight. Returns the share of the weight that
-  /// it keeps: 0 where that was less than half, and the belief became uniform over the region.
+  /// it keeps: 0 where that was less than FilterOptions::least_kept, or nothing, and the belief became uniform over the
+  /// region.
   template <MotionModel Motion>
   double predict(const Motion& motion) {
     begin_step();

@@ -205,6 +205,16 @@ TEST(Filter, BeginsAnewWhereMostParticlesLeaveTheRegionAndTakesNoneThatLagBehind
   }
 }
 
+TEST(Filter, ThePapersGoesOnWithTheParticlesThatDoNotLeaveTheRegion) {
+  Filter filter(FilterOptions::paper(2000), {kSquare}, 1);
+  start_at(filter, {{{990.0, 500.0}, Angle::degrees(90.0)}, {{{100.0, 0, 0}, {0, 1, 0}, {0, 0, 0}}}, 1.0});
+  // Of the 85 % around the place those within, beyond 0.5 sigma; of those drawn uniformly in this step nearly all.
+  EXPECT_NEAR(filter.predict(OdometryMotion({15.0, 0.0, Angle()}, {})), 0.85 * 0.31 + 0.15 * 0.99, 0.04);
+  EXPECT_EQ(filter.state().resets, 0U);
+  filter.predict(OdometryMotion({5000.0, 0.0, Angle()}, {}));
+  EXPECT_EQ(filter.state().resets, 1U) << "where none stays";
+}
+
 TEST(Filter, KeepsItsBeliefWhereNothingCouldExplainTheMeasurement) {
   Filter filter({}, {kSquare}, 1);
   filter.start_uniformly(kSquare);

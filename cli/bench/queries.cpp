@@ -20,6 +20,8 @@ using evaluation::FrameTruth;
 using evaluation::Random;
 using evaluation::stream;
 
+constexpr const char* kPriorOutsideMap = "prior-outside-map";
+
 /// The whole map at its finest level; benches run on maps of a city.
 RoadGrid whole(const MapView& map) { return map.read(GridGeometry::covering(map.extent, map.cell_m)); }
 
@@ -51,9 +53,7 @@ GeoCircle circle_around(const GridPoint& truth, const QuerySet& set, const MapVi
     if (!contains({centre, *set.prior_radius_m}, nearest(map.extent, centre))) continue;
     return {map.zone.unproject(centre), *set.prior_radius_m};
   }
-  throw InvalidInput("prior-outside-map",
-                     fmt::format("{}: no circle of {} m around a place {} m from its rim meets the map '{}'",
-                                 describe(set), *set.prior_radius_m, set.prior_beyond_m.value_or(0.0), map.name));
+  throw InvalidInput(kPriorOutsideMap, fmt::format("{}: no such circle meets the map '{}'", describe(set), map.name));
 }
 
 /// `truth` is any place of the map where the query does not lie on it.
@@ -179,25 +179,44 @@ std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<Fra
   return earlier;
 }
 
-/// Some frames of a flight may lie beyond the map. Where all do, latitude and longitude were mixed up, or the maps.
-void require_any_on_map(const std::vector<FrameTruth>& frames, const QuerySet& set, const MapView& map) {
-  const auto on_map = [&](const FrameTruth& frame) {
-    const auto place = map.zone.project_if_defined(frame.pose.position);
-    return place && map.extent.contains(*place);
+/// Some frames of a flight may lie beyond the map. Where all do, or one lies on another continent, latitude and
+/// longitude were mixed up, or the maps.
+void require_places_near(const MapView& map, const std::vector<FrameTruth>& frames, const QuerySet& set) {
+  if (set.elsewhere) return;
+  const auto place = [&](const FrameTruth& frame) { return map.zone.project_if_defined(frame.pose.position); };
+  const auto in_zone = [&](const FrameTruth& frame) { return place(frame).has_value(); };
+  const auto on_map = [&](const FrameTruth& frame) { return in_zone(frame) && map.extent.contains(*place(frame)); };
+  const auto described = [](const FrameTruth& frame) {
+    const LatLon at = frame.pose.position;
+    return fmt::format("{} at latitude {} and longitude {}", frame.file.string(), at.lat_deg, at.lon_deg);
   };
-  if (set.elsewhere || std::ranges::any_of(frames, on_map)) return;
-  const LatLon first = frames.front().pose.position;
-  throw InvalidInput("frames-outside-map",
-                     fmt::format("{}: none of its frames lies on the map '{}', the first one at latitude {} and "
-                                 "longitude {}: correct these columns, name the map of the place, or say "
-                                 "\"elsewhere\": true",
-                                 set.path.string(), map.name, first.lat_deg, first.lon_deg));
+  constexpr const char* kAdvice = "correct these columns, name the map of the place, or say \"elsewhere\": true";
+  if (std::ranges::none_of(frames, on_map)) {
+    throw InvalidInput("frames-outside-map",
+                       fmt::format("{}: none of its frames lies on the map '{}', the first one, {}: {}",
+                                   set.path.string(), map.name, described(frames.front()), kAdvice));
+  }
+  const auto far = std::ranges::find_if_not(frames, in_zone);
+  if (far == frames.end()) return;
+  throw InvalidInput("position-outside-zone", fmt::format("{}: {} is too far from the UTM zone of the map '{}': {}",
+                                                          set.path.string(), described(*far), map.name, kAdvice));
+}
+
+/// Leaves a frame beyond the map, which no circle around it may meet, unasked.
+void tell_prior(Query& query, const GridPoint& truth, Angle true_heading, const QuerySet& set, const MapView& map,
+                Random& random) {
+  try {
+    query.prior = prior_around(truth, true_heading, set, map, random);
+  } catch (const InvalidInput& error) {
+    if (error.code() != kPriorOutsideMap || map.extent.contains(truth)) throw;
+    query.unasked = kPriorOutsideMap;
+  }
 }
 
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
                                const QueryDrawing& drawing) {
   const auto frames = evaluation::read_frames_csv(set.path);
-  require_any_on_map(frames, set, map);
+  require_places_near(map, frames, set);
   std::vector<Query> queries;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
@@ -206,8 +225,8 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Ro
     query.id = frame.file.string();
     if (!set.elsewhere) query.truth = frame.pose;
     query.view = seen_in(frame, set, detector);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
-                               frame.pose.heading, set, map, random);
+    tell_prior(query, set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
+               frame.pose.heading, set, map, random);
     query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
     query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, detector);

@@ -20,7 +20,8 @@ struct QueryDrawing {
 inline constexpr const char* kNoPlaceForQuery = "no-place-for-query";
 
 /// `map` is searched; simulated queries are cut out of `from`; of camera frames what `detector` makes use of is kept.
-/// Throws InvalidInput kNoPlaceForQuery, "frames-csv" naming line and column, and what reading the imagery throws.
+/// Throws InvalidInput kNoPlaceForQuery, "frames-csv" naming line and column, "frames-outside-map" where no frame lies
+/// on the map, "position-outside-zone" naming one that is far away, and what reading the imagery throws.
 std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
                                 const RoadDetector& detector, const QueryDrawing& drawing);
 

@@ -28,6 +28,7 @@ struct Query {
   Prior prior;
   double scale_range = 0.0;           ///< FixOptions::scale_range
   std::vector<EarlierFrame> earlier;  ///< to be laid together with `view`
+  std::string unasked;                ///< code of why it is not asked but counts as not found; empty = it is
 };
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's
@@ -44,7 +45,7 @@ struct Answer {
   std::optional<FixMode> mode;  ///< the same with its ellipse, from methods that give one
   std::optional<SearchFigures> figures;
   double probability = 0.0;
-  double time_ms = 0.0;
+  double time_ms = 0.0;  ///< 0 where no place was looked for: not counted
   // Of the true place, where it is known; the time does not count.
   std::optional<KeypointCounts> keypoints;  ///< of keypoint methods
   std::optional<double> rho_at_truth;       ///< equation (5) of the roads there: the paper's figure 2

@@ -108,7 +108,7 @@ Summary summary_of(const std::vector<Outcome>& outcomes) {
   std::vector<double> right_matches;
   std::vector<double> rhos;
   for (const Outcome& outcome : outcomes) {
-    times.push_back(outcome.answer.time_ms);
+    if (outcome.answer.time_ms > 0.0) times.push_back(outcome.answer.time_ms);
     if (const auto& counts = outcome.answer.keypoints) {
       matches.push_back(counts->matches);
       right_matches.push_back(counts->right);

@@ -56,6 +56,13 @@ void draw_picture(const Method& method, const Query& query, const Answer& answer
     throw IoFailure("picture-unwritable", fmt::format("{} cannot be written", file.string()));
 }
 
+Answer answer_of(const Method& method, const Query& query) {
+  if (query.unasked.empty()) return method.answer(query);
+  Answer none;
+  none.reason = query.unasked;
+  return none;
+}
+
 std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries, const UtmZone& zone,
                          const std::string& task, const Drawing& drawing, const BenchOptions& options) {
   std::vector<Outcome> outcomes(queries.size());
@@ -64,7 +71,7 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) {
       stop_if_asked(options);
-      const Answer answer = method.answer(queries[i]);
+      const Answer answer = answer_of(method, queries[i]);
       draw_picture(method, queries[i], answer, drawing);
       outcomes[i] = judged(queries[i].id, queries[i].truth, answer, zone);
       options.progress(task, ++done, static_cast<std::int64_t>(queries.size()));

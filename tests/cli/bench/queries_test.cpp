@@ -1,9 +1,10 @@
 #include "cli/bench/queries.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
 
 #include "core/detect/tree_detector.hpp"
 #include "core/units/error.hpp"
@@ -14,6 +15,9 @@
 
 namespace roadfix::bench {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 double from_the_centre_of_the_prior_m(const Query& query, const UtmZone& zone) {
   return distance_m(zone.project(query.prior.circle.value().centre), zone.project(query.truth.value().position));
@@ -86,25 +90,55 @@ TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
   }
 }
 
-TEST_F(Queries, OfFramesOfWhichNoneLiesOnTheMapAreRefused) {
-  const testing::TemporaryFolder folder;
-  cv::imwrite(folder / "a.png", cv::Mat(20, 20, CV_8UC1, cv::Scalar(90)));
-  const LatLon on_map = map_.zone.unproject(map_.extent.centre());
-  const LatLon beyond{on_map.lat_deg + 0.5, on_map.lon_deg};
-  const auto frames_at = [&](std::initializer_list<LatLon> places) {
-    std::ofstream csv(folder / "frames.csv");
+/// Of frames whose places a test gives: 0.png, 1.png ...
+class QueriesOfFrames : public Queries {
+ protected:
+  QueriesOfFrames() {
+    set_.kind = QuerySet::Kind::kFrames;
+    set_.path = folder_ / "frames.csv";
+  }
+
+  void frames_at(std::initializer_list<LatLon> places) const {
+    std::ofstream csv(set_.path);
     csv << "file,lat,lon,heading_deg,gsd_m\n";
-    for (const LatLon at : places) csv << "a.png," << at.lat_deg << ',' << at.lon_deg << ",0,1\n";
-  };
-  set_.kind = QuerySet::Kind::kFrames;
-  set_.path = folder / "frames.csv";
-  frames_at({beyond, {on_map.lon_deg, on_map.lat_deg}});
+    for (int i = 0; const LatLon at : places) {
+      const std::string name = std::to_string(i++) + ".png";
+      cv::imwrite(folder_ / name, cv::Mat(20, 20, CV_8UC1, cv::Scalar(90)));
+      csv << name << ',' << at.lat_deg << ',' << at.lon_deg << ",0,1\n";
+    }
+  }
+
+  const testing::TemporaryFolder folder_;
+  const LatLon on_map_ = map_.zone.unproject(map_.extent.centre());
+  const LatLon beyond_{on_map_.lat_deg + 0.5, on_map_.lon_deg};
+  const LatLon far_away_{on_map_.lon_deg, on_map_.lat_deg};
+};
+
+TEST_F(QueriesOfFrames, AreRefusedWhereNoneLiesOnTheMap) {
+  frames_at({beyond_, far_away_});
   EXPECT_EQ(testing::code_of([&] { drawn(); }), "frames-outside-map");
-  frames_at({beyond, on_map});
+  frames_at({beyond_, on_map_});
   EXPECT_EQ(drawn().size(), 2U);
-  frames_at({beyond});
+  frames_at({beyond_});
   set_.elsewhere = true;
   EXPECT_EQ(drawn().size(), 1U);
+}
+
+TEST_F(QueriesOfFrames, NameTheOneThatIsFarAway) {
+  frames_at({on_map_, far_away_});
+  EXPECT_THAT([&] { drawn(); }, ThrowsMessage<InvalidInput>(HasSubstr("frames.csv: 1.png at latitude")));
+}
+
+TEST_F(QueriesOfFrames, AreNotAskedWhereNoCircleAroundThemMeetsTheMap) {
+  set_.prior_radius_m = 500.0;
+  frames_at({beyond_, on_map_});
+  const std::vector<Query> queries = drawn();
+  ASSERT_EQ(queries.size(), 2U);
+  EXPECT_EQ(queries[0].unasked, "prior-outside-map");
+  EXPECT_EQ(queries[1].unasked, "");
+  set_.prior_beyond_m = 5000.0;
+  EXPECT_THAT([&] { drawn(); }, ThrowsMessage<InvalidInput>(HasSubstr("wrong by 5000 m: no such circle meets the map")))
+      << "nor does any around those on the map";
 }
 
 TEST_F(Queries, CombineTheFramesOfAFlightAlsoWhereFlightsTakeTurnsInTheFile) {

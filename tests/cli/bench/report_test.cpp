@@ -53,6 +53,13 @@ TEST(Summary, TellsWhatOfTheTruePlaceWasSeenAgain) {
   EXPECT_NE(to_table({{"roads", "m", "q", outcomes}}).find("rho 0.40"), std::string::npos);
 }
 
+TEST(Summary, CountsNoTimeWhereNoPlaceWasLookedFor) {
+  Answer asked;
+  asked.time_ms = 80.0;
+  const std::vector<Outcome> outcomes = {judged("a", {}, asked, kZone), judged("b", {}, Answer{}, kZone)};
+  EXPECT_EQ(summary_of(outcomes).time_p50_ms, 80.0);
+}
+
 TEST(Summary, OfNothingHasNoMedian) {
   EXPECT_FALSE(summary_of({}).median_error_m);
   EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);

@@ -97,6 +97,20 @@ TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
   }
 }
 
+TEST_F(BenchRunOfFrames, CountsAFrameBeyondTheMapAsNotFoundWhateverIsToldOfItsPlace) {
+  std::ofstream(folder / "frames.csv", std::ios::app) << "frame.png,36.3,19.89,0,1\n";
+  for (const char* prior : {R"("map")", R"({"radius_m": 200})"}) {
+    const auto results =
+        run(std::string(R"({"map": "town", "frames": "frames.csv", "prior": )") + prior + "}", R"("roads", "sift")");
+    for (const SetResult& result : results) {
+      EXPECT_EQ(summary_of(result.outcomes).n, 2) << result.method << prior;
+      EXPECT_EQ(summary_of(result.outcomes).recall_5, 0.5) << result.method << prior;
+    }
+    if (results.at(0).query_set == "frames.csv") continue;
+    EXPECT_EQ(results[0].outcomes.at(1).answer.reason, "prior-outside-map");
+  }
+}
+
 TEST_F(BenchRunOfFrames, NamesTheFrameWhoseCameraCannotBe) {
   std::ofstream(folder / "level.csv") << "file,lat,lon,heading_deg,agl_m,fov_deg,pitch_deg\n"
                                          "frame.png,36.13,19.89,0,250,60,89\n";

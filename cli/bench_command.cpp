@@ -35,7 +35,7 @@ struct BenchArguments {
   std::string manifest;
   std::string json_file;
   std::string cache;
-  std::string methods;
+  std::optional<std::string> methods;
   std::string curves;
   std::string calibrate_file;
   std::string calibrate_headings_file;
@@ -47,7 +47,7 @@ struct BenchArguments {
 
 bench::Manifest manifest_of(const BenchArguments& arguments) {
   bench::Manifest manifest = bench::read_manifest(arguments.manifest);
-  return arguments.methods.empty() ? manifest : bench::with_methods(std::move(manifest), arguments.methods);
+  return arguments.methods ? bench::with_methods(std::move(manifest), *arguments.methods) : manifest;
 }
 
 std::filesystem::path default_cache() {
@@ -203,7 +203,9 @@ void add_bench_command(CLI::App& app) {
       ->capture_default_str()
       ->check(seed());
   command->add_option("--limit", a->options.limit, "Queries of each set, at most; 0 = all")->check(not_negative());
-  command->add_option("--methods", a->methods, "Only these of the manifest's methods, separated by commas");
+  command->add_option_function<std::string>(
+      "--methods", [a](const std::string& names) { a->methods = names; },
+      "Only these of the manifest's methods, separated by commas");
   command->add_option("--curves", a->curves,
                       "Draw reliability and the share of answers, over footprint and quality, as SVG into this folder");
   command->add_option(

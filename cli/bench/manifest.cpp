@@ -45,6 +45,10 @@ ManifestMap parse_map(const JsonField& field, const std::filesystem::path& direc
   return map;
 }
 
+bool has_method(const Manifest& manifest, const std::string& name) {
+  return std::ranges::find(manifest.methods, name) != manifest.methods.end();
+}
+
 bool has_map(const Manifest& manifest, const std::string& name) {
   return std::ranges::any_of(manifest.maps, [&](const ManifestMap& map) { return map.name == name; });
 }
@@ -172,8 +176,11 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
   for (const JsonField& set : root.at("queries").elements())
     manifest.queries.push_back(parse_query_set(set, manifest, directory));
   if (root.has("methods")) {
-    for (const JsonField& method : root.at("methods").elements())
-      manifest.methods.push_back(method.one_of({"roads", "sift", "orb"}));
+    for (const JsonField& method : root.at("methods").elements()) {
+      std::string name = method.one_of({"roads", "sift", "orb"});
+      if (has_method(manifest, name)) method.refuse(fmt::format("is '{}', as one before", name));
+      manifest.methods.push_back(std::move(name));
+    }
   } else {
     manifest.methods = {"roads"};
   }
@@ -189,9 +196,10 @@ Manifest read_manifest(const std::filesystem::path& file) {
 Manifest with_methods(Manifest manifest, std::string_view names) {
   std::vector<std::string> wanted;
   std::istringstream words{std::string(names)};
-  for (std::string name; std::getline(words, name, ',');) {
+  // Of an empty list one name is read, which no method has.
+  for (std::string name; std::getline(words, name, ',') || wanted.empty();) {
     wanted.emplace_back(trimmed(name));
-    if (std::ranges::find(manifest.methods, wanted.back()) != manifest.methods.end()) continue;
+    if (has_method(manifest, wanted.back())) continue;
     throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}",
                                                      wanted.back(), fmt::join(manifest.methods, ", ")));
   }

@@ -48,5 +48,15 @@ TEST(BenchCommand, WritesNothingButItsFiguresToStandardOutput) {
   EXPECT_TRUE(nlohmann::json::accept(bench.out)) << bench.out;
 }
 
+TEST(BenchCommand, RunsNoMethodWhereAnEmptyTextNamesThem) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 1, "footprint_m": [300, 300]}]})";
+  const ProgramResult bench = run_program(folder.path(), "bench " + (folder / "town.json").string() + " --methods ''");
+  EXPECT_EQ(bench.code, 1);
+  EXPECT_THAT(bench.err, HasSubstr("[method-unknown]"));
+}
+
 }  // namespace
 }  // namespace roadfix

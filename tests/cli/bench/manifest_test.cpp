@@ -111,6 +111,7 @@ TEST(Manifest, ComplaintsNameTheField) {
   expect_complaint(with(R"({"radius_m": 500})", R"({"heading_range_deg": 9, "beyond_m": 5})"), "radius_m");
   expect_complaint(with(R"({"radius_m": 500})", R"({"scale_range": 0.31})"), "queries[2].prior.scale_range");
   expect_complaint(with("\"sift\"", "\"surf\""), "methods[1]");
+  expect_complaint(with("\"sift\"", "\"roads\""), "methods[1] is 'roads', as one before");
   expect_complaint(with("\"count\": 7", "\"count\": 7e999"), "number overflow");
   expect_complaint(std::string(kManifest).substr(0, 100), "byte");
 }
@@ -132,7 +133,7 @@ TEST(Manifest, IsAskedForSomeOfItsMethodsButForNoOther) {
   const Manifest manifest = parse_manifest(kManifest, ".");
   EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre("roads", "sift"));
   EXPECT_THAT(with_methods(manifest, "sift").methods, ElementsAre("sift"));
-  for (const char* names : {"sift,surf", "orb", "roads,,sift"}) {
+  for (const char* names : {"sift,surf", "orb", "roads,,sift", ""}) {
     EXPECT_THAT([&] { with_methods(manifest, names); }, ThrowsMessage<InvalidInput>(HasSubstr("no method '"))) << names;
   }
 }

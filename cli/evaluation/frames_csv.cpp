@@ -128,6 +128,10 @@ FrameTruth frame_of(const Row& row) {
 std::vector<std::string_view> names_in(std::string_view header) {
   std::vector<std::string_view> names = split(header, ',');
   const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
+  for (const std::string_view name : names) {
+    if (name.empty() || std::ranges::count(names, name) == 1) continue;
+    refuse(1, fmt::format("the column '{}' is there twice", name));
+  }
   for (const std::string_view name : {"file", "lat", "lon", "heading_deg"}) {
     if (has(name)) continue;
     refuse(1, fmt::format("the column '{}' is missing{}", name,

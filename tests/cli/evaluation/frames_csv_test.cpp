@@ -85,6 +85,7 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   };
   complaint("file,lat,lon,gsd_m\n", "heading_deg");
   complaint("file,lat,lon,heading_deg,gsd_m\n", "no frames");
+  complaint("file,lat,lon,heading_deg,gsd_m,lat\na,1,1,0,1,2\n", "line 1: the column 'lat' is there twice");
   complaint("file,lat,lon,heading_deg,gsd_m\na,91,0,0,1\n", "lat is '91'");
   complaint("file,lat,lon,heading_deg,gsd_m\na,1,0,0,1\nb,1,nan,0,1\n", "line 3");
   complaint("file,lat,lon,heading_deg,gsd_m\na,1,0\n", "heading_deg is ''");

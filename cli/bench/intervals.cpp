@@ -1,5 +1,6 @@
 #include "cli/bench/intervals.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadfix::bench {
@@ -41,7 +42,9 @@ Interval chi_square_mean_band(int n, int degrees) {
   constexpr double kNormal95 = 1.959964;
   const double k = static_cast<double>(n) * degrees;
   const double spread = 2.0 / (9.0 * k);
-  const auto quantile = [&](double z) { return degrees * std::pow(1.0 - spread + z * std::sqrt(spread), 3); };
+  const auto quantile = [&](double z) {
+    return degrees * std::pow(std::max(1.0 - spread + z * std::sqrt(spread), 0.0), 3);
+  };
   return {quantile(-kNormal95), quantile(kNormal95)};
 }
 

@@ -13,7 +13,7 @@ struct Interval {
 Interval clopper_pearson(int hits, int n, double confidence = 0.95);
 
 /// Where the mean of `n` values of chi^2 with `degrees` lies in 95 of 100 cases (Wilson and Hilferty's approximation,
-/// good to 1 % from n * degrees = 10): the band of a consistent NEES.
+/// good to 1 % from n * degrees = 10 and never below 0): the band of a consistent NEES.
 Interval chi_square_mean_band(int n, int degrees);
 
 }  // namespace roadfix::bench

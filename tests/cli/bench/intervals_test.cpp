@@ -19,6 +19,11 @@ TEST(ClopperPearson, OfNothingSaysNothing) {
   EXPECT_EQ(clopper_pearson(0, 0).high, 1.0);
 }
 
+TEST(ChiSquareBand, IsNotBelowZeroWhereItIsOfOneValue) {
+  EXPECT_EQ(chi_square_mean_band(1, 1).low, 0.0);
+  EXPECT_NEAR(chi_square_mean_band(1, 1).high, 5.02, 0.1);
+}
+
 TEST(ChiSquareBand, AgreesWithTables) {
   // chi^2 with 100 degrees: 74.222 at 2.5 %, 129.561 at 97.5 %.
   EXPECT_NEAR(chi_square_mean_band(50, 2).low, 74.222 / 50.0, 0.01);

@@ -66,11 +66,11 @@ json consistency_json(const Consistency& consistency) {
   return result;
 }
 
-std::string consistency_text(const char* of, const Consistency& consistency) {
+std::string consistency_text(const char* of, const Consistency& consistency, int left_out) {
   if (consistency.n == 0) return {};
   const Interval band = chi_square_mean_band(consistency.n, consistency.dimensions);
-  return fmt::format("  {} NEES {:.2f} (consistent: {:.2f} to {:.2f}), {} of {} within their 95 %\n", of,
-                     consistency.mean_nees, band.low, band.high, consistency.within_95, consistency.n);
+  return fmt::format("  {} NEES {:.2f} (consistent: {:.2f} to {:.2f}), {} of {} within their 95 %, {} false left out\n",
+                     of, consistency.mean_nees, band.low, band.high, consistency.within_95, consistency.n, left_out);
 }
 
 }  // namespace
@@ -130,7 +130,9 @@ std::string to_text(const Honesty& honesty) {
     text += fmt::format("  at confidence {}: {} fixes, {} false (95 %: {:.4f} to {:.4f}), {} outside their ellipse\n",
                         a.confidence, a.answered, a.false_fixes, rate.low, rate.high, a.outside);
   }
-  return text + consistency_text("position", honesty.position) + consistency_text("heading", honesty.heading);
+  const int left_out = honesty.at[0].false_fixes;
+  return text + consistency_text("position", honesty.position, left_out) +
+         consistency_text("heading", honesty.heading, left_out);
 }
 
 }  // namespace roadfix::bench

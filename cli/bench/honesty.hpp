@@ -28,7 +28,8 @@ struct AtConfidence {
   int false_fixes = 0;  ///< of those, further off than kFalseFixM
 };
 
-/// Errors against stated standard deviations, of answers of probability 0.9 or more that are no false fixes.
+/// Errors against stated standard deviations, of answers of probability 0.9 or more that are no false fixes: what these
+/// are, Honesty::at counts.
 struct Consistency {
   int dimensions = 0;
   int n = 0;

@@ -50,6 +50,7 @@ TEST(Honesty, CountsWhatAConfidenceWouldHaveGiven) {
   EXPECT_NEAR(honesty.heading.mean_nees, 5.25, 1e-12);
   EXPECT_EQ(honesty.heading.within_95, 1);
   EXPECT_EQ(to_json(honesty)["at_confidence"][2]["false_fixes"], 1);
+  EXPECT_NE(to_text(honesty).find("1 of 2 within their 95 %, 1 false left out"), std::string::npos);
 }
 
 TEST(Honesty, OfNothingIsSilent) {

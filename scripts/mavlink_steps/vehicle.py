@@ -3,6 +3,7 @@ import collections
 import math
 
 from airspeed import true_airspeed
+from boot_clock import BootClock
 from heights import Heights
 
 KEPT = 3000            # some minutes of telemetry
@@ -13,23 +14,6 @@ ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back betwe
 
 class Unknown(Exception):
     """What is not known of the vehicle at a time."""
-
-
-class BootClock:
-    """The autopilot's time since its start, as time.monotonic(): messages are late by different amounts, so the least
-    late one counts. It may be forgotten by 0.1 ms a second, since clocks drift."""
-
-    def __init__(self):
-        self._offset = None
-        self._last = 0.0
-
-    def ours(self, boot_s, came):
-        if self._offset is None or boot_s < self._last - 1.0:  # the autopilot was started again
-            self._offset = came - boot_s
-        else:
-            self._offset = min(came - boot_s, self._offset + 1e-4 * max(0.0, boot_s - self._last))
-        self._last = boot_s
-        return boot_s + self._offset
 
 
 def _finite(*values):
@@ -81,13 +65,10 @@ class Vehicle:
 
     def hear(self, name, fields, came):
         self.heard = came
-        if name == "ATTITUDE":
-            self._turn(fields, came)
-        elif name == "LOCAL_POSITION_NED":
-            if math.isfinite(fields["z"]):
-                self._heights.tell_above_takeoff(-fields["z"], came)
-            if not self._by_air:
-                self._move((fields["vx"], fields["vy"]), self._clock.ours(fields["time_boot_ms"] / 1e3, came))
+        if "time_boot_ms" in fields:
+            when = self._clock.ours(fields["time_boot_ms"] / 1e3, came)
+            if when is not None:
+                self._hear_at(when, name, fields, came)
         elif name == "VFR_HUD":
             self._heights.tell_above_sea(name, fields["alt"], came)
             if self._by_air:
@@ -97,6 +78,15 @@ class Vehicle:
         elif name == "ALTITUDE":
             self._heights.tell_above_ground(fields["bottom_clearance"], came)
             self._heights.tell_above_sea(name, fields["altitude_amsl"], came)
+
+    def _hear_at(self, when, name, fields, came):
+        if name == "ATTITUDE":
+            self._turn((fields["roll"], fields["pitch"], fields["yaw"]), when)
+        elif name == "LOCAL_POSITION_NED":
+            if math.isfinite(fields["z"]):
+                self._heights.tell_above_takeoff(-fields["z"], came)
+            if not self._by_air:
+                self._move((fields["vx"], fields["vy"]), when)
 
     def seen_at(self, when):
         """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
@@ -147,11 +137,9 @@ class Vehicle:
         if is_known or height_m != 0.0:
             self._heights.tell_above_ground(height_m if is_known else math.nan, came)
 
-    def _turn(self, fields, came):
-        attitude = (fields["roll"], fields["pitch"], fields["yaw"])
+    def _turn(self, attitude, when):
         if not _finite(*attitude):
             return
-        when = self._clock.ours(fields["time_boot_ms"] / 1e3, came)
         roll, pitch, yaw = attitude
         if self._attitudes:
             if when <= self._attitudes[-1][0]:

@@ -10,7 +10,8 @@ from words import said
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
-from vehicle import BootClock, Unknown, Vehicle, turned  # noqa: E402
+from boot_clock import BootClock  # noqa: E402
+from vehicle import Unknown, Vehicle, turned  # noqa: E402
 
 
 def about(axis, angle):
@@ -164,9 +165,9 @@ class Flights(unittest.TestCase):
 
     def test_have_moved_nobody_knows_where_while_nothing_was_heard(self):
         vehicle = Vehicle()
-        for came in (10.0, 11.0, 13.0, 33.0, 34.0):
-            move(vehicle, came, north=1.0)
         for tenth in range(100, 360):
+            if tenth in (100, 110, 130, 330, 340):
+                move(vehicle, 0.1 * tenth, north=1.0)
             turn(vehicle, 0.1 * tenth)
         self.assertEqual([vehicle.holes_before(when) for when in (10.0, 11.0, 32.9, 33.0, 34.0)], [0, 0, 0, 1, 1])
         for when, north_m in ((10.0, 0.0), (10.5, 0.5), (12.0, 2.0), (33.0, 3.0), (34.0, 4.0)):
@@ -176,9 +177,9 @@ class Flights(unittest.TestCase):
 
     def test_go_on_for_a_second_as_they_went_last(self):
         vehicle = Vehicle()
-        for came in (10.0, 10.5):
-            move(vehicle, came, north=3.0, east=-4.0)
         for tenth in range(100, 120):
+            if tenth in (100, 105):
+                move(vehicle, 0.1 * tenth, north=3.0, east=-4.0)
             turn(vehicle, 0.1 * tenth)
         for when in (10.5, 11.0, 11.49):
             (north, east), _ = vehicle.seen_at(when)
@@ -188,10 +189,11 @@ class Flights(unittest.TestCase):
 
     def test_have_no_attitude_of_moments_between_which_they_may_have_banked(self):
         vehicle = Vehicle()
-        for hundredth in range(0, 500, 10):
-            move(vehicle, 10.0 + 0.01 * hundredth)
-        for came, roll in ((10.0, 0.0), (10.2, 0.1), (10.79, 0.3), (11.4, 0.5), (11.6, 0.5)):
-            turn(vehicle, came, roll=roll)
+        rolls = {10.0: 0.0, 10.2: 0.1, 10.79: 0.3, 11.4: 0.5, 11.6: 0.5}
+        for came in sorted([*rolls, *(10.0 + 0.1 * tenth for tenth in range(50))]):
+            move(vehicle, came)
+            if came in rolls:
+                turn(vehicle, came, roll=rolls[came])
         self.assertAlmostEqual(vehicle.seen_at(10.1)[1][0], 0.05)
         self.assertAlmostEqual(vehicle.seen_at(10.495)[1][0], 0.2, msg="0.59 s between two")
         for when in (9.95, 10.8, 11.1, 11.39, 11.61, 12.6):
@@ -200,10 +202,39 @@ class Flights(unittest.TestCase):
 
     def test_outlast_a_restart_of_the_autopilot(self):
         vehicle = Vehicle()
-        for came, boot_ms in ((100.0, 90_000), (101.0, 91_000), (103.0, 500), (103.5, 1000), (104.0, 1500)):
-            vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, came)
-            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 2, "vy": 0}, came)
-        self.assertAlmostEqual(vehicle.seen_at(104.0)[0][0], 8.0, places=2)
+        with said() as words:
+            for tenth in (*range(1000, 1010), *range(1025, 1045)):
+                boot_ms = 100 * tenth - (10_000 if tenth < 1010 else 102_000)
+                vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0, "pitch": 0, "yaw": 0}, 0.1 * tenth)
+                vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": 0, "vx": 2, "vy": 0}, 0.1 * tenth)
+        self.assertEqual(words.getvalue(), "the autopilot was started again\n")
+        self.assertEqual(vehicle.holes_before(104.0), 1)
+        self.assertAlmostEqual(vehicle.seen_at(104.0)[0][0] - vehicle.seen_at(103.6)[0][0], 0.8, places=2)
+
+    def test_are_the_same_where_a_slow_link_brings_each_message_again(self):
+        rate = math.radians(15.0)
+        for late_s in (0.5, 1.2, 3.0, 30.0):
+            messages = [(0.1 * tenth + after_s, 0.1 * tenth) for tenth in range(600) for after_s in (0.05, late_s)]
+            vehicle = Vehicle()
+            with said() as words:
+                for came, t in sorted(message for message in messages if message[0] < 60.0):
+                    boot_ms, yaw = round(1e3 * t), rate * t
+                    vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": 0.01 * t, "pitch": 0, "yaw": yaw}, came)
+                    vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": -t, "vx": 20 * math.cos(yaw),
+                                                        "vy": 20 * math.sin(yaw)}, came)
+            self.assertEqual(words.getvalue(), "")
+            for t in (20.03, 31.0, 44.44):
+                (north, east), (roll, _, yaw) = vehicle.seen_at(t + 0.05)
+                self.assertAlmostEqual(north, 20.0 / rate * math.sin(rate * t), delta=0.1)
+                self.assertAlmostEqual(east, 20.0 / rate * (1.0 - math.cos(rate * t)), delta=0.1)
+                self.assertAlmostEqual(math.remainder(yaw - rate * t, math.tau), 0.0, places=3)
+                self.assertAlmostEqual(roll, 0.01 * t, places=3)
+
+    def test_are_not_as_high_as_a_slow_link_tells_later(self):
+        vehicle = Vehicle()
+        for came, boot_s in ((10.0, 10.0), (12.0, 12.0), (12.1, 10.0)):
+            vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 1e3 * boot_s, "z": -10 * boot_s, "vx": 0, "vy": 0}, came)
+        self.assertEqual(vehicle.agl_m(), 120.0)
 
     def test_do_not_take_what_is_no_number(self):
         for nothing in (math.nan, math.inf, -math.inf):
@@ -276,11 +307,50 @@ class BootClocks(unittest.TestCase):
                 ours = clock.ours((came - 90) * (1.0 + drift), came + (0.0 if came % 10 == 0 else 0.3))
                 self.assertLess(abs(ours - came), 0.002)
 
-    def test_are_those_of_a_restarted_autopilot_where_they_go_back_by_more_than_a_second(self):
-        for back_s, ours in ((0.99, 110.0 - 0.99), (1.01, 110.5)):
-            clock = BootClock()
-            clock.ours(10.0, 110.0)
-            self.assertAlmostEqual(clock.ours(10.0 - back_s, 110.5), ours, places=3)
+    def count(self, clock, from_s, to_s, came):
+        """Messages of so many seconds since a start, ten a second, as they come: what the clock makes of each."""
+        return [clock.ours(from_s + 0.1 * i, came + 0.1 * i) for i in range(round(10 * (to_s - from_s)) + 1)]
+
+    def test_take_messages_that_are_late_by_less_than_a_second_but_not_one_after_the_other(self):
+        clock = BootClock()
+        clock.ours(10.0, 110.0)
+        for boot_s, ours in ((9.1, 109.1), (8.9, None), (9.01, 109.01)):
+            self.assertEqual(clock.ours(boot_s, 110.5), ours)
+
+    def test_are_those_of_a_restarted_autopilot_once_it_has_counted_on_for_a_second(self):
+        clock = BootClock()
+        self.count(clock, 50.0, 60.0, 150.0)
+        with said() as words:
+            times = self.count(clock, 2.0, 3.5, 165.0)
+        self.assertEqual(times[:10], [None] * 10)
+        for time, came in zip(times[10:], (166.0, 166.1, 166.2, 166.3, 166.4, 166.5), strict=True):
+            self.assertAlmostEqual(time, came)
+        self.assertEqual(words.getvalue(), "the autopilot was started again\n")
+
+    def test_are_not_those_of_a_restart_where_single_messages_come_late(self):
+        clock = BootClock()
+        self.count(clock, 50.0, 60.0, 150.0)
+        for came, boot_s in ((161.0, 2.0), (163.5, 55.0), (165.0, 3.0), (166.5, 58.5)):
+            self.assertIsNone(clock.ours(boot_s, came), "none of them counts on from the one before")
+        self.assertAlmostEqual(clock.ours(67.0, 167.0), 167.0)
+
+    def test_are_not_those_of_a_restart_where_the_slow_one_of_two_links_is_left(self):
+        clock = BootClock()
+        with said() as words:
+            self.count(clock, 50.0, 60.0, 150.0)
+            times = self.count(clock, 51.0, 70.0, 160.1)
+        self.assertEqual(words.getvalue(), "")
+        self.assertEqual(times[:80], [None] * 80)
+        self.assertAlmostEqual(times[-1], 170.0, delta=0.01, msg="not when it came")
+
+    def test_are_those_of_another_vehicle_once_it_has_counted_on_for_longer_than_a_link_is_slow(self):
+        clock = BootClock()
+        self.count(clock, 500.0, 510.0, 600.0)
+        with said() as words:
+            times = self.count(clock, 200.0, 211.0, 612.0)
+        self.assertEqual(times[:100], [None] * 100)
+        self.assertAlmostEqual(times[-1], 623.0)
+        self.assertEqual(words.getvalue().count("started again"), 1)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import math
 import sys
 import urllib.parse
 
+from estimator import Estimator
 from places import FASTEST_M_S, around, claimed_place, left, length_m, told_place, without_prior
 from service import ANSWER_TIME_S, Refused, Silent
 from silence import (FORGOTTEN_S, is_forgotten_by_date, moment, since, since_by_service, since_in_this_boot,
@@ -40,6 +41,7 @@ class Track:
         self._state = self._file.read()
         self._file.write(self._state)  # one that cannot be written is told of before the flight
         self._of_another_process = bool(self._state)
+        self._estimator = Estimator()
         self._travel = Travel()
         self._asked_places = 0  # of it that the step without an answer spans
 
@@ -48,11 +50,12 @@ class Track:
         return self._state.get("id")
 
     def step(self, place, fields, image=None, origin=None, packet_format=None, send=None):
-        """The answer to a step. `place`: (north_m, east_m, yaw_deg); where `origin` is another one than before, places
-        are too, and the movement between is not known. `fields`: time_us and other fields of a step, `covariance` that
-        of the movement since the last call of this or of pass_by(); `send` is called with the message for the autopilot
-        in `packet_format`, if there is one."""
-        self._travel.add(tuple(place), fields.get("covariance"))
+        """The answer to a step. `place`: (north_m, east_m, yaw_deg), None where it is not known; where `origin` is
+        another one than before, places are too, and the movement between is not known. `fields`: time_us and other
+        fields of a step, `covariance` that of the movement since the last call of this or of pass_by(); `send` is
+        called with the message for the autopilot in `packet_format`, if there is one."""
+        place = self._estimator.place(place)
+        self._travel.add(place, fields.get("covariance"))
         if self._of_another_process:
             self._recall(origin)
         if not self.id:
@@ -74,7 +77,7 @@ class Track:
 
     def pass_by(self, place, covariance):
         """A place that no step is made of, and the covariance of the movement to it. None where it is not known."""
-        self._travel.add(place, covariance)
+        self._travel.add(self._estimator.place(place), covariance)
 
     def _recall(self, origin):
         """The flight of another process: this one goes on with it, or it was long ago, or nobody knows when."""
@@ -155,7 +158,15 @@ class Track:
         self._begin(origin, {**without_prior(self._request), **around(known)}, why)
 
     def _moved_to(self, place):
-        return movement(self._state["place"], place) if "place" in self._state else {}
+        """{} where that is not known."""
+        before = self._state.get("place")
+        return movement(before, place) if before and place else {}
+
+    def _flown_m(self, moved, time_us):
+        """Since the last step, at most where the movement is not known."""
+        if moved:
+            return length_m(moved)
+        return FASTEST_M_S * max(since(self._state), 1e-6 * (time_us - self._state.get("time_us", time_us)))
 
     def _step(self, place, fields, image, packet_format, send):
         before = self._state
@@ -165,8 +176,8 @@ class Track:
         if covariance is not None:
             fields["covariance"] = covariance
         numbered = {**fields, "sequence": before["sequence"] + 1, **moved}
-        asked = {"sequence": numbered["sequence"], "time_us": fields["time_us"], "place": list(place),
-                 "known": left(before["known"], length_m(moved)), **moment()}
+        asked = {"sequence": numbered["sequence"], "time_us": fields["time_us"], "place": place,
+                 "known": left(before["known"], self._flown_m(moved, fields["time_us"])), **moment()}
         # Before it is sent: where the answer is lost, or this client ends, the service may have taken it all the same.
         self._keep({**before, "asked": asked}, synced=False)  # the vehicle waits, so not for the disk
         asked_before, self._asked_places = self._asked_places, len(self._travel)

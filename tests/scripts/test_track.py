@@ -215,6 +215,50 @@ class Steps(unittest.TestCase):
                 track.step((10.0 * i, 0.0, 0.0), {"time_us": i, "covariance": [1.0] * 9})
             self.assertEqual(["covariance" in step for step in fake.steps()], [False, True])
 
+    def movements(self, *places):
+        """Forwards, as the service is told, None where it is told none: of steps a second apart."""
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 0)
+            for i, place in enumerate(places):
+                track.step(place, {"time_us": i * 1_000_000})
+            return [round(step["forward_m"], 6) if "forward_m" in step else None for step in fake.steps()]
+
+    def test_tell_no_movement_to_or_from_a_place_that_is_not_known(self):
+        self.assertEqual(self.movements((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), None, (30.0, 0.0, 0.0), (45.0, 0.0, 0.0)),
+                         [None, 10.0, None, None, 15.0])
+
+    def test_tell_no_movement_while_the_estimator_of_a_vehicle_that_flew_tells_the_same_to_the_last_digit(self):
+        for still in ((10.0, 0.0, 0.0), None):
+            self.words.truncate(0)
+            self.assertEqual(self.movements((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (10.0, 0.0, 0.0), still,
+                                            (10.0, 0.0, 0.0), (70.0, 0.0, 0.0), (85.0, 0.0, 0.0), (85.0, 0.0, 0.0)),
+                             [None, 10.0, None, None, None, None, 15.0, None])
+            self.assertEqual(self.words.getvalue().count("has the vehicle's estimator stopped?"), 1)
+
+    def test_tell_that_a_vehicle_stands_before_it_flies_or_moves_by_the_last_digit_alone(self):
+        self.assertEqual(self.movements((5.0, 0.0, 0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), (9.0, 0.0, 0.0),
+                                        (9.0, 0.0, 0.001), (9.001, 0.0, 0.001)), [None, 0.0, 0.0, 4.0, 0.0, 0.001])
+        self.assertEqual(self.words.getvalue(), "")
+
+    def test_tell_no_movement_from_a_place_that_was_passed_by_and_comes_again(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 1)
+            track.pass_by((10.0, 0.0, 0.0), None)
+            for i in (2, 3):
+                track.step((10.0, 0.0, 0.0), {"time_us": i})
+            self.assertNotIn("forward_m", fake.steps()[1])
+            self.assertNotIn("forward_m", fake.steps()[2])
+
+    def test_may_have_gone_anywhere_while_no_place_was_known(self):
+        with FakeService([CONVERGED]) as fake:
+            track, _ = self.fly(fake, 1)
+            for i in range(1, 5):
+                track.step(None, {"time_us": i * 1_000_000})
+            track.step((0.0, 0.0, 0.0), {"time_us": 5_000_000}, origin="restarted")
+            begun = fake.begun()[-1]
+            self.assertEqual((begun["lat"], begun["lon"]), (7.0, 8.0))
+            self.assertAlmostEqual(begun["radius_m"], 100.0 + 20.0 + 4 * 50.0, delta=50.0 * 2.0)
+
     def test_have_the_covariance_of_all_that_their_movement_spans(self):
         def errors(turn_rad2):
             return [1.0, 0, 0, 0, 2.0, 0, 0, 0, turn_rad2]
@@ -312,8 +356,8 @@ class Steps(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "not of a track over the map 'other'"):
                 Track(Service(fake.url), {"map": "other"}, state)
             kept = Path(state).read_text()
-            for damaged in ("no state", "[" * 100_000, kept.replace("0.0", "NaN", 1),
-                            kept.replace("0.0", "Infinity", 1)):
+            for damaged in ("no state", "[" * 100_000, kept.replace("[0.0", "[NaN"),
+                            kept.replace("[0.0", "[Infinity")):
                 Path(state).write_text(damaged)
                 with self.assertRaisesRegex(ValueError, "not of a track over the map 'm'"):
                     Track(Service(fake.url), {"map": "m"}, state)

@@ -25,5 +25,5 @@ class Estimator:
     def _tell(self):
         if not self._is_told:
             self._is_told = True
-            print("places come twice to the last digit: has the vehicle's estimator stopped? Movements to them and from "
-                  "them count as unknown", file=sys.stderr)
+            print("a place came twice to the last digit: has the vehicle's estimator stopped? Movements to such places "
+                  "and from them count as unknown", file=sys.stderr)

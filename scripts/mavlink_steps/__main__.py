@@ -22,6 +22,7 @@ import uuid
 
 from autopilot import Autopilot
 from clock import WallClock
+from gimbal import STATUS, Gimbal
 from lines import Lines
 from packets import messages
 from pictures import NewPictures, Silence
@@ -62,10 +63,15 @@ def parse_arguments(arguments):
                         help="the vehicle's system id (default: that of the first message)")
     parser.add_argument("--component", type=int, default=1,
                         help="the autopilot's component id; others of the system are ignored (default: %(default)d)")
-    parser.add_argument("--camera", choices=("body", "level"), required=True,
-                        help="body: fixed to the airframe, looking down; level: held straight down by a gimbal")
+    parser.add_argument("--camera", choices=("body", "level", "gimbal"), required=True,
+                        help="body: fixed to the airframe, looking down; level: held straight down by a gimbal that "
+                             "follows the nose; gimbal: as the gimbal tells (" + STATUS + ")")
+    parser.add_argument("--gimbal", type=int, metavar="ID",
+                        help="of --camera gimbal: the gimbal's id, which is that of its component, or 1 to 6 where the "
+                             "autopilot answers for it (default: that of the first message)")
     parser.add_argument("--camera-yaw", type=parse_number, default=0.0, metavar="DEGREES",
-                        help="where the picture's upper edge points, clockwise from the nose (default: 0)")
+                        help="where the picture's upper edge points, clockwise from the nose, or from where "
+                             "a gimbal says that it points (default: 0)")
     parser.add_argument("--by-air", action="store_true", help="movements by airspeed and heading")
     parser.add_argument("--agl", type=parse_number, metavar="M",
                         help="height above ground, instead of what the autopilot tells")
@@ -77,7 +83,7 @@ def parse_arguments(arguments):
     return parser.parse_args(arguments)
 
 
-def hear(link, autopilot, vehicle):
+def hear(link, autopilot, vehicle, gimbal):
     """Takes all that has come: a look into a full folder takes as long as many messages need to come."""
     for _ in range(MOST_HEARD):
         try:
@@ -86,19 +92,23 @@ def hear(link, autopilot, vehicle):
             return
         came = time.monotonic()
         for message in messages(datagram):
-            if autopilot.sent(message):
+            if message.name == STATUS:  # of whatever component
+                if gimbal is not None and message.system == autopilot.system:
+                    gimbal.hear(message, came)
+            elif autopilot.sent(message):
                 vehicle.hear(message.name, message.fields, came)
 
 
 def follow(link, pictures, clock, options):
     vehicle = Vehicle(options.by_air, options.takeoff_agl)
     autopilot = Autopilot(options.system, options.component)
-    lines = Lines(vehicle, autopilot, clock, options)
+    gimbal = Gimbal(options.gimbal) if options.camera == "gimbal" else None
+    lines = Lines(vehicle, gimbal, autopilot, clock, options)
     silence = Silence()
     looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
-            hear(link, autopilot, vehicle)
+            hear(link, autopilot, vehicle, gimbal)
         if time.monotonic() < looked + LOOK_S:
             continue
         clock.look()

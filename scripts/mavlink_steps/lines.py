@@ -5,17 +5,19 @@ import math
 import sys
 import time
 
-from vehicle import LONGEST_HOLE_S, Unknown, turned
+from camera import turned
+from vehicle import LONGEST_HOLE_S, Unknown
 
 WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
 
 
 class Lines:
     """Pictures, and what the autopilot tells of the time at which each was taken. Positions that come of them go to its
-    `system`. `clock`: a WallClock."""
+    `system`. `gimbal`: None where nobody listens to one. `clock`: a WallClock."""
 
-    def __init__(self, vehicle, autopilot, clock, options):
+    def __init__(self, vehicle, gimbal, autopilot, clock, options):
         self._vehicle = vehicle
+        self._gimbal = gimbal
         self._autopilot = autopilot
         self._clock = clock
         self._options = options
@@ -45,15 +47,23 @@ class Lines:
             print(json.dumps(step), flush=True)
 
     def _is_due(self, captured):
-        return self._vehicle.knows(captured) or time.monotonic() > captured + self._options.delay + WAIT_S
+        if time.monotonic() > captured + self._options.delay + WAIT_S:
+            return True
+        return self._vehicle.knows(captured) and (self._gimbal is None or self._gimbal.knows(captured))
+
+    def _camera_at(self, captured, attitude):
+        """In a vehicle of that attitude. Throws Unknown."""
+        if self._gimbal is not None:
+            attitude = self._gimbal.camera_at(captured, attitude[2])
+        elif self._options.camera == "level":
+            attitude = (0.0, 0.0, attitude[2])
+        return turned(attitude, math.radians(self._options.camera_yaw))
 
     def _step(self, path, captured):
         """Throws Unknown."""
         (north_m, east_m), attitude = self._vehicle.seen_at(captured)
-        if self._options.camera == "level":
-            attitude = (0.0, 0.0, attitude[2])
-        heading = attitude[2]
-        roll, pitch, yaw = turned(attitude, math.radians(self._options.camera_yaw))
+        roll, pitch, yaw = self._camera_at(captured, attitude)
+        camera_yaw = math.remainder(yaw - attitude[2], math.tau)
         agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(), 2)
         if agl_m <= 0.0:
             raise Unknown(f"it was taken {agl_m:.1f} m above ground")
@@ -65,7 +75,7 @@ class Lines:
                 "north_m": round(north_m, 3), "east_m": round(east_m, 3),
                 "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
                 "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,
-                "camera_yaw_deg": round(math.degrees(math.remainder(yaw - heading, math.tau)), 3), "image": str(path),
+                "camera_yaw_deg": round(math.degrees(camera_yaw), 3), "image": str(path),
                 "system": self._autopilot.system}
         alt_m = self._vehicle.alt_m()
         return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}

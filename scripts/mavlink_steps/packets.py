@@ -11,6 +11,10 @@ MESSAGES = {
     136: ("TERRAIN_REPORT", 1, "<iiffH", ("lat", "lon", "terrain_height", "current_height", "spacing")),
     141: ("ALTITUDE", 47, "<Q6f", ("time_usec", "altitude_monotonic", "altitude_amsl", "altitude_local",
                                    "altitude_relative", "altitude_terrain", "bottom_clearance")),
+    285: ("GIMBAL_DEVICE_ATTITUDE_STATUS", 137, "<I4f3fIHBBffB",
+          ("time_boot_ms", "qw", "qx", "qy", "qz", "angular_velocity_x", "angular_velocity_y", "angular_velocity_z",
+           "failure_flags", "flags", "target_system", "target_component", "delta_yaw", "delta_yaw_velocity",
+           "gimbal_device_id")),
 }
 
 

@@ -36,19 +36,6 @@ def between(before, after, when, longest_s):
     return tuple(a + (when - t0) / (t1 - t0) * (b - a) for a, b in zip(values, then))
 
 
-def turned(attitude, yaw):
-    """Roll, pitch and yaw (radians, aerospace convention) of a camera that is turned in the airframe about its
-    downward axis, clockwise seen from above."""
-    roll, pitch, heading = attitude
-    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
-    cy, sy = math.cos(yaw), math.sin(yaw)
-    # Forward and right of the camera in axes that are level and point to the heading; down stays as it is.
-    forward = (cy * cp + sy * sr * sp, sy * cr, -cy * sp + sy * sr * cp)
-    right_down = sy * sp + cy * sr * cp
-    return (math.atan2(right_down, cr * cp), math.asin(max(-1.0, min(1.0, -forward[2]))),
-            heading + math.atan2(forward[1], forward[0]))
-
-
 class Vehicle:
     """`by_air`: movements from airspeed and heading, as a track with wind_sigma_m_s takes them, instead of from the
     estimator's velocity over ground. Positions are not used: they jump where the autopilot is told better ones. All

@@ -39,6 +39,11 @@ OTHERS = {
                        {"current_height": 310.25}),
     "ALTITUDE": (bytes.fromhex("fd2000000707018d000015cd5b07000000000000803f0000004000004040000080400000a04000c08f43"
                                "759e"), {"bottom_clearance": 287.5, "altitude_amsl": 2.0}),
+    "GIMBAL_DEVICE_ATTITUDE_STATUS": (
+        bytes.fromhex("fd31000009079a1d010040e201000000003f0000003f000000bf0000003f0000c07f0000803e0000c0bf000000002c00"
+                      "00000000a0bf0000c07f021ed6"),
+        {"time_boot_ms": 123456, "qw": 0.5, "qx": 0.5, "qy": -0.5, "qz": 0.5, "flags": 44, "delta_yaw": -1.25,
+         "gimbal_device_id": 2}),
 }
 
 
@@ -47,6 +52,12 @@ def packet(name, *values, system=7, component=1):
     payload = struct.pack(layout, *values)
     head = bytes([len(payload), 0, 0, 0, system, component]) + number.to_bytes(3, "little")
     return b"\xfd" + head + payload + crc(head + payload + bytes([extra])).to_bytes(2, "little")
+
+
+def gimbal_status(boot_ms, system=7, component=154):
+    """Of one that looks down, the upper edge of its picture 90 degrees clockwise from the nose."""
+    return packet("GIMBAL_DEVICE_ATTITUDE_STATUS", boot_ms, 0.5, 0.5, -0.5, 0.5, 0.0, 0.0, 0.0, 0, 44, 0, 0, math.nan,
+                  math.nan, 0, system=system, component=component)
 
 
 class Packets(unittest.TestCase):
@@ -122,8 +133,19 @@ class Listening(unittest.TestCase):
         for boot_ms in range(50):
             self.theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
         with said():
-            self.program.hear(self.ours, Autopilot(7, 1), vehicle)
+            self.program.hear(self.ours, Autopilot(7, 1), vehicle, None)
         self.assertEqual(heard, list(range(50)))
+
+    def test_hears_gimbals_of_whatever_component_of_the_vehicle_alone(self):
+        heard = []
+        gimbal = types.SimpleNamespace(hear=lambda message, came: heard.append(message.fields["time_boot_ms"]))
+        vehicle = types.SimpleNamespace(hear=lambda name, fields, came: self.assertEqual(name, "ATTITUDE"))
+        for data in (gimbal_status(1, component=1), packet("ATTITUDE", 2, 0.0, 0.0, 0.0), gimbal_status(3),
+                     gimbal_status(4, system=8), gimbal_status(5, component=1)):
+            self.theirs.send(data)
+        with said():
+            self.program.hear(self.ours, Autopilot(None, 1), vehicle, gimbal)
+        self.assertEqual(heard, [3, 5], "before the autopilot was heard nobody knows whose it is")
 
     def test_looks_at_the_clock_before_the_pictures_and_then_whether_they_come(self):
         class End(Exception):
@@ -138,7 +160,8 @@ class Listening(unittest.TestCase):
             calls.append("pictures")
             return []
 
-        options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, delay=0.0)
+        options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, camera="body",
+                                        delay=0.0)
         self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
         began = time.monotonic()
         with mock.patch.object(self.program, "Silence", lambda: silence), said(), self.assertRaises(End):
@@ -168,8 +191,8 @@ class Program(unittest.TestCase):
         self.link.sendto(packet("ATTITUDE", boot_ms, 0.02, -0.01, 1.0, system=system) +
                          packet("LOCAL_POSITION_NED", boot_ms, 0, 0, -120.0, 10.0, 5.0, 0.0, system=system) +
                          packet("VFR_HUD", 11.0, 11.0, 640.5, system=system) +
-                         packet("ATTITUDE", boot_ms + 50, 1.0, 1.0, 2.0, system=system, component=154),
-                         ("127.0.0.1", self.port))
+                         packet("ATTITUDE", boot_ms + 50, 1.0, 1.0, 2.0, system=system, component=154) +
+                         gimbal_status(boot_ms, system), ("127.0.0.1", self.port))
 
     def step_of(self, picture):
         """The step that is made of it, half a second after the vehicle began to fly."""
@@ -199,6 +222,12 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(step["roll_deg"], math.degrees(0.02), places=2)
         self.assertAlmostEqual(step["pitch_deg"], math.degrees(-0.01), places=2)
         self.assertEqual((step["agl_m"], step["alt_m"], step["system"]), (120.0, 640.5, 7))
+
+    def test_tells_which_way_the_camera_of_a_gimbal_looks(self):
+        self.start("--camera", "gimbal", "--camera-yaw", "-30")
+        step = self.step_of(Path(self.folder.name, "1.jpg"))
+        self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0) + 60.0, places=2)
+        self.assertEqual((step["roll_deg"], step["pitch_deg"], step["camera_yaw_deg"]), (0.0, 0.0, 60.0))
 
     def test_tells_the_time_and_the_height_that_it_was_told(self):
         self.start("--delay", "0.25", "--agl", "90.5")

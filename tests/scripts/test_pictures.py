@@ -17,7 +17,9 @@ from words import said
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
 from clock import WallClock  # noqa: E402
+from gimbal import STATUS, Gimbal  # noqa: E402
 from lines import Lines  # noqa: E402
+from packets import Message  # noqa: E402
 from pictures import NewPictures, Silence  # noqa: E402
 from vehicle import Vehicle  # noqa: E402
 
@@ -228,7 +230,10 @@ class LinesOfPictures(unittest.TestCase):
         self.vehicle = Vehicle()
         self.clock = WallClock()
         self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
-        self.lines = Lines(self.vehicle, types.SimpleNamespace(system=7), self.clock, self.options)
+        self.lines = self.lines_of(None)
+
+    def lines_of(self, gimbal):
+        return Lines(self.vehicle, gimbal, types.SimpleNamespace(system=7), self.clock, self.options)
 
     def fly(self, seconds, heard=True, roll=0.0, yaw=0.0, height_m=9.0):
         for _ in range(round(10 * seconds)):
@@ -291,6 +296,30 @@ class LinesOfPictures(unittest.TestCase):
             self.assertAlmostEqual(math.remainder(vehicle_deg - math.degrees(3.0), 360.0), 0.0, places=2)
             self.assertAlmostEqual(math.remainder(step["camera_yaw_deg"] - camera_yaw, 360.0), 0.0,
                                    delta=0.01 if camera == "level" else 3.0)
+
+    def test_of_a_gimbal_are_left_out_where_it_says_nothing_and_wait_for_what_it_says_later(self):
+        self.options.camera, gimbal = "gimbal", Gimbal(154)
+        self.lines = self.lines_of(gimbal)
+
+        def tell(yaw_deg):
+            """Pitch -90, in the vehicle's frame."""
+            c, s = (math.sqrt(0.5) * part(math.radians(0.5 * yaw_deg)) for part in (math.cos, math.sin))
+            fields = {"time_boot_ms": round(1e3 * self.time.now), "flags": 44, "qw": c, "qx": s, "qy": -c, "qz": s,
+                      "delta_yaw": math.nan, "gimbal_device_id": 0}
+            gimbal.hear(Message(7, 154, STATUS, fields), self.time.now)
+
+        self.fly(3.0, roll=0.2, yaw=1.0)
+        self.lines.add("1.jpg", self.time.now - 0.55)
+        self.assertEqual(self.printed(), ([], "1.jpg is left out: no two GIMBAL_DEVICE_ATTITUDE_STATUS around that "
+                                              "time, at most 0.6 s apart\n"))
+        tell(20.0)
+        self.fly(0.2, roll=0.2, yaw=1.0)
+        self.lines.add("2.jpg", self.time.now - 0.1)
+        self.assertEqual(self.printed(), ([], ""))
+        tell(40.0)
+        ((step,), _) = self.printed()
+        self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0) + 30.0, places=2)
+        self.assertEqual((step["roll_deg"], step["pitch_deg"], step["camera_yaw_deg"]), (0.0, 0.0, 30.0))
 
     def test_are_not_kept_back_by_a_picture_of_the_future(self):
         self.fly(3.0)

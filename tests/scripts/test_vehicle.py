@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where a vehicle was and how high: angles against rotation matrices, and flights whose truth is known."""
+"""Where a vehicle was and how high, by flights whose truth is known."""
 import math
 import random
 import sys
@@ -11,24 +11,7 @@ from words import said
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
 from boot_clock import BootClock  # noqa: E402
-from vehicle import Unknown, Vehicle, turned  # noqa: E402
-
-
-def about(axis, angle):
-    c, s = math.cos(angle), math.sin(angle)
-    return {0: ((1, 0, 0), (0, c, -s), (0, s, c)), 1: ((c, 0, s), (0, 1, 0), (-s, 0, c)),
-            2: ((c, -s, 0), (s, c, 0), (0, 0, 1))}[axis]
-
-
-def product(*matrices):
-    result, *others = matrices
-    for other in others:
-        result = tuple(tuple(sum(row[k] * other[k][j] for k in range(3)) for j in range(3)) for row in result)
-    return result
-
-
-def rotation(roll, pitch, yaw):
-    return product(about(2, yaw), about(1, pitch), about(0, roll))
+from vehicle import Unknown, Vehicle  # noqa: E402
 
 
 def hud(airspeed, alt=0.0):
@@ -47,19 +30,6 @@ def move(vehicle, came, north=0.0, east=0.0, height_m=80.0):
     """At a velocity."""
     fields = {"time_boot_ms": round(1e3 * came), "z": -height_m, "vx": north, "vy": east}
     vehicle.hear("LOCAL_POSITION_NED", fields, came)
-
-
-class Camera(unittest.TestCase):
-    def test_that_is_turned_in_the_airframe_has_the_attitude_of_both_rotations(self):
-        draw = random.Random(3)
-        for _ in range(300):
-            attitude = (draw.uniform(-1.4, 1.4), draw.uniform(-1.4, 1.4), draw.uniform(-9, 9))
-            yaw = draw.uniform(-4, 4)
-            expected = product(rotation(*attitude), about(2, yaw))
-            actual = rotation(*turned(attitude, yaw))
-            for row, other in zip(actual, expected):
-                for a, b in zip(row, other):
-                    self.assertAlmostEqual(a, b, places=9)
 
 
 class Flights(unittest.TestCase):

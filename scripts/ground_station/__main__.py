@@ -5,7 +5,7 @@ of JSON in for each step, a line with the answer out.
 
 - north_m, east_m, yaw_deg: where the vehicle's own estimator believes to be, in its local frame. Origin and drift of
   the frame do not matter: steps say the movement since the last one. yaw_deg, clockwise from north, is that of the
-  picture's upper edge.
+  picture's upper edge. A line with a picture may leave out all three: how the vehicle moved is then not known.
 - origin: any text that is another one once the frame has another origin, as after a restart of the estimator. The track
   then begins anew around the last place that was known.
 - image: PNG or JPEG, relative to the folder of the file of steps. Without one the step is dead reckoning.

@@ -86,7 +86,8 @@ class NewestLine:
 
 
 class Step(NamedTuple):
-    place: tuple
+    """`place` None: it is not known."""
+    place: Optional[tuple]
     origin: Optional[str]
     fields: dict
     image: Optional[bytes]
@@ -98,7 +99,9 @@ def is_number(value):
 
 
 def _place(step):
-    """Throws ValueError."""
+    """None of a picture whose place is not known. Throws ValueError."""
+    if step.get("image") is not None and not any(name in step for name in PLACE):
+        return None
     try:
         place = tuple(step[name] for name in PLACE)
     except KeyError as missing:

@@ -61,7 +61,7 @@ class Track:
         if not self.id:
             self._begin(origin, self._request)
         elif origin != self._state["origin"]:
-            self._begin_near_the_last_place(origin, "the vehicle's frame has another origin")
+            self._take_origin(origin)
         try:
             self._settle()
             return self._step(place, fields, image, packet_format, send)
@@ -77,7 +77,25 @@ class Track:
 
     def pass_by(self, place, covariance):
         """A place that no step is made of, and the covariance of the movement to it. None where it is not known."""
-        self._travel.add(self._estimator.place(place), covariance)
+        known = self._estimator.place(place)
+        self._travel.add(known, covariance)
+        if known != place:
+            self._forget_place()
+
+    def _take_origin(self, origin):
+        """Of a place of which it is not known how the vehicle came there. Where it is not known either where it came
+        from, the track goes on."""
+        if self._state.get("place"):
+            self._begin_near_the_last_place(origin, "the vehicle's frame has another origin")
+        else:
+            self._forget_place()
+            self._state = {**self._state, "origin": origin}
+
+    def _forget_place(self):
+        """That of the last step, and of one without an answer: the movement from there is not known."""
+        self._state = {**self._state, "place": None}
+        if "asked" in self._state:
+            self._state["asked"] = {**self._state["asked"], "place": None}
 
     def _recall(self, origin):
         """The flight of another process: this one goes on with it, or it was long ago, or nobody knows when."""

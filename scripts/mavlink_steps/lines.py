@@ -23,6 +23,7 @@ class Lines:
         self._options = options
         self._waiting = collections.deque()  # path, time.monotonic()
         self._origin = None
+        self._knows_place = True
         self._last_us = -math.inf
 
     def add(self, path, captured):
@@ -43,7 +44,7 @@ class Lines:
                 print(f"{path} is left out: {why}", file=sys.stderr)
                 continue
             self._last_us = step["time_us"]
-            self._take_origin(step)
+            self._say_what_is_not_known(step)
             print(json.dumps(step), flush=True)
 
     def _is_due(self, captured):
@@ -61,7 +62,7 @@ class Lines:
 
     def _step(self, path, captured):
         """Throws Unknown."""
-        (north_m, east_m), attitude = self._vehicle.seen_at(captured)
+        place, attitude = self._vehicle.seen_at(captured)
         roll, pitch, yaw = self._camera_at(captured, attitude)
         camera_yaw = math.remainder(yaw - attitude[2], math.tau)
         agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(), 2)
@@ -72,16 +73,23 @@ class Lines:
             raise Unknown("it was not taken after the one before it")
         step = {"time_us": time_us, "monotonic_s": round(captured, 6),
                 "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
-                "north_m": round(north_m, 3), "east_m": round(east_m, 3),
-                "yaw_deg": round(math.degrees(yaw) % 360.0, 3), "roll_deg": round(math.degrees(roll), 3),
-                "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,
+                "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,
                 "camera_yaw_deg": round(math.degrees(camera_yaw), 3), "image": str(path),
                 "system": self._autopilot.system}
+        if place is not None:
+            step.update(north_m=round(place[0], 3), east_m=round(place[1], 3),
+                        yaw_deg=round(math.degrees(yaw) % 360.0, 3))
         alt_m = self._vehicle.alt_m()
         return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}
 
-    def _take_origin(self, step):
-        if self._origin not in (None, step["origin"]):
+    def _say_what_is_not_known(self, step):
+        """Where it is not as before."""
+        knew_place, self._knows_place = self._knows_place, "north_m" in step
+        last_origin, self._origin = self._origin, step["origin"]
+        if self._knows_place != knew_place:
+            print(f"{step['image']}: " + ("movements are known again from here" if self._knows_place else
+                                          f"no {self._vehicle.velocities} of that time: its movement is not known"),
+                  file=sys.stderr)
+        elif last_origin not in (None, self._origin):
             print(f"{step['image']}: no velocity for more than {LONGEST_HOLE_S:g} s before it: the movement is not "
                   "known", file=sys.stderr)
-        self._origin = step["origin"]

@@ -76,15 +76,17 @@ class Vehicle:
                 self._move((fields["vx"], fields["vy"]), when)
 
     def seen_at(self, when):
-        """North and east in metres from anywhere, roll, pitch and yaw in radians. Throws Unknown."""
+        """North and east in metres from anywhere, None where they are not known, and roll, pitch and yaw in radians.
+        Throws Unknown."""
         attitude = between(*around(self._attitudes, when), when, ATTITUDE_HOLE_S)
-        place = self._place_at(when)
-        if place is None:
-            what = "VFR_HUD with a height above the sea" if self._by_air else "LOCAL_POSITION_NED"
-            raise Unknown(f"no {what} of that time")
         if attitude is None:
             raise Unknown(f"no two ATTITUDE around that time, at most {ATTITUDE_HOLE_S:g} s apart")
-        return place, attitude
+        return self._place_at(when), attitude
+
+    @property
+    def velocities(self):
+        """What tells them."""
+        return "VFR_HUD with a height above the sea" if self._by_air else "LOCAL_POSITION_NED"
 
     def holes_before(self, when):
         """How many there were in the velocities: the movement between a place before one and a place after it is not
@@ -104,8 +106,10 @@ class Vehicle:
         return self._heights.alt_m(self.heard)
 
     def knows(self, when):
-        """Whether messages of that time and later ones have come."""
-        return all(history and history[-1][0] >= when for history in (self._places, self._attitudes))
+        """Whether messages of that time and later ones have come. Velocities that have ended are not waited for."""
+        last_place = self._places[-1][0] if self._places else -math.inf
+        return bool(self._attitudes) and self._attitudes[-1][0] >= when and (
+            last_place >= when or last_place < when - CARRIED_ON_S)
 
     def _place_at(self, when):
         """None where it is not known."""

@@ -54,6 +54,15 @@ class Lines(unittest.TestCase):
             self.assertLess(abs(fields["time_us"] / 1e6 - time.time()), 60.0)
             self.assertNotIn("kind", read_step(next(all_lines([text])), folder, {"cell_m": 2}).fields)
 
+    def test_of_pictures_may_say_nothing_of_their_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "a.jpg").write_bytes(b"\xff\xd8")
+            self.assertIsNone(read_step(next(all_lines(['{"image": "a.jpg", "agl_m": 90}'])), folder, {}).place)
+            with self.assertRaisesRegex(ValueError, "needs north_m"):
+                read_step(next(all_lines(['{"image": "a.jpg", "east_m": 2, "yaw_deg": 3}'])), folder, {})
+        with self.assertRaisesRegex(ValueError, "needs north_m"):
+            read_step(next(all_lines(['{"time_us": 5}'])), ".", {})
+
     def test_without_a_picture_say_nothing_of_its_camera(self):
         text = '{"north_m": 1, "east_m": 2, "yaw_deg": 3, "time_us": 5, "alt_m": 7, "agl_m": 90, "roll_deg": 1}'
         step = read_step(next(all_lines([text])), ".", {"fov_deg": 78, "satellites": 10})

@@ -271,7 +271,7 @@ class Program(unittest.TestCase):
     def test_says_why_a_picture_is_left_out(self):
         self.start()
         Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")
-        self.assertIn("1.jpg is left out: no LOCAL_POSITION_NED of that time", self.program.stderr.readline())
+        self.assertIn("1.jpg is left out: no two ATTITUDE around that time", self.program.stderr.readline())
 
 
 if __name__ == "__main__":

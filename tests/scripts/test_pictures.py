@@ -235,15 +235,16 @@ class LinesOfPictures(unittest.TestCase):
     def lines_of(self, gimbal):
         return Lines(self.vehicle, gimbal, types.SimpleNamespace(system=7), self.clock, self.options)
 
-    def fly(self, seconds, heard=True, roll=0.0, yaw=0.0, height_m=9.0):
+    def fly(self, seconds, heard=True, roll=0.0, yaw=0.0, height_m=9.0, moved=True):
         for _ in range(round(10 * seconds)):
             self.time.now += 0.1
             if heard:
                 boot_ms = round(1e3 * self.time.now)
                 self.vehicle.hear("ATTITUDE", {"time_boot_ms": boot_ms, "roll": roll, "pitch": 0.1, "yaw": yaw},
                                   self.time.now)
-                self.vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": boot_ms, "z": -height_m, "vx": 10, "vy": 0},
-                                  self.time.now)
+                if moved:
+                    fields = {"time_boot_ms": boot_ms, "z": -height_m, "vx": 10, "vy": 0}
+                    self.vehicle.hear("LOCAL_POSITION_NED", fields, self.time.now)
 
     def printed(self):
         """Steps and words."""
@@ -268,6 +269,23 @@ class LinesOfPictures(unittest.TestCase):
         self.assertEqual(fourth["origin"], third["origin"])
         self.assertAlmostEqual(fourth["north_m"] - third["north_m"], 20.0, places=2)
         self.assertEqual(words, "3.jpg: no velocity for more than 2 s before it: the movement is not known\n")
+
+    def test_have_no_place_where_the_autopilot_tells_no_velocity(self):
+        steps, words = [], ""
+        for moved, seconds in ((False, 3.0), (False, 1.0), (True, 3.0), (True, 1.0), (False, 4.0)):
+            self.fly(seconds, moved=moved)
+            self.lines.add(f"{len(steps)}.jpg", self.time.now - 0.05)
+            (step,), said_now = self.printed()
+            steps.append(step)
+            words += said_now
+        self.assertEqual(["north_m" in step for step in steps], [False, False, True, True, False])
+        for step in steps:
+            self.assertEqual("east_m" in step and "yaw_deg" in step, "north_m" in step)
+            self.assertEqual((step["roll_deg"], step["camera_yaw_deg"], step["origin"]), (0.0, 0.0, "o-0"))
+        self.assertEqual(words.splitlines(), [
+            "0.jpg: no LOCAL_POSITION_NED of that time: its movement is not known",
+            "2.jpg: movements are known again from here",
+            "4.jpg: no LOCAL_POSITION_NED of that time: its movement is not known"])
 
     def test_are_the_same_while_the_clock_is_set(self):
         self.fly(3.0)

@@ -249,15 +249,36 @@ class Steps(unittest.TestCase):
             self.assertNotIn("forward_m", fake.steps()[1])
             self.assertNotIn("forward_m", fake.steps()[2])
 
+    def test_tell_no_movement_since_a_place_after_which_the_estimator_stopped_while_lines_were_passed_by(self):
+        with FakeService() as fake:
+            track, _ = self.fly(fake, 2)
+            track.pass_by((10.0, 0.0, 0.0), None)
+            for i, north_m in ((3, 40.0), (4, 55.0)):
+                track.step((north_m, 0.0, 0.0), {"time_us": i})
+            self.assertEqual([step.get("forward_m") for step in fake.steps()], [None, 10.0, None, 15.0])
+
     def test_may_have_gone_anywhere_while_no_place_was_known(self):
-        with FakeService([CONVERGED]) as fake:
+        with FakeService([CONVERGED, 200, 200, 200, (410, {"code": "track-ended"})]) as fake:
             track, _ = self.fly(fake, 1)
             for i in range(1, 5):
                 track.step(None, {"time_us": i * 1_000_000})
-            track.step((0.0, 0.0, 0.0), {"time_us": 5_000_000}, origin="restarted")
             begun = fake.begun()[-1]
             self.assertEqual((begun["lat"], begun["lon"]), (7.0, 8.0))
-            self.assertAlmostEqual(begun["radius_m"], 100.0 + 20.0 + 4 * 50.0, delta=50.0 * 2.0)
+            self.assertAlmostEqual(begun["radius_m"], 100.0 + 20.0 + 3 * 50.0, delta=50.0 * 2.0)
+
+    def test_go_on_with_another_origin_where_it_was_not_known_before_either_where_they_were(self):
+        for fate in (200, "lose"):
+            with FakeService([CONVERGED, 200] + [fate] * 20) as fake:
+                track, _ = self.fly(fake, 1, patience_s=0.2)
+                track.step(None, {"time_us": 2}, origin=None)
+                with contextlib.suppress(Silent):
+                    track.step((20.0, 0.0, 0.0), {"time_us": 3})
+                fake.script.clear()
+                track.step((5.0, 0.0, 0.0), {"time_us": 4}, origin="again")
+                track.step((9.0, 0.0, 0.0), {"time_us": 5}, origin="again")
+                self.assertEqual(len(fake.begun()), 2 if fate == 200 else 1, "the place of the step before was known")
+                self.assertNotIn("forward_m", fake.steps()[-2])
+                self.assertEqual(fake.steps()[-1]["forward_m"], 4.0)
 
     def test_have_the_covariance_of_all_that_their_movement_spans(self):
         def errors(turn_rad2):

@@ -26,6 +26,7 @@ from gimbal import STATUS, Gimbal
 from lines import Lines
 from packets import messages
 from pictures import NewPictures, Silence
+from receiver import Receiver
 from vehicle import Vehicle
 
 LOOK_S = 0.1       # between two looks into the folder
@@ -83,7 +84,7 @@ def parse_arguments(arguments):
     return parser.parse_args(arguments)
 
 
-def hear(link, autopilot, vehicle, gimbal):
+def hear(link, receiver):
     """Takes all that has come: a look into a full folder takes as long as many messages need to come."""
     for _ in range(MOST_HEARD):
         try:
@@ -92,23 +93,20 @@ def hear(link, autopilot, vehicle, gimbal):
             return
         came = time.monotonic()
         for message in messages(datagram):
-            if message.name == STATUS:  # of whatever component
-                if gimbal is not None and message.system == autopilot.system:
-                    gimbal.hear(message, came)
-            elif autopilot.sent(message):
-                vehicle.hear(message.name, message.fields, came)
+            receiver.take(message, came)
 
 
 def follow(link, pictures, clock, options):
     vehicle = Vehicle(options.by_air, options.takeoff_agl)
     autopilot = Autopilot(options.system, options.component)
     gimbal = Gimbal(options.gimbal) if options.camera == "gimbal" else None
+    receiver = Receiver(autopilot, vehicle, gimbal)
     lines = Lines(vehicle, gimbal, autopilot, clock, options)
     silence = Silence()
     looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
-            hear(link, autopilot, vehicle, gimbal)
+            hear(link, receiver)
         if time.monotonic() < looked + LOOK_S:
             continue
         clock.look()

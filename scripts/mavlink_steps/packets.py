@@ -1,5 +1,5 @@
 """MAVLink 1 and 2 packets (https://mavlink.io/en/guide/serialization.html) and the messages that tell how a vehicle
-moves, by common.xml."""
+moves and what it answers, by common.xml."""
 import struct
 from typing import NamedTuple
 
@@ -8,6 +8,7 @@ MESSAGES = {
     30: ("ATTITUDE", 39, "<Ifff", ("time_boot_ms", "roll", "pitch", "yaw")),
     32: ("LOCAL_POSITION_NED", 185, "<I6f", ("time_boot_ms", "x", "y", "z", "vx", "vy", "vz")),
     74: ("VFR_HUD", 20, "<3f", ("airspeed", "groundspeed", "alt")),
+    77: ("COMMAND_ACK", 143, "<HB", ("command", "result")),
     136: ("TERRAIN_REPORT", 1, "<iiffH", ("lat", "lon", "terrain_height", "current_height", "spacing")),
     141: ("ALTITUDE", 47, "<Q6f", ("time_usec", "altitude_monotonic", "altitude_amsl", "altitude_local",
                                    "altitude_relative", "altitude_terrain", "bottom_clearance")),

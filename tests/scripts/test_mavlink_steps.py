@@ -24,6 +24,7 @@ sys.path.insert(0, str(PROGRAM))
 
 from autopilot import Autopilot  # noqa: E402
 from packets import MESSAGES, Message, crc, messages  # noqa: E402
+from receiver import Receiver  # noqa: E402
 
 # system 7, component 1
 ATTITUDE = bytes.fromhex(
@@ -39,6 +40,7 @@ OTHERS = {
                        {"current_height": 310.25}),
     "ALTITUDE": (bytes.fromhex("fd2000000707018d000015cd5b07000000000000803f0000004000004040000080400000a04000c08f43"
                                "759e"), {"bottom_clearance": 287.5, "altitude_amsl": 2.0}),
+    "COMMAND_ACK": (bytes.fromhex("fd0a00000907014d0000fba704000000000007bf8218"), {"command": 43003, "result": 4}),
     "GIMBAL_DEVICE_ATTITUDE_STATUS": (
         bytes.fromhex("fd31000009079a1d010040e201000000003f0000003f000000bf0000003f0000c07f0000803e0000c0bf000000002c00"
                       "00000000a0bf0000c07f021ed6"),
@@ -117,6 +119,19 @@ class Autopilots(unittest.TestCase):
                               for system, component in ((9, 1), (8, 2), (9, 2))], [False, False, True])
 
 
+class Answers(unittest.TestCase):
+    def test_to_positions_are_told_where_they_change(self):
+        receiver = Receiver(Autopilot(7, 1), None, None)
+        with said() as words:
+            for system, command, result in ((7, 43003, 4), (7, 43003, 4), (7, 400, 0), (8, 43003, 0), (7, 43003, 0),
+                                            (7, 43003, 0), (7, 43003, 3), (7, 43003, 9)):
+                receiver.take(Message(system, 1, "COMMAND_ACK", {"command": command, "result": result}), 100.0)
+        self.assertEqual(words.getvalue().splitlines(), [
+            f"the autopilot takes {what} to MAV_CMD_EXTERNAL_POSITION_ESTIMATE" for what in (
+                "no position: it answers FAILED", "positions: it answers ACCEPTED",
+                "no position: it answers UNSUPPORTED", "no position: it answers 9")])
+
+
 class Listening(unittest.TestCase):
     def setUp(self):
         spec = importlib.util.spec_from_file_location("mavlink_steps", PROGRAM / "__main__.py")
@@ -133,7 +148,7 @@ class Listening(unittest.TestCase):
         for boot_ms in range(50):
             self.theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
         with said():
-            self.program.hear(self.ours, Autopilot(7, 1), vehicle, None)
+            self.program.hear(self.ours, Receiver(Autopilot(7, 1), vehicle, None))
         self.assertEqual(heard, list(range(50)))
 
     def test_hears_gimbals_of_whatever_component_of_the_vehicle_alone(self):
@@ -144,7 +159,7 @@ class Listening(unittest.TestCase):
                      gimbal_status(4, system=8), gimbal_status(5, component=1)):
             self.theirs.send(data)
         with said():
-            self.program.hear(self.ours, Autopilot(None, 1), vehicle, gimbal)
+            self.program.hear(self.ours, Receiver(Autopilot(None, 1), vehicle, gimbal))
         self.assertEqual(heard, [3, 5], "before the autopilot was heard nobody knows whose it is")
 
     def test_looks_at_the_clock_before_the_pictures_and_then_whether_they_come(self):

@@ -54,8 +54,7 @@ class Track:
         another one than before, places are too, and the movement between is not known. `fields`: time_us and other
         fields of a step, `covariance` that of the movement since the last call of this or of pass_by(); `send` is
         called with the message for the autopilot in `packet_format`, if there is one."""
-        place = self._estimator.place(place)
-        self._travel.add(place, fields.get("covariance"))
+        place = self._go_to(place, fields.get("covariance"))
         if self._of_another_process:
             self._recall(origin)
         if not self.id:
@@ -77,10 +76,15 @@ class Track:
 
     def pass_by(self, place, covariance):
         """A place that no step is made of, and the covariance of the movement to it. None where it is not known."""
-        known = self._estimator.place(place)
-        self._travel.add(known, covariance)
-        if known != place:
-            self._forget_place()
+        self._go_to(place, covariance)
+
+    def _go_to(self, told, covariance):
+        """The place, None where it is not known."""
+        place = self._estimator.place(told)
+        self._travel.add(place, covariance)
+        if place != told:
+            self._forget_place()  # nobody knows from where the estimator will go on
+        return place
 
     def _take_origin(self, origin):
         """Of a place of which it is not known how the vehicle came there. Where it is not known either where it came

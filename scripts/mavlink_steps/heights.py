@@ -28,6 +28,8 @@ class Heights:
     def __init__(self, takeoff_agl_m):
         self._takeoff_agl_m = takeoff_agl_m
         self._above_ground = Told()
+        self._above_origin = Told()
+        self._takeoff_m = 0.0  # above the origin
         self._above_takeoff = Told()
         self._above_sea = {"ALTITUDE": Told(), "VFR_HUD": Told()}  # the better one first
         self._knew_ground = None
@@ -36,7 +38,17 @@ class Heights:
         """One that is NaN or not above 0 is not known."""
         self._above_ground.tell(height_m if height_m > 0.0 else math.nan, came)
 
+    def tell_above_origin(self, height_m, came):
+        """Of the vehicle above the zero of its estimator, which is not where it took off."""
+        self._above_origin.tell(height_m, came)
+
+    def tell_takeoff(self, height_m):
+        """Of the take-off above that zero, until another is told. NaN: it is not known, so that it stays as it was."""
+        if math.isfinite(height_m):
+            self._takeoff_m = height_m
+
     def tell_above_takeoff(self, height_m, came):
+        """For where the estimator has no zero yet."""
         self._above_takeoff.tell(height_m, came)
 
     def tell_above_sea(self, message, height_m, came):
@@ -49,7 +61,8 @@ class Heights:
         self._say(above_ground_m is not None)
         if above_ground_m is not None:
             return above_ground_m
-        above_takeoff_m = self._above_takeoff.at(now)
+        above_origin_m = self._above_origin.at(now)
+        above_takeoff_m = self._above_takeoff.at(now) if above_origin_m is None else above_origin_m - self._takeoff_m
         return None if above_takeoff_m is None else above_takeoff_m + self._takeoff_agl_m
 
     def alt_m(self, now):

@@ -7,11 +7,13 @@ from typing import NamedTuple
 MESSAGES = {
     30: ("ATTITUDE", 39, "<Ifff", ("time_boot_ms", "roll", "pitch", "yaw")),
     32: ("LOCAL_POSITION_NED", 185, "<I6f", ("time_boot_ms", "x", "y", "z", "vx", "vy", "vz")),
+    33: ("GLOBAL_POSITION_INT", 104, "<I4i", ("time_boot_ms", "lat", "lon", "alt", "relative_alt")),
     74: ("VFR_HUD", 20, "<3f", ("airspeed", "groundspeed", "alt")),
     77: ("COMMAND_ACK", 143, "<HB", ("command", "result")),
     136: ("TERRAIN_REPORT", 1, "<iiffH", ("lat", "lon", "terrain_height", "current_height", "spacing")),
     141: ("ALTITUDE", 47, "<Q6f", ("time_usec", "altitude_monotonic", "altitude_amsl", "altitude_local",
                                    "altitude_relative", "altitude_terrain", "bottom_clearance")),
+    242: ("HOME_POSITION", 104, "<3i3f", ("latitude", "longitude", "altitude", "x", "y", "z")),
     285: ("GIMBAL_DEVICE_ATTITUDE_STATUS", 137, "<I4f3fIHBBffB",
           ("time_boot_ms", "qw", "qx", "qy", "qz", "angular_velocity_x", "angular_velocity_y", "angular_velocity_z",
            "failure_flags", "flags", "target_system", "target_component", "delta_yaw", "delta_yaw_velocity",

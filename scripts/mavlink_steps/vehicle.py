@@ -56,6 +56,8 @@ class Vehicle:
             when = self._clock.ours(fields["time_boot_ms"] / 1e3, came)
             if when is not None:
                 self._hear_at(when, name, fields, came)
+        elif name == "HOME_POSITION":
+            self._heights.tell_takeoff(-fields["z"])
         elif name == "VFR_HUD":
             self._heights.tell_above_sea(name, fields["alt"], came)
             if self._by_air:
@@ -71,9 +73,11 @@ class Vehicle:
             self._turn((fields["roll"], fields["pitch"], fields["yaw"]), when)
         elif name == "LOCAL_POSITION_NED":
             if math.isfinite(fields["z"]):
-                self._heights.tell_above_takeoff(-fields["z"], came)
+                self._heights.tell_above_origin(-fields["z"], came)
             if not self._by_air:
                 self._move((fields["vx"], fields["vy"]), when)
+        elif name == "GLOBAL_POSITION_INT":
+            self._heights.tell_above_takeoff(1e-3 * fields["relative_alt"], came)
 
     def seen_at(self, when):
         """North and east in metres from anywhere, None where they are not known, and roll, pitch and yaw in radians.
@@ -97,8 +101,8 @@ class Vehicle:
         """As of the last message. Throws Unknown."""
         height_m = self._heights.agl_m(self.heard)
         if height_m is None:
-            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT or LOCAL_POSITION_NED): give --agl, or ask the autopilot "
-                          "for one of them (SET_MESSAGE_INTERVAL)")
+            raise Unknown("no height (ALTITUDE, TERRAIN_REPORT, LOCAL_POSITION_NED or GLOBAL_POSITION_INT): give --agl, "
+                          "or ask the autopilot for one of them (SET_MESSAGE_INTERVAL)")
         return height_m
 
     def alt_m(self):

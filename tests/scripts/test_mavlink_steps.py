@@ -40,6 +40,12 @@ OTHERS = {
                        {"current_height": 310.25}),
     "ALTITUDE": (bytes.fromhex("fd2000000707018d000015cd5b07000000000000803f0000004000004040000080400000a04000c08f43"
                                "759e"), {"bottom_clearance": 287.5, "altitude_amsl": 2.0}),
+    "GLOBAL_POSITION_INT": (
+        bytes.fromhex("fd1c000009070121000040e201007b3582162d0821b7fad0070024faffff6400ceff07002823eb90"),
+        {"time_boot_ms": 123456, "relative_alt": -1500}),
+    "HOME_POSITION": (
+        bytes.fromhex("fd350000090701f200007b3582162d0821b7fad007000000c03f000020c0000044c10000803f00000000000000000000"
+                      "00000000000000000000000000000589ee"), {"altitude": 512250, "x": 1.5, "y": -2.5, "z": -12.25}),
     "COMMAND_ACK": (bytes.fromhex("fd0a00000907014d0000fba704000000000007bf8218"), {"command": 43003, "result": 4}),
     "GIMBAL_DEVICE_ATTITUDE_STATUS": (
         bytes.fromhex("fd31000009079a1d010040e201000000003f0000003f000000bf0000003f0000c07f0000803e0000c0bf000000002c00"

@@ -56,7 +56,7 @@ class Steps(unittest.TestCase):
             track, _ = self.fly(fake, 1, patience_s=0.2)
             for i in (2, 3):
                 with self.assertRaises(Silent):
-                    track.step((10.0, 0.0, 0.0), {"time_us": i})
+                    track.step((5.0 * i, 0.0, 0.0), {"time_us": i})
             fake.script.clear()
             track.step((25.0, 0.0, 0.0), {"time_us": 4})
             self.assertEqual([s["sequence"] for s in fake.steps()], [1, 2])
@@ -249,13 +249,19 @@ class Steps(unittest.TestCase):
             self.assertNotIn("forward_m", fake.steps()[1])
             self.assertNotIn("forward_m", fake.steps()[2])
 
-    def test_tell_no_movement_since_a_place_after_which_the_estimator_stopped_while_lines_were_passed_by(self):
-        with FakeService() as fake:
-            track, _ = self.fly(fake, 2)
-            track.pass_by((10.0, 0.0, 0.0), None)
-            for i, north_m in ((3, 40.0), (4, 55.0)):
-                track.step((north_m, 0.0, 0.0), {"time_us": i})
-            self.assertEqual([step.get("forward_m") for step in fake.steps()], [None, 10.0, None, 15.0])
+    def test_tell_no_movement_since_a_place_after_which_the_estimator_stopped_though_no_step_of_that_was_taken(self):
+        for is_refused in (False, True):
+            with FakeService([200, 200] + [(422, {"code": "image-damaged"})] * is_refused) as fake:
+                track, _ = self.fly(fake, 2)
+                if is_refused:
+                    with self.assertRaises(Refused):
+                        track.step((10.0, 0.0, 0.0), {"time_us": 3})
+                else:
+                    track.pass_by((10.0, 0.0, 0.0), None)
+                for i, north_m in ((4, 40.0), (5, 55.0)):
+                    track.step((north_m, 0.0, 0.0), {"time_us": i})
+                self.assertEqual([step.get("forward_m") for step in fake.steps()][-3 - is_refused:],
+                                 [10.0] + [None] * is_refused + [None, 15.0])
 
     def test_may_have_gone_anywhere_while_no_place_was_known(self):
         with FakeService([CONVERGED, 200, 200, 200, (410, {"code": "track-ended"})]) as fake:

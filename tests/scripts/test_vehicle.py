@@ -77,6 +77,22 @@ class Flights(unittest.TestCase):
             self.assertEqual(vehicle.agl_m(), 70.0)
         self.assertEqual(words.getvalue(), "the height above ground is known now\n")
 
+    def test_are_as_high_as_above_the_take_off_which_need_not_be_where_the_estimator_began(self):
+        vehicle = Vehicle(takeoff_agl_m=3.0)
+        for home_z, height_m in ((None, 83.0), (-12.25, 70.75), (math.nan, 70.75), (5.0, 88.0), (0.0, 83.0)):
+            if home_z is not None:
+                vehicle.hear("HOME_POSITION", {"z": home_z}, 1.0)
+            move(vehicle, 1.0, height_m=80.0)
+            self.assertEqual(vehicle.agl_m(), height_m, home_z)
+
+    def test_are_as_high_above_the_take_off_as_is_told_where_the_estimator_has_no_origin(self):
+        vehicle = Vehicle(takeoff_agl_m=3.0)
+        for came, relative_alt in ((1.0, 40_500), (2.0, 41_500)):
+            vehicle.hear("GLOBAL_POSITION_INT", {"time_boot_ms": 1e3 * came, "relative_alt": relative_alt}, came)
+            self.assertEqual(vehicle.agl_m(), 1e-3 * relative_alt + 3.0)
+        move(vehicle, 2.0, height_m=80.0)
+        self.assertEqual(vehicle.agl_m(), 83.0)
+
     def test_are_no_longer_as_high_above_ground_as_was_told_seconds_ago(self):
         vehicle = Vehicle(takeoff_agl_m=12.0)
         with said() as words:

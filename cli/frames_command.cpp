@@ -71,9 +71,15 @@ std::optional<double> agl_of(const DronePicture& picture, const FramesOptions& o
 /// Why no row can be made of it; empty where one can.
 std::string lacks(const DronePicture& picture, const std::optional<double>& agl_m) {
   std::vector<std::string> missing;
-  if (!picture.place) missing.emplace_back("its place (GPSLatitude, GPSLongitude)");
-  if (!picture.heading)
-    missing.emplace_back("where its upper edge points (GimbalYawDegree and GimbalPitchDegree, or Yaw)");
+  if (!picture.place) {
+    missing.emplace_back(
+        "its place (GPSLatitude and GPSLongitude in degrees, minutes and seconds, or GpsLatitude and GpsLongitude of "
+        "XMP)");
+  }
+  if (!picture.heading) {
+    missing.emplace_back(
+        "where it looked (yaw, pitch and roll: GimbalYawDegree ..., CameraYawDegree ... or Camera:Yaw ...)");
+  }
   if (!agl_m) missing.emplace_back("its height (RelativeAltitude or AboveGroundAltitude)");
   if (!picture.focal_px && !picture.doubt) {
     missing.emplace_back(

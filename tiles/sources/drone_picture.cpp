@@ -37,8 +37,10 @@ std::vector<double> numbers(const Tags& tags, const char* name) {
   return found == tags.end() ? std::vector<double>() : numbers_in(found->second);
 }
 
+/// Also of a fraction: "11485529/262144".
 std::optional<double> number(const Tags& tags, const char* name) {
   const auto all = numbers(tags, name);
+  if (all.size() == 2 && all[1] > 0.0 && tags.at(name).find('/') != std::string::npos) return all[0] / all[1];
   return all.size() == 1 ? std::optional(all.front()) : std::nullopt;
 }
 
@@ -84,24 +86,45 @@ std::optional<double> time_of(const Tags& exif) {
          (after_point.empty() ? 0.0 : after_point.front());
 }
 
+struct Attitude {
+  Angle yaw;
+  Angle pitch;
+  Angle roll;
+};
+
+struct AttitudeTags {
+  const char* yaw;
+  const char* pitch;
+  const char* roll;
+};
+
+std::optional<Attitude> attitude_of(const Tags& xmp, const AttitudeTags& tags) {
+  const auto yaw = angle(xmp, tags.yaw);
+  const auto pitch = angle(xmp, tags.pitch);
+  const auto roll = angle(xmp, tags.roll);
+  return yaw && pitch && roll ? std::optional(Attitude{*yaw, *pitch, *roll}) : std::nullopt;
+}
+
 /// The gimbal's angles turn a camera that looks ahead (NED, about z, y, x in this order); ours turn one that looks
 /// down.
-void set_gimbal(DronePicture& picture, Angle yaw, Angle pitch, Angle roll) {
-  const Angle up = pitch + Angle::degrees(90.0);
-  picture.heading = (yaw + Angle::radians(std::atan2(sin(roll), cos(up) * cos(roll)))).wrapped();
+void set_gimbal(DronePicture& picture, const Attitude& gimbal) {
+  const Angle up = gimbal.pitch + Angle::degrees(90.0);
+  const Angle roll = gimbal.roll;
+  picture.heading = (gimbal.yaw + Angle::radians(std::atan2(sin(roll), cos(up) * cos(roll)))).wrapped();
   picture.pitch = Angle::radians(std::asin(sin(up) * cos(roll)));
   picture.roll = Angle::radians(std::atan2(sin(up) * sin(roll), cos(up)));
 }
 
 void set_attitude(DronePicture& picture, const Tags& xmp) {
-  const auto gimbal_yaw = angle(xmp, "GimbalYawDegree");
-  const auto gimbal_pitch = angle(xmp, "GimbalPitchDegree");
-  if (gimbal_yaw && gimbal_pitch) {
-    set_gimbal(picture, *gimbal_yaw, *gimbal_pitch, angle(xmp, "GimbalRollDegree").value_or(Angle()));
-  } else if (const auto yaw = angle(xmp, "Yaw")) {
-    picture.heading = yaw->wrapped();
-    picture.pitch = angle(xmp, "Pitch");
-    picture.roll = angle(xmp, "Roll");
+  constexpr AttitudeTags kDjiAndAutel{"GimbalYawDegree", "GimbalPitchDegree", "GimbalRollDegree"};
+  constexpr AttitudeTags kParrot{"CameraYawDegree", "CameraPitchDegree", "CameraRollDegree"};
+  for (const AttitudeTags& tags : {kDjiAndAutel, kParrot}) {
+    if (const auto gimbal = attitude_of(xmp, tags)) return set_gimbal(picture, *gimbal);
+  }
+  if (const auto camera = attitude_of(xmp, {"Camera:Yaw", "Camera:Pitch", "Camera:Roll"})) {
+    picture.heading = camera->yaw.wrapped();
+    picture.pitch = camera->pitch;
+    picture.roll = camera->roll;
   }
 }
 
@@ -190,7 +213,7 @@ DronePicture drone_picture(const PictureTags& tags) {
   DronePicture picture;
   picture.place = place_of(tags);
   picture.time_s = time_of(tags.exif);
-  picture.agl_m = number(tags.xmp, "AboveGroundAltitude");
+  picture.agl_m = number(tags.xmp, "Camera:AboveGroundAltitude");
   picture.takeoff_m = number(tags.xmp, "RelativeAltitude");
   set_attitude(picture, tags.xmp);
   set_lens(picture, tags);

@@ -1,6 +1,7 @@
 // Where, when and with which camera a drone took a picture, as its file says: EXIF, and the XMP of DJI and Autel
-// (GimbalPitchDegree, RelativeAltitude, DewarpData, by DJI's lists of photo data fields) or Pix4D (Camera:Pitch,
-// Camera:AboveGroundAltitude), which Parrot and others write.
+// (GimbalPitchDegree, RelativeAltitude, DewarpData, by DJI's lists of photo data fields), Parrot (CameraPitchDegree, by
+// its table of photo metadata) or Pix4D (Camera:Pitch, Camera:AboveGroundAltitude), which Parrot, senseFly and others
+// write.
 #pragma once
 
 #include <optional>

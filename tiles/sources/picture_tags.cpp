@@ -2,6 +2,7 @@
 
 #include <cpl_minixml.h>
 
+#include <string>
 #include <string_view>
 
 #include "tiles/sources/gdal_session.hpp"
@@ -10,11 +11,59 @@
 namespace roadfix {
 namespace {
 
-void collect(const CPLXMLNode* node, Tags& tags) {
+/// What the prefixes stand for that are declared where a name stands.
+using Namespaces = std::map<std::string, std::string>;
+
+constexpr std::string_view kDeclaration = "xmlns:";
+
+std::string_view value_of(const CPLXMLNode& attribute_or_element) {
+  const char* value = CPLGetXMLValue(&attribute_or_element, "", nullptr);
+  return value != nullptr ? value : std::string_view();
+}
+
+Namespaces within(const CPLXMLNode& element, Namespaces namespaces) {
+  for (const CPLXMLNode* child = element.psChild; child != nullptr; child = child->psNext) {
+    const std::string_view name(child->pszValue);
+    if (child->eType != CXT_Attribute || !name.starts_with(kDeclaration)) continue;
+    namespaces[std::string(name.substr(kDeclaration.size()))] = value_of(*child);
+  }
+  return namespaces;
+}
+
+/// Without its prefix.
+std::string_view local_name(std::string_view name) { return name.substr(name.rfind(':') + 1); }
+
+bool is_of_camera(std::string_view name, const Namespaces& namespaces) {
+  const auto found = namespaces.find(std::string(name.substr(0, name.find(':'))));
+  if (found == namespaces.end()) return false;
+  std::string_view space = found->second;
+  if (space.ends_with('/')) space.remove_suffix(1);  // some writers leave it out
+  return space == "http://pix4d.com/camera/1.0" || space == "http://ns.sensefly.com/Camera/1.0";
+}
+
+std::string tag_of(std::string_view name, const Namespaces& namespaces) {
+  return (is_of_camera(name, namespaces) ? "Camera:" : "") + std::string(local_name(name));
+}
+
+/// Not the fields of structures: one drone tells the attitudes of several things by the same names.
+void collect_properties(const CPLXMLNode& description, const Namespaces& outer, Tags& tags) {
+  const Namespaces namespaces = within(description, outer);
+  for (const CPLXMLNode* child = description.psChild; child != nullptr; child = child->psNext) {
+    const std::string_view name(child->pszValue);
+    const std::string_view value = value_of(*child);
+    if (value.empty() || name.starts_with(kDeclaration)) continue;
+    tags.emplace(tag_of(name, within(*child, namespaces)), value);
+  }
+}
+
+void collect_descriptions(const CPLXMLNode* node, const Namespaces& outer, Tags& tags) {
   for (; node != nullptr; node = node->psNext) {
-    const CPLXMLNode* child = node->psChild;
-    if (child != nullptr && child->eType == CXT_Text) tags.emplace(node->pszValue, child->pszValue);
-    collect(child, tags);
+    if (node->eType != CXT_Element) continue;
+    if (local_name(node->pszValue) == "Description") {
+      collect_properties(*node, outer, tags);
+    } else {
+      collect_descriptions(node->psChild, within(*node, outer), tags);
+    }
   }
 }
 
@@ -39,9 +88,7 @@ Tags tags_of_xmp(const std::string& text) {
   const GdalMessages quiet;
   const CPLXMLTreeCloser tree(CPLParseXMLString(text.c_str()));
   Tags tags;
-  if (tree.get() == nullptr) return tags;
-  CPLStripXMLNamespace(tree.get(), nullptr, TRUE);
-  collect(tree.get(), tags);
+  collect_descriptions(tree.get(), {}, tags);
   return tags;
 }
 

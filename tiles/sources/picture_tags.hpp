@@ -14,11 +14,13 @@ using Tags = std::map<std::string, std::string>;
 /// As they stand in the file.
 struct PictureTags {
   Tags exif;  ///< by GDAL's names: EXIF_FocalLength
-  Tags xmp;   ///< without prefixes: GimbalPitchDegree
+  Tags xmp;   ///< as tags_of_xmp() names them
   cv::Size size;
 };
 
-/// Attributes and elements without children, wherever they stand; none where the text is no XML.
+/// The properties of its descriptions, as attributes or elements, without prefixes: GimbalPitchDegree; those of the
+/// namespace Camera of Pix4D and senseFly as Camera:Pitch, since others call other angles so. None where the text is no
+/// XML.
 Tags tags_of_xmp(const std::string& text);
 
 /// Throws NotFound ("source-not-found") or InvalidInput ("source-unreadable").

@@ -66,7 +66,8 @@ TEST(FlightRequest, ReadsTheCameraOfEachFrameFromItsFile) {
   const auto photo = [](const char* height_m) {
     return testing::drone_jpeg(cv::Mat(40, 60, CV_8UC1, cv::Scalar(128)),
                                fmt::format("drone-dji:RelativeAltitude=\"{}\" drone-dji:GimbalPitchDegree=\"-60\" "
-                                           "drone-dji:GimbalRollDegree=\"0\" drone-dji:CalibratedFocalLength=\"60\"",
+                                           "drone-dji:GimbalYawDegree=\"0\" drone-dji:GimbalRollDegree=\"0\" "
+                                           "drone-dji:CalibratedFocalLength=\"60\"",
                                            height_m));
   };
   const json frame{{"kind", "frame"}, {"exif", true}};

@@ -20,6 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Optional;
+using ::testing::Pair;
 
 const cv::Size kSize{5472, 3648};
 
@@ -65,8 +66,26 @@ TEST(DronePicture, LooksWhereItsGimbalPointed) {
   }
 }
 
+TEST(DronePicture, HasTheSameAttitudeByBothTriplesOfParrot) {
+  // The examples of Parrot's table of photo metadata (ANAFI Ai), one by its own tags and one by those of Pix4D.
+  const DronePicture by_parrot = of_xmp(
+      {{"CameraYawDegree", "146.848038"}, {"CameraPitchDegree", "-51.988888"}, {"CameraRollDegree", "-0.052789"}});
+  const DronePicture by_pix4d =
+      of_xmp({{"Camera:Yaw", "146.781036"}, {"Camera:Pitch", "38.011101"}, {"Camera:Roll", "-0.041258"}});
+  EXPECT_LT(cv::norm(axes_of(by_parrot) - axes_of(by_pix4d)), 1e-5);
+}
+
+TEST(DronePicture, HasNoAttitudeOfWhichAnAngleIsMissingOrMeansSomethingElse) {
+  for (const Tags& xmp :
+       {Tags{{"GimbalYawDegree", "12"}, {"GimbalPitchDegree", "-80"}},
+        Tags{{"Camera:Yaw", "12"}, {"Camera:Pitch", "8"}}, Tags{{"Yaw", "12"}, {"Pitch", "2"}, {"Roll", "1"}}}) {
+    const DronePicture picture = of_xmp(xmp);
+    EXPECT_FALSE(picture.heading || picture.roll || picture.pitch) << xmp.begin()->first;
+  }
+}
+
 TEST(DronePicture, TakesTheAnglesOfPix4dAsTheyAre) {
-  const DronePicture picture = of_xmp({{"Yaw", "-92.7"}, {"Pitch", "3.1"}, {"Roll", "-1.5"}});
+  const DronePicture picture = of_xmp({{"Camera:Yaw", "-92.7"}, {"Camera:Pitch", "3.1"}, {"Camera:Roll", "-1.5"}});
   EXPECT_NEAR(picture.heading.value().degrees(), -92.7, 1e-9);
   EXPECT_NEAR(picture.pitch.value().degrees(), 3.1, 1e-9);
   EXPECT_NEAR(picture.roll.value().degrees(), -1.5, 1e-9);
@@ -75,7 +94,9 @@ TEST(DronePicture, TakesTheAnglesOfPix4dAsTheyAre) {
 TEST(DronePicture, TellsHeightAboveGroundFromHeightAboveTheTakeOff) {
   EXPECT_THAT(of_xmp({{"RelativeAltitude", "+98.30"}}).takeoff_m, near_to(98.3));
   EXPECT_FALSE(of_xmp({{"RelativeAltitude", "+98.30"}}).agl_m);
-  EXPECT_THAT(of_xmp({{"AboveGroundAltitude", "81.2"}}).agl_m, near_to(81.2));
+  EXPECT_THAT(of_xmp({{"Camera:AboveGroundAltitude", "81.2"}}).agl_m, near_to(81.2));
+  EXPECT_THAT(of_xmp({{"Camera:AboveGroundAltitude", "11485529/262144"}}).agl_m, near_to(43.813816))
+      << "as Parrot writes it";
   EXPECT_FALSE(of_xmp({{"AbsoluteAltitude", "+698.30"}}).agl_m) << "which is above the sea";
 }
 
@@ -166,12 +187,39 @@ TEST(DronePicture, TellsNoCameraWhereTheCameraEnlargedWhatItSaw) {
   }
 }
 
+std::string description(const std::string& inner) {
+  return R"(<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">)" +
+         inner + "</rdf:RDF></x:xmpmeta>";
+}
+
 TEST(XmpTags, AreAttributesAndElementsWithoutTheirPrefixes) {
-  const Tags tags = tags_of_xmp(
-      R"(<x:xmpmeta xmlns:x="a"><r:D xmlns:r="b" drone-dji:RelativeAltitude="+9"><Camera:Yaw>3</Camera:Yaw></r:D></x:xmpmeta>)");
+  const Tags tags = tags_of_xmp(description(
+      R"(<rdf:Description drone-dji:RelativeAltitude="+9"/><rdf:Description xmlns:drone="d">)"
+      R"(<drone:GimbalPitchDegree rdf:parseType="Literal">-80</drone:GimbalPitchDegree></rdf:Description>)"));
   EXPECT_EQ(tags.at("RelativeAltitude"), "+9");
-  EXPECT_EQ(tags.at("Yaw"), "3");
+  EXPECT_EQ(tags.at("GimbalPitchDegree"), "-80");
   EXPECT_THAT(tags_of_xmp("no <xml"), IsEmpty());
+}
+
+TEST(XmpTags, AreOfTheCameraByItsNamespaceWhateverThePrefix) {
+  for (const char* space : {"http://pix4d.com/camera/1.0/", "http://pix4d.com/camera/1.0",  //
+                            "http://ns.sensefly.com/Camera/1.0/"}) {
+    const Tags tags = tags_of_xmp(description(fmt::format(
+        R"(<rdf:Description xmlns:a="{0}" a:Yaw="3"><b:Pitch xmlns:b="{0}">4</b:Pitch></rdf:Description>)", space)));
+    EXPECT_EQ(tags.at("Camera:Yaw"), "3") << space;
+    EXPECT_EQ(tags.at("Camera:Pitch"), "4") << space;
+  }
+  EXPECT_THAT(tags_of_xmp(description(R"(<rdf:Description xmlns:Camera="http://a.net" Camera:Yaw="3" b:Yaw="4"/>)")),
+              ElementsAre(Pair("Yaw", "3")));
+}
+
+TEST(XmpTags, AreNotTheFieldsOfStructures) {
+  // One drone writes the attitudes of itself and its camera so, of which neither counts from straight down.
+  const Tags tags = tags_of_xmp(description(
+      R"(<rdf:Description xmlns:s="http://pix4d.com/camera/1.0/"><s:Vehicle rdf:parseType="Resource"><s:Yaw>200</s:Yaw>)"
+      R"(</s:Vehicle><s:Gimbal><rdf:Description s:Yaw="200"/></s:Gimbal><s:Roll>1</s:Roll></rdf:Description>)"));
+  EXPECT_FALSE(tags.contains("Camera:Yaw"));
+  EXPECT_EQ(tags.at("Camera:Roll"), "1");
 }
 
 TEST(PictureTags, AreReadFromMemoryAsFromAFile) {

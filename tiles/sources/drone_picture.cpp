@@ -58,10 +58,18 @@ std::optional<double> degrees_of(const Tags& exif, const char* name, const char*
   return side->second.starts_with(negative) ? -degrees : degrees;
 }
 
+/// Whether GDAL, which prints six digits of each number, cut an angle that is told in degrees alone.
+bool is_cut(const Tags& exif, const char* name) {
+  const auto parts = numbers(exif, name);
+  return parts.size() == 3 && parts[0] != std::floor(parts[0]) && parts[1] == 0.0 && parts[2] == 0.0;
+}
+
 std::optional<LatLon> place_of(const PictureTags& tags) {
-  auto lat = degrees_of(tags.exif, "EXIF_GPSLatitude", "EXIF_GPSLatitudeRef", 'S');
-  auto lon = degrees_of(tags.exif, "EXIF_GPSLongitude", "EXIF_GPSLongitudeRef", 'W');
-  if (!lat || !lon) {
+  constexpr const char* kLatitude = "EXIF_GPSLatitude";
+  constexpr const char* kLongitude = "EXIF_GPSLongitude";
+  auto lat = degrees_of(tags.exif, kLatitude, "EXIF_GPSLatitudeRef", 'S');
+  auto lon = degrees_of(tags.exif, kLongitude, "EXIF_GPSLongitudeRef", 'W');
+  if (!lat || !lon || is_cut(tags.exif, kLatitude) || is_cut(tags.exif, kLongitude)) {
     lat = number(tags.xmp, "GpsLatitude");
     lon = number(tags.xmp, "GpsLongitude");
   }

@@ -22,7 +22,7 @@ struct LensDoubt {
 
 /// What the tags say; nothing where they do not.
 struct DronePicture {
-  std::optional<LatLon> place;
+  std::optional<LatLon> place;      ///< not of degrees without minutes and seconds, of which GDAL tells six digits
   std::optional<double> time_s;     ///< since 1970 by the camera's clock, whose time zone no tag says
   std::optional<double> agl_m;      ///< height above ground
   std::optional<double> takeoff_m;  ///< height above the place of the take-off

@@ -115,6 +115,20 @@ TEST(DronePicture, WasTakenWhereExifOrElseXmpSays) {
   EXPECT_FALSE(of_xmp({{"GpsLatitude", "97"}, {"GpsLongitude", "3"}}).place);
 }
 
+TEST(DronePicture, WasTakenNowhereWhereItsDegreesAreToldToSixDigitsOnly) {
+  Tags exif{{"EXIF_GPSLatitude", "(37.7599) (0) (0)"},
+            {"EXIF_GPSLatitudeRef", "S"},
+            {"EXIF_GPSLongitude", "(126.123) (0) (0)"},
+            {"EXIF_GPSLongitudeRef", "E"}};
+  EXPECT_FALSE(of_exif(exif).place) << "up to 55 m off";
+  const Tags xmp{{"GpsLatitude", "-37.7599041"}, {"GpsLongitude", "+126.1234567"}};
+  EXPECT_NEAR(drone_picture({exif, xmp, kSize}).place.value().lon_deg, 126.1234567, 1e-9);
+  exif["EXIF_GPSLatitude"] = "(38) (0) (0)";
+  exif["EXIF_GPSLongitude"] = "(126) (7.40741) (0)";
+  EXPECT_NEAR(of_exif(exif).place.value().lon_deg, 126.1234568, 1e-7) << "10 cm are nothing to speak of";
+  EXPECT_EQ(of_exif(exif).place.value().lat_deg, -38.0);
+}
+
 TEST(DronePicture, CountsTimeToTheFractionOfASecond) {
   EXPECT_THAT(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 11:05:10"}, {"EXIF_SubSecTimeOriginal", "25"}}).time_s,
               near_to(1675940710.25));

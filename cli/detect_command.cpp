@@ -58,10 +58,10 @@ struct Picture {
 };
 
 Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
+  require_frame_for(options.frame);
   if (options.frame.given()) {
     return {ground_seen(options.frame, options.image, detector), {}};
   }
-  require_frame_for(options.frame);
   const UtmZone zone = zone_of_image(options.image);
   Orthoimage ortho = read_orthoimage(options.image, zone);
   return {{rectified(std::move(ortho.image))}, Place{zone, ortho.north_west}};

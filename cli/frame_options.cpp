@@ -66,20 +66,20 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
           ->excludes(gsd);
   auto* exif =
       command
-          .add_flag("--exif", o.camera_in_file,
-                    "The input is a frame as a drone stored it: its EXIF and XMP tell lens, height above the "
-                    "take-off, roll and pitch; --agl, --roll and --pitch say otherwise. Digital zoom is refused")
+          .add_flag(
+              "--exif", o.camera_in_file,
+              "The input is a frame as a drone stored it: its EXIF and XMP tell lens, height above the "
+              "take-off, roll and pitch; --agl, --roll and --pitch say otherwise, or what it does not tell. Digital "
+              "zoom is refused")
           ->excludes(gsd)
           ->excludes(fov)
           ->excludes(focal);
   fov->needs(agl);
   focal->needs(agl);
   add_degrees_option(command, "--roll", o.camera.roll,
-                     "Roll of the camera in degrees, positive with the right side down; 0 = straight down")
-      ->needs(agl);
+                     "Roll of the camera in degrees, positive with the right side down; 0 = straight down");
   add_degrees_option(command, "--pitch", o.camera.pitch,
-                     "Pitch of the camera in degrees, positive with the nose up; 0 = straight down (a gimbal's -90)")
-      ->needs(agl);
+                     "Pitch of the camera in degrees, positive with the nose up; 0 = straight down (a gimbal's -90)");
   const auto set_principal = [&o](const std::vector<double>& at) { o.camera.principal_px.emplace(at[0], at[1]); };
   command
       .add_option_function<std::vector<double>>("--principal-px", set_principal,
@@ -107,6 +107,8 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 void require_frame_for(const FrameOptions& options) {
   if (options.black_unseen && !options.given())
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
+  if ((options.camera.roll || options.camera.pitch) && !options.has_camera())
+    throw CLI::RequiredError("with --roll and --pitch one of --exif and --agl");
 }
 
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {

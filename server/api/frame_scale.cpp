@@ -87,8 +87,8 @@ FrameScale scale_in_file(std::span<const std::uint8_t> picture, const KnownView&
 
 nlohmann::json to_json(const FrameCamera& camera) {
   nlohmann::json answer{{"agl_m", camera.agl_m},
-                        {"roll_deg", camera.assumed_roll().degrees()},
-                        {"pitch_deg", camera.assumed_pitch().degrees()}};
+                        {"roll_deg", camera.roll.value().degrees()},
+                        {"pitch_deg", camera.pitch.value().degrees()}};
   if (camera.focal_px) answer["focal_px"] = *camera.focal_px;
   if (camera.principal_px) answer["principal_px"] = {camera.principal_px->x, camera.principal_px->y};
   if (!camera.distortion.empty()) answer["distortion"] = camera.distortion;

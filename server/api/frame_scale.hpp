@@ -29,7 +29,8 @@ FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t>
 /// By the drone's notes alone. Throws what camera_of(DronePicture) throws.
 FrameScale scale_in_file(std::span<const std::uint8_t> picture, const KnownView& known);
 
-/// A camera that was read from a file, by the names of the fields that would tell it.
+/// A camera that was read from a file, so that its roll and pitch are told, by the names of the fields that would tell
+/// it.
 nlohmann::json to_json(const FrameCamera& camera);
 
 }  // namespace roadfix::api

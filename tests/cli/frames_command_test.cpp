@@ -135,6 +135,19 @@ TEST_F(FramesCommand, TellsOtherCommandsTheCameraOfAFrame) {
               HasSubstr("[camera-not-in-file]"));
 }
 
+TEST_F(FramesCommand, AsksWhereACameraLookedOfWhichTheFileDoesNotTellIt) {
+  picture("0001.jpg", "drone-dji:RelativeAltitude=\"+118\" drone-dji:CalibratedFocalLength=\"100\"");
+  const std::string file = "'" + (folder / "flight 1" / "0001.jpg").string() + "'";
+  for (const char* told : {"", " --pitch 3", " --roll 0"}) {
+    EXPECT_THAT(run_program(folder.path(), "detect --exif " + file + told + " roads.png").err,
+                AllOf(HasSubstr("[camera-not-in-file]"), HasSubstr("--roll and --pitch")))
+        << told;
+  }
+  EXPECT_EQ(detected(folder.path(), file + " --exif --roll 0 --pitch 3"),
+            detected(folder.path(), file + " --focal-px 100 --agl 118 --roll 0 --pitch 3"));
+  EXPECT_EQ(run_program(folder.path(), "detect --gsd 1 --roll 0 " + file + " roads.png").code, 2);
+}
+
 TEST_F(FramesCommand, RefusesWhereThereIsNothingToRead) {
   const std::string place = "'" + (folder / "flight 1").string() + "'";
   EXPECT_THAT(frames(place).err, HasSubstr("[no-pictures]"));

@@ -215,8 +215,12 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
   EXPECT_GT(cols("&lens=fisheye&distortion=0,0,0,0"), 150);
   const auto jpeg =
       testing::drone_jpeg(frame, R"(drone-dji:CalibratedFocalLength="200" drone-dji:RelativeAltitude="+100")");
-  const json of_drone =
-      testing::json_of(client_.Post("/v1/maps/town/fix?kind=frame&exif=true", testing::text_of(jpeg), "image/jpeg"));
+  const auto fix_of_photo = [&](const std::string& attitude) {
+    const std::string path = "/v1/maps/town/fix?kind=frame&exif=true" + attitude;
+    return testing::json_of(client_.Post(path, testing::text_of(jpeg), "image/jpeg"));
+  };
+  EXPECT_EQ(fix_of_photo("")["code"], "camera-not-in-file") << "where did it look?";
+  const json of_drone = fix_of_photo("&roll_deg=0&pitch_deg=0");
   EXPECT_EQ(of_drone["camera"]["agl_m"], 100.0) << of_drone;
   EXPECT_EQ(of_drone["camera"]["focal_px"], 200.0);
   const json fix =

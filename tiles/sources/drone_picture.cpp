@@ -249,6 +249,11 @@ FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
   if (camera.agl_m <= 0.0) refuse("a height above ground (RelativeAltitude or AboveGroundAltitude): give it besides");
   camera.roll = known.roll ? known.roll : picture.roll;
   camera.pitch = known.pitch ? known.pitch : picture.pitch;
+  if (!camera.roll || !camera.pitch) {
+    refuse(
+        "where its camera looked (GimbalPitchDegree, CameraPitchDegree or Camera:Pitch, with yaw and roll): give both "
+        "roll and pitch besides (--roll and --pitch, or roll_deg and pitch_deg), 0 and 0 if it looked straight down");
+  }
   return camera;
 }
 

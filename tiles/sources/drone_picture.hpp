@@ -44,9 +44,10 @@ struct KnownView {
   std::optional<Angle> pitch;
 };
 
-/// The camera that took it. Where only the height above the take-off is told, the ground below is taken to be as high
-/// as that place. Throws InvalidInput "camera-not-in-file" that says what is missing, "camera-contradictory" where the
-/// file tells two focal lengths that differ, and "camera-zoomed" where the camera enlarged what it saw.
+/// The camera that took it, with its roll and pitch. Where only the height above the take-off is told, the ground below
+/// is taken to be as high as that place. Throws InvalidInput "camera-not-in-file" that says what is missing,
+/// "camera-contradictory" where the file tells two focal lengths that differ, and "camera-zoomed" where the camera
+/// enlarged what it saw.
 FrameCamera camera_of(const DronePicture& picture, const KnownView& known);
 
 }  // namespace roadfix

@@ -84,12 +84,7 @@ TEST(FrameScale, TakesTheLensAsACalibrationGivesIt) {
 }
 
 TEST(FrameScale, TellsAnAttitudeOfZeroFromOneThatNobodyTold) {
-  const auto nadir_sigma_of = [](const json& attitude) {
-    const FrameCamera camera = camera_of(told(attitude));
-    EXPECT_EQ(to_json(camera)["roll_deg"], 0.0) << attitude;
-    EXPECT_EQ(to_json(camera)["pitch_deg"], 0.0) << attitude;
-    return nadir_sigma_m(camera);
-  };
+  const auto nadir_sigma_of = [](const json& attitude) { return nadir_sigma_m(camera_of(told(attitude))); };
   const double degree_m = 120.0 * Angle::degrees(1.0).radians();
   EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}, {"pitch_deg", 0}}), degree_m, 1e-9);
   EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}}), 5.0 * degree_m, 1e-9);
@@ -133,6 +128,18 @@ TEST(FrameScale, OfAPhotoIsReadBackFromWhatIsToldOfIt) {
   for (const char* name : {"roll_deg", "pitch_deg"}) {
     EXPECT_NEAR(to_json(again)[name].get<double>(), said[name].get<double>(), 1e-12) << name;
   }
+}
+
+TEST(FrameScale, OfAPhotoThatDoesNotTellWhereItLookedIsRefusedUntilTheRequestDoes) {
+  const auto photo =
+      testing::drone_jpeg(cv::Mat(20, 30, CV_8UC1, cv::Scalar(128)),
+                          "drone-dji:RelativeAltitude=\"+40.00\" drone-dji:CalibratedFocalLength=\"30\"");
+  const auto code = [&](const json& request) { return testing::code_of([&] { scale_of(request, photo); }); };
+  EXPECT_EQ(code({{"exif", true}}), "camera-not-in-file");
+  EXPECT_EQ(code({{"exif", true}, {"pitch_deg", 0}}), "camera-not-in-file");
+  const json said = to_json(scale_of({{"exif", true}, {"roll_deg", 0}, {"pitch_deg", 10}}, photo).camera.value());
+  EXPECT_EQ(said["roll_deg"], 0.0);
+  EXPECT_NEAR(said["pitch_deg"].get<double>(), 10.0, 1e-12);
 }
 
 TEST(FrameScale, SaysWhereAFileTellsNoCamera) {

@@ -164,7 +164,18 @@ TEST(DronePicture, HasTheFocalLengthOfItsFieldOfViewInThePixelsThatItHas) {
 
 /// Its code, or "no error".
 std::string refusal(const Tags& exif, const Tags& xmp, cv::Size size = kSize) {
-  return testing::code_of([&] { camera_of(drone_picture({exif, xmp, size}), {100.0, {}, {}}); });
+  return testing::code_of([&] { camera_of(drone_picture({exif, xmp, size}), {100.0, Angle(), Angle()}); });
+}
+
+TEST(DronePicture, TellsNoCameraWhereNobodyKnowsWhereItLooked) {
+  const DronePicture picture = drone_picture({{{"EXIF_FocalLengthIn35mmFilm", "24"}}, {}, kSize});
+  const auto refused_with = [&](std::optional<Angle> roll, std::optional<Angle> pitch) {
+    return testing::code_of([&] { camera_of(picture, {100.0, roll, pitch}); });
+  };
+  EXPECT_EQ(refused_with({}, {}), "camera-not-in-file");
+  EXPECT_EQ(refused_with({}, Angle()), "camera-not-in-file");
+  EXPECT_EQ(refused_with(Angle(), {}), "camera-not-in-file");
+  EXPECT_EQ(refused_with(Angle(), Angle()), "no error");
 }
 
 TEST(DronePicture, TellsNoCameraWhereItsCalibrationIsForMorePixelsThanItHas) {

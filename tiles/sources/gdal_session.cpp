@@ -154,9 +154,8 @@ std::string crs_name(const OGRSpatialReference& reference) {
 }
 
 bool on_old_ellipsoid(const OGRSpatialReference& reference) {
-  constexpr double kWgs84M = 6378137.0;
-  // GRS 80, WGS 72 and the sphere of web maps; those of older surveys differ by 69 m and more.
-  constexpr double kSameM = 5.0;
+  constexpr double kWgs84M = 6378137.0;  // GRS 80 and the sphere of web maps, too
+  constexpr double kSameM = 0.01;  // a survey's own datum may have an ellipsoid that is only 3 m larger (Xian 1980)
   OGRErr outcome = OGRERR_NONE;
   const double axis_m = reference.GetSemiMajor(&outcome);
   return outcome == OGRERR_NONE && std::abs(axis_m - kWgs84M) >= kSameM;

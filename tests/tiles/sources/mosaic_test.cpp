@@ -235,6 +235,9 @@ TEST_F(MosaicTest, AnOldEllipsoidNeedsADatumToLieAnywhere) {
     return Mosaic({path}, {.crs = crs, .collar = {}}, ValueRule::kPicture, kZone).extent().min.east_m;
   };
   EXPECT_EQ(testing::code_of([&] { west("+proj=utm +zone=37 +ellps=intl +no_defs"); }), "datum-unknown");
+  EXPECT_EQ(testing::code_of([&] { west("EPSG:2327"); }), "datum-unknown")
+      << "Xian 1980, whose ellipsoid is 3 m larger";
+  EXPECT_NEAR(west("EPSG:32237"), 400000.0 + 14.0, 2.0) << "WGS 72, whose is 2 m smaller";
   EXPECT_NEAR(west("EPSG:23037"), 400000.0 - 14.0, 5.0) << "ED50 lies 180 m to the south, too";
   EXPECT_NEAR(west("+proj=utm +zone=37 +ellps=intl +towgs84=-87,-98,-121,0,0,0,0 +no_defs"), 400000.0 - 14.0, 12.0);
   for (const char* ellipsoid : {"GRS80", "WGS84"}) {

@@ -158,8 +158,9 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
   channels_ = std::max(channels_, image.content.channels);
   integers_ = integers_ || image.content.integers;
   if (images_.empty()) crs_ = crs_name(file.crs());
-  PositionError error = roadfix::position_error(file, zone_);
-  if (error.sigma_m > position_error_.sigma_m) position_error_ = std::move(error);
+  PositionErrors errors = roadfix::position_errors(file, zone_);
+  if (errors.placing.sigma_m > position_errors_.placing.sigma_m) position_errors_.placing = std::move(errors.placing);
+  if (errors.datum.sigma_m > position_errors_.datum.sigma_m) position_errors_.datum = std::move(errors.datum);
   told_.push_back(provenance_in(file.dataset()));
   image.exported = holds_exported_roads(file.dataset());
   exported_ = exported_ && image.exported;

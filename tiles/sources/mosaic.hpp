@@ -54,8 +54,8 @@ class Mosaic {
   /// Of a source of shares.
   const ShareValues& share_values() const { return share_values_; }
   std::string crs() const { return crs_; }
-  /// Of the image whose place is the least certain.
-  const PositionError& position_error() const { return position_error_; }
+  /// Each of the image of which it is the largest.
+  const PositionErrors& position_errors() const { return position_errors_; }
 
   /// What the images tell of themselves together; the registration error only where each tells its own.
   Provenance told() const;
@@ -86,7 +86,7 @@ class Mosaic {
   ValueRange range_;
   ShareValues share_values_;
   std::string crs_;
-  PositionError position_error_;
+  PositionErrors position_errors_;
   std::vector<Provenance> told_;  ///< by each image
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first

@@ -117,27 +117,25 @@ bool known_to(double accuracy_m, const OGRSpatialReference& from, const OGRSpati
 }  // namespace
 
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path) {
-  constexpr double kUsualM = 9.0;  // of most surveys the registry states 1 to 7 m
-  constexpr std::array<double, 5> kStatedM{10.0, 15.0, 20.0, 35.0, 50.0};
+  constexpr double kNothingM = 2.0;
+  constexpr std::array<double, 9> kStatedM{3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 35.0, 50.0};
   if (!on_old_ellipsoid(reference)) return {};
   const OGRSpatialReference plane = utm_reference(zone);
-  if (known_to(kUsualM, reference, plane, place)) return {};
-  for (const double stated_m : kStatedM) {
-    if (!known_to(stated_m, reference, plane, place)) continue;
-    return {stated_m, fmt::format("{}: the way from its reference system {} to WGS 84 is known to {:g} m only, and so "
-                                  "uncertain is where it lies (1 sigma). With the grids of its survey (Debian: "
-                                  "proj-data) it may be known better; where you have checked it, give "
-                                  "--registration-sigma",
-                                  path, crs_name(reference), stated_m)};
-  }
-  return {};
+  if (known_to(kNothingM, reference, plane, place)) return {};
+  const auto stated_m = std::ranges::partition_point(
+      kStatedM, [&](double accuracy_m) { return !known_to(accuracy_m, reference, plane, place); });
+  if (stated_m == kStatedM.end()) return {};
+  return {*stated_m, fmt::format("{}: the way from its reference system {} to WGS 84 is known to {:g} m only, and so "
+                                 "uncertain is where it lies (1 sigma). With the grids of its survey (Debian: "
+                                 "proj-data) it may be known better; where you have checked it, give "
+                                 "--registration-sigma",
+                                 path, crs_name(reference), *stated_m)};
 }
 
-PositionError position_error(const RasterFile& file, UtmZone zone) {
-  PositionError placing = error_of_placing(file, zone);
-  if (!on_old_ellipsoid(file.crs())) return placing;
-  PositionError datum = datum_error(file.crs(), zone, centre_of(file), file.path());
-  return datum.sigma_m > placing.sigma_m ? datum : placing;
+PositionErrors position_errors(const RasterFile& file, UtmZone zone) {
+  PositionErrors errors{error_of_placing(file, zone), {}};
+  if (on_old_ellipsoid(file.crs())) errors.datum = datum_error(file.crs(), zone, centre_of(file), file.path());
+  return errors;
 }
 
 }  // namespace roadfix

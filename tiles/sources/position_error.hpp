@@ -14,13 +14,17 @@ struct PositionError {
 };
 
 /// Of the datum of a reference system around a place: what the EPSG registry states for the best way to WGS 84 that can
-/// be taken there, if that is 10 m or more. 0 for reference systems that bring a way of their own, and where the
+/// be taken there, if that is more than 2 m. 0 for reference systems that bring a way of their own, and where the
 /// registry states nothing.
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path);
 
-/// Of the datum, and of what places it. Of ground control points: how far they lie from where the others put them; what
-/// is usual where an error in one would not show. Of RPC without a terrain model, also beside a geotransform: what is
-/// usual.
-PositionError position_error(const RasterFile& file, UtmZone zone);
+struct PositionErrors {
+  /// Of ground control points: how far they lie from where the others put them; what is usual where an error in one
+  /// would not show. Of RPC without a terrain model, also beside a geotransform: what is usual.
+  PositionError placing;
+  PositionError datum;  ///< adds to what placed the raster in its reference system
+};
+
+PositionErrors position_errors(const RasterFile& file, UtmZone zone);
 
 }  // namespace roadfix

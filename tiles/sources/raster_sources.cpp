@@ -32,9 +32,10 @@ constexpr double kFinestParts = 4.0;
 
 /// `usual_m` where nothing says that the images lie worse.
 void state_position(const Mosaic& mosaic, double usual_m, SourceSummary& summary) {
-  const PositionError& error = mosaic.position_error();
-  summary.registration_sigma_m = std::max(usual_m, error.sigma_m);
-  if (error.sigma_m > usual_m) summary.notes.push_back(error.reason);
+  const auto& [placing, datum] = mosaic.position_errors();
+  summary.registration_sigma_m = std::hypot(std::max(usual_m, placing.sigma_m), datum.sigma_m);
+  if (placing.sigma_m > usual_m) summary.notes.push_back(placing.reason);
+  if (datum.sigma_m > 0.0) summary.notes.push_back(datum.reason);
 }
 
 std::string settings_of(const RasterOptions& options) {

@@ -166,7 +166,7 @@ class RoadVectors final : public CellSource {
     summary_.chosen_gsd_m = cell_m;
     summary_.features = static_cast<std::int64_t>(network.lines.size());
     summary_.left_out = network.left_out;
-    summary_.registration_sigma_m = std::max(kVectorSigmaM, network.datum_sigma_m);
+    summary_.registration_sigma_m = std::hypot(kVectorSigmaM, network.datum_sigma_m);
     summary_.notes = std::move(network.notes);
   }
 

@@ -274,16 +274,18 @@ TEST(Imagery, WithRationalPolynomialsBesideItsCoordinatesIsNotTakenForAnOrthoima
   EXPECT_THAT(both.notes, ::testing::ElementsAre(::testing::HasSubstr("rational polynomials beside its coordinates")));
 }
 
-TEST(Imagery, IsAsUncertainAsTheWayFromItsDatum) {
+TEST(Imagery, IsAsUncertainBesidesAsTheWayFromItsDatum) {
   const testing::TemporaryFolder folder;
   const BlurDetector detector;
-  const auto sigma_m = [&](int epsg) {
+  const auto summary = [&](int epsg) {
     const RasterSpec spec{.epsg = epsg, .transform = {{300000.0, 1.0, 0.0, 6350000.0, 0.0, -1.0}}};
     const std::string path = write_raster(folder / "a.tif", spec, [](int, int col, int) { return 3 * col; });
-    return open_imagery({path}, {}, *UtmZone::from_epsg(32719), 2.0, detector)->summary().registration_sigma_m;
+    return open_imagery({path}, {}, *UtmZone::from_epsg(32719), 2.0, detector)->summary();
   };
-  EXPECT_EQ(sigma_m(24879), 20.0) << "PSAD56";
-  EXPECT_EQ(sigma_m(31979), 2.5) << "SIRGAS 2000";
+  EXPECT_NEAR(summary(24879).registration_sigma_m, std::hypot(2.5, 20.0), 1e-9) << "PSAD56";
+  EXPECT_NEAR(summary(29189).registration_sigma_m, std::hypot(2.5, 5.0), 1e-9) << "SAD69";
+  EXPECT_THAT(summary(29189).notes, ::testing::ElementsAre(::testing::HasSubstr("is known to 5 m only")));
+  EXPECT_EQ(summary(31979).registration_sigma_m, 2.5) << "SIRGAS 2000";
 }
 
 TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {

@@ -54,7 +54,7 @@ TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
 }
 
 TEST_F(VectorRoads, AreAsUncertainAsTheWayFromTheirDatum) {
-  // Chile in PSAD56, of which the registry states 20 m; Turkey in ED50, 2 m.
+  // The registry states 20 m of PSAD56 in Chile, 5 m of SAD69 in Brazil and 2 m of ED50 in Turkey.
   const auto summary_of = [&](const char* crs, double lon, double lat, int zone) {
     const std::string path = (folder / "roads.geojson").string();
     std::ofstream(path) << fmt::format(
@@ -66,8 +66,9 @@ TEST_F(VectorRoads, AreAsUncertainAsTheWayFromTheirDatum) {
     return open_road_vectors({path}, options, RoadRules(), *UtmZone::from_epsg(zone), 2.0)->summary();
   };
   const SourceSummary rough = summary_of("EPSG:4248", -72.0, -33.0, 32718);
-  EXPECT_EQ(rough.registration_sigma_m, 20.0);
+  EXPECT_NEAR(rough.registration_sigma_m, std::hypot(20.0, 4.0), 1e-9);
   EXPECT_THAT(rough.notes, ::testing::Contains(::testing::HasSubstr("known to 20 m only")));
+  EXPECT_NEAR(summary_of("EPSG:4618", -48.0, -15.0, 32722).registration_sigma_m, std::hypot(5.0, 4.0), 1e-9);
   EXPECT_EQ(summary_of("EPSG:4230", 38.0, 37.8, 32637).registration_sigma_m, 4.0);
   EXPECT_EQ(summary_of("+proj=longlat +ellps=intl +towgs84=-87,-98,-121", 38.0, 37.8, 32637).registration_sigma_m, 4.0);
 }

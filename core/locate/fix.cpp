@@ -22,13 +22,14 @@ namespace {
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
                       const Calibration& calibration) {
   const Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
+  const double nadir_sigma_m = mode.scale * cells.nadir_sigma_m;
   FixMode result;
   result.pose = on_earth(mode.pose, map.zone);
   result.scale = mode.scale;
   result.weight = weight;
   result.rho = rho_at(map, resampled(cells, cells.cell_m, mode.scale), mode.pose).value_or(0.0);
   for (std::size_t axis : {0U, 1U}) {
-    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], cells.nadir_sigma_m);
+    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], nadir_sigma_m);
   }
   result.ellipse_heading = ellipse.heading;
   result.heading_sigma = Angle::radians(std::hypot(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]),

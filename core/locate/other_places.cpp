@@ -1,6 +1,7 @@
 #include "core/locate/other_places.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace {
 PositionCovariance told_covariance(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                                    const SearchMode& mode) {
   const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
-  const double nadir2 = nadir_sigma_m * nadir_sigma_m;
+  const double nadir2 = std::pow(mode.scale * nadir_sigma_m, 2.0);
   const PositionCovariance matched = position_covariance(map, mode.pose.position, mode.covariance);
   return {scale2 * matched.east_east + nadir2, scale2 * matched.east_north, scale2 * matched.north_north + nadir2};
 }

@@ -60,16 +60,18 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
 }
 
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m) {
-  const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m(cluster.mean.position), nadir_sigma_m);
+  const double scale = std::exp(cluster.log_scale);
+  const double nadir_m = scale * nadir_sigma_m;
+  const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m(cluster.mean.position), nadir_m);
   const Ellipse ellipse = ellipse_of(map, cluster.mean.position, cluster.covariance);
   return {on_earth(cluster.mean, map.zone),
           cluster.weight,
-          {std::hypot(ellipse.sigma_m[0], nadir_sigma_m), std::hypot(ellipse.sigma_m[1], nadir_sigma_m)},
+          {std::hypot(ellipse.sigma_m[0], nadir_m), std::hypot(ellipse.sigma_m[1], nadir_m)},
           ellipse.heading,
           Angle::radians(std::sqrt(cluster.covariance[2][2])),
           std::hypot(cluster.radius95_m, told95_m),
-          std::exp(cluster.log_scale),
-          std::exp(cluster.log_scale) * cluster.log_scale_sigma};
+          scale,
+          scale * cluster.log_scale_sigma};
 }
 
 }  // namespace roadfix

@@ -21,7 +21,8 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
 /// the modes, since particles move on before they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);
 
-/// The ellipse and the radius hold the registration error of the map and that of the nadir.
+/// The ellipse and the radius hold the registration error of the map and that of the nadir, which is as much larger as
+/// the ground is than the feature map says.
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m);
 
 }  // namespace roadfix

@@ -73,6 +73,20 @@ TEST_F(Locate, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   EXPECT_EQ(fix.probability, exact.probability);
 }
 
+TEST_F(Locate, CountsHowWellTheNadirIsKnownInTheSizeThatTheGroundHas) {
+  const GridPose truth = pose_within(view_.extent, 300.0, random_);
+  FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.1, 0.1}, random_);
+  features.cell_m = 1.8;
+  FixOptions options;
+  options.scale_range = 0.15;
+  const Fix exact = locate(view_, features, {}, options);
+  features.nadir_sigma_m = 7.0;
+  const Fix fix = locate(view_, features, {}, options);
+  ASSERT_FALSE(fix.modes.empty());
+  ASSERT_NEAR(fix.modes[0].scale, 2.0 / 1.8, 0.02);
+  EXPECT_NEAR(fix.modes[0].sigma_m[0], std::hypot(exact.modes.at(0).sigma_m[0], fix.modes[0].scale * 7.0), 1e-9);
+}
+
 TEST_F(Locate, CountsHowFarTheGroundMayBeTurnedInItsHeading) {
   const GridPose truth = pose_within(view_.extent, 300.0, random_);
   FeatureMap features = observed_at(map_, truth, 250, 250, 1.6, {0.1, 0.1}, random_);  // in other cells than the map's

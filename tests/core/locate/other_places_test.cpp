@@ -29,6 +29,7 @@ class OtherPlaces : public ::testing::Test {
     double registration_m = 0.0;
     double nadir_m = 0.0;
     double position_sigma_scale = 1.0;
+    double scale = 1.0;  ///< of the best place
   };
   void sort_out(SearchResult& found, const Errors& errors) const {
     MapView view = testing::view_of(map_);
@@ -39,6 +40,7 @@ class OtherPlaces : public ::testing::Test {
   }
   bool counts_nearby(double east_m, const Errors& errors) const {
     SearchResult result = found();
+    result.modes.front().scale = errors.scale;
     result.nearby = mode(east_m, 0.6);
     sort_out(result, errors);
     const bool counts = result.modes.size() == 3;
@@ -62,6 +64,9 @@ TEST_F(OtherPlaces, LieBeyondFourStandardDeviationsOfThePositionAsItIsTold) {
   const double sigma_m = std::hypot(2.0 * 1.0, 3.0);
   EXPECT_FALSE(counts_nearby(4.0 * sigma_m - 0.1, errors));
   EXPECT_TRUE(counts_nearby(4.0 * sigma_m + 0.1, errors));
+  const double larger_m = std::hypot(1.0, 1.2 * 4.0);
+  EXPECT_FALSE(counts_nearby(4.0 * larger_m - 0.1, {.nadir_m = 4.0, .scale = 1.2}));
+  EXPECT_TRUE(counts_nearby(4.0 * larger_m + 0.1, {.nadir_m = 4.0, .scale = 1.2}));
 }
 
 TEST_F(OtherPlaces, OfThoseOutsideTheRegionOnlyTheBestOneItselfIsLeftOut) {

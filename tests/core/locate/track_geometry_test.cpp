@@ -72,7 +72,7 @@ TEST_F(TrackGeometry, ProposesPlacesAroundTheEllipsesOfAFixAsTheyLieOnTheGrid) {
   EXPECT_LT(Angle::radians(sigma).degrees(), 3.0 * 2.0);
 }
 
-TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadir) {
+TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadirInTheSizeThatTheGroundHas) {
   view_.registration_sigma_m = [](GridPoint) { return 5.0; };
   Cluster cluster;
   cluster.mean = {place_, Angle::degrees(60.0)};
@@ -82,7 +82,7 @@ TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadir) {
   cluster.radius95_m = 60.0;
   cluster.log_scale = 0.1;
   cluster.log_scale_sigma = 0.02;
-  const TrackCluster told = to_geographic(view_, cluster, 12.0);
+  const TrackCluster told = to_geographic(view_, cluster, 12.0 / std::exp(0.1));
   expect_same(on_plane(told.pose.heading), on_plane_from_grid(cluster.mean.heading));
   expect_same(on_plane(told.ellipse_heading), on_plane_from_grid(Angle::degrees(90.0)));
   EXPECT_NEAR(told.sigma_m[0], std::sqrt(900.0 + 25.0 + 144.0), 1e-9);

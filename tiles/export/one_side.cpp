@@ -1,13 +1,11 @@
 #include "tiles/export/one_side.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
@@ -30,19 +28,16 @@ bool is_on_one_side(const GeoBox& box) {
   return box.south_west.lon_deg >= -kMeridianDeg && box.north_east.lon_deg <= kMeridianDeg;
 }
 
-/// As degrees of --bbox. Draws the side that lies at the meridian back until all of the cells do, whose plane is turned
-/// against it; nullopt where none are left.
-std::optional<std::string> option_for(const UtmZone& zone, const GridGeometry& region, GeoBox side) {
+/// Draws the side that lies at the meridian back until all of the cells do, whose plane is turned against it; nullopt
+/// where none are left.
+std::optional<GeoBox> drawn_back(const UtmZone& zone, const GridGeometry& region, GeoBox side) {
   constexpr double kStepDeg = 1e-4;
   constexpr int kTries = 10;
   for (int i = 0; i < kTries && !side.empty(); ++i) {
     const GridBox box = intersection(grid_box_around(zone, side, region.box()), region.box());
     if (box.empty()) return {};
     const GeoBox cells = turned_to(geo_box_around(zone, GridGeometry::covering(box, region.cell_m).box()), side);
-    if (is_on_one_side(cells)) {
-      return fmt::format("--bbox {:.4f},{:.4f},{:.4f},{:.4f}", side.south_west.lon_deg, side.south_west.lat_deg,
-                         side.north_east.lon_deg, side.north_east.lat_deg);
-    }
+    if (is_on_one_side(cells)) return side;
     const double over_deg = std::max(-kMeridianDeg - cells.south_west.lon_deg, cells.north_east.lon_deg - kMeridianDeg);
     const double back_deg = std::ceil(over_deg / kStepDeg) * kStepDeg;
     if (side.south_west.lon_deg < 0.0) {
@@ -52,6 +47,29 @@ std::optional<std::string> option_for(const UtmZone& zone, const GridGeometry& r
     }
   }
   return {};
+}
+
+std::string option_of(const GeoBox& side) {
+  return fmt::format("--bbox {:.4f},{:.4f},{:.4f},{:.4f}", side.south_west.lon_deg, side.south_west.lat_deg,
+                     side.north_east.lon_deg, side.north_east.lat_deg);
+}
+
+/// The ground that lies in neither.
+double between_m(const UtmZone& zone, const GeoBox& west, const GeoBox& east) {
+  return distance_m(zone.project({west.north_east.lat_deg, west.north_east.lon_deg}),
+                    zone.project({west.north_east.lat_deg, east.south_west.lon_deg}));
+}
+
+/// How to export all of it.
+std::string remedy(const UtmZone& zone, const std::optional<GeoBox>& west, const std::optional<GeoBox>& east) {
+  constexpr const char* kWhole = "or as .tif or .png";
+  if (west && east) {
+    return fmt::format(
+        "export each side by itself ({} and {}; a strip of {:.0f} m along the meridian is in neither), {}",
+        option_of(*west), option_of(*east), between_m(zone, *west, *east), kWhole);
+  }
+  const std::optional<GeoBox>& only = west ? west : east;
+  return fmt::format("export each side by itself ({}), {}", only ? option_of(*only) : "--bbox", kWhole);
 }
 
 }  // namespace
@@ -64,16 +82,12 @@ void require_one_side(const UtmZone& zone, const GridGeometry& region) {
   const double shift_deg = box.south_west.lon_deg < -kMeridianDeg ? kTurnDeg : 0.0;
   const LatLon south_west{box.south_west.lat_deg - kRoomDeg, box.south_west.lon_deg + shift_deg - kRoomDeg};
   const LatLon north_east{box.north_east.lat_deg + kRoomDeg, box.north_east.lon_deg + shift_deg - kTurnDeg + kRoomDeg};
-  std::vector<std::string> options;
-  for (const GeoBox& side : {GeoBox{south_west, {north_east.lat_deg, kMeridianDeg}},
-                             GeoBox{{south_west.lat_deg, -kMeridianDeg}, north_east}}) {
-    if (const auto option = option_for(zone, region, side)) options.push_back(*option);
-  }
+  const auto west = drawn_back(zone, region, {south_west, {north_east.lat_deg, kMeridianDeg}});
+  const auto east = drawn_back(zone, region, {{south_west.lat_deg, -kMeridianDeg}, north_east});
   throw InvalidInput("region-across-antimeridian",
                      fmt::format("the cells of the region lie on both sides of 180 degrees, where Web-Mercator ends "
-                                 "(those of a box that ends there do, since the meridian leans across them): export "
-                                 "each side by itself ({}), or as .tif or .png",
-                                 options.empty() ? "--bbox" : fmt::format("{}", fmt::join(options, " and "))));
+                                 "(those of a box that ends there do, since the meridian leans across them): {}",
+                                 remedy(zone, west, east)));
 }
 
 }  // namespace roadfix

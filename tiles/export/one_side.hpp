@@ -7,7 +7,8 @@
 namespace roadfix {
 
 /// Throws InvalidInput "region-across-antimeridian" where the region lies on both sides; its text has the --bbox of
-/// either side. Between them remains a strip as wide as the meridian of 180 degrees leans across the region.
+/// either side, and the width of the strip between them, which is as wide as the meridian of 180 degrees leans across
+/// the region.
 void require_one_side(const UtmZone& zone, const GridGeometry& region);
 
 }  // namespace roadfix

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include "core/geodesy/geo_box.hpp"
@@ -197,6 +198,12 @@ TEST_F(MapExport, MbTilesOnBothSidesOf180DegreesAreRefusedAndEitherSideIsNot) {
       EXPECT_GT(box.width_m(), 400.0) << text;
       EXPECT_LT(Picture(target).cols(), 2048) << text;
     }
+    const double between_deg =
+        proposed_box(text, 1).south_west.lon_deg + 360.0 - proposed_box(text, 0).north_east.lon_deg;
+    const double between_m = between_deg * 111'320.0 * std::cos(16.8 / 180.0 * std::numbers::pi);
+    double said_m = 0.0;
+    EXPECT_EQ(std::sscanf(text.c_str() + text.find("a strip of"), "a strip of %lf m", &said_m), 1) << text;
+    EXPECT_NEAR(said_m, between_m, 1.0);
     EXPECT_EQ(code_of(folder / "out.tif", {}), "no error");
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -100,7 +101,7 @@ TEST_F(ScoreBound, IsTheScoreOfASinglePoseOfWhichAllIsKnown) {
 }
 
 TEST_F(ScoreBound, IsZeroWhereTooLittleIsObservedOrTheMapHoldsNoRoad) {
-  EXPECT_EQ(score_bound(sums_of(poses(3, kCells), 20.0), {3 * kCells, 1.5 * kCells}), 0.0);
+  EXPECT_EQ(score_bound(sums_of(poses(3, kCells), 20.0), {std::int64_t{3} * kCells, 1.5 * kCells}), 0.0);
   Pose empty = pose(kCells);
   std::ranges::fill(empty.map, 0.0);
   EXPECT_EQ(score_bound(sums_of({empty}, 20.0), kFootprint), 0.0);

@@ -24,8 +24,10 @@ class LruCache {
     return found->second->value;
   }
 
-  /// `bytes`: of all that it takes. A key that is kept already keeps its value.
+  /// `bytes`: of all that it takes. A key that is kept already keeps its value. What is larger than the whole cache is
+  /// not kept, and what is in it stays.
   void insert(const Key& key, Value value, std::size_t bytes) {
+    if (bytes > max_bytes_) return;
     const std::lock_guard lock(mutex_);
     if (places_.contains(key)) return;
     std::list<Entry> fresh;  // until nothing can fail any more

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/grid/lattice.hpp"
+#include "tiles/store/map_file.hpp"
 #include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
@@ -20,7 +21,7 @@ void check_lattice(Connection& map, const MapSettings& settings, std::vector<Map
                 "SELECT count(*) FROM gpkg_tile_matrix_set WHERE table_name = 'road_probability' AND srs_id = ?1 AND "
                 "min_x = 0 AND min_y = 0 AND max_x = ?2 AND max_y = ?3");
   set.with(settings.zone.epsg(), kLattice.max.east_m, kLattice.max.north_m).step();
-  bool right = set.integer(0) == 1;
+  bool right = set.integer(0) == 1 && lattice_has(map, settings);
   Statement level(map,
                   "SELECT count(*) FROM gpkg_tile_matrix WHERE table_name = 'road_probability' AND zoom_level = ?1 AND "
                   "matrix_width = ?2 AND matrix_height = ?3 AND tile_width = ?4 AND tile_height = ?4 AND "

@@ -164,7 +164,7 @@ Connection open_map(const fs::path& path, Access access, std::chrono::millisecon
   return map;
 }
 
-MapSettings read_settings(Connection& map) {
+MapSettings settings_as_written(Connection& map) {
   const auto epsg = as_number<int>(meta_value(map, "epsg"));
   const auto cell_m = as_number<double>(meta_value(map, "cell_m"));
   const auto zone = epsg ? UtmZone::from_epsg(*epsg) : std::nullopt;
@@ -175,6 +175,25 @@ MapSettings read_settings(Connection& map) {
                                   map.path().string()));
   }
   return {*zone, *cell_m};
+}
+
+MapSettings read_settings(Connection& map) {
+  const MapSettings settings = settings_as_written(map);
+  if (lattice_has(map, settings)) return settings;
+  throw CorruptData("map-corrupt",
+                    fmt::format("{}: roadfix_meta names EPSG:{} and cells of {} m, the tables of the tile lattice "
+                                "another zone or cell size: one of them is damaged, and positions would be wrong. "
+                                "Restore the map from a copy",
+                                map.path().string(), settings.zone.epsg(), settings.cell_m));
+}
+
+bool lattice_has(Connection& map, const MapSettings& settings) {
+  Statement finest(map,
+                   "SELECT s.srs_id, m.zoom_level, m.pixel_x_size, m.pixel_y_size FROM gpkg_tile_matrix_set s JOIN "
+                   "gpkg_tile_matrix m ON m.table_name = s.table_name WHERE s.table_name = 'road_probability' ORDER BY "
+                   "m.zoom_level DESC LIMIT 1");
+  return finest.step() && finest.integer(0) == settings.zone.epsg() && finest.integer(1) == zoom_of(settings.cell_m) &&
+         finest.real(2) == settings.cell_m && finest.real(3) == settings.cell_m;
 }
 
 std::string read_version(Connection& map) { return meta_value(map, "version"); }

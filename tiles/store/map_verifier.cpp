@@ -27,7 +27,7 @@ class Verifier {
  public:
   Verifier(const std::filesystem::path& path, const OnProgress& progress, std::stop_token stop)
       : map_(open_map(path, Access::kRead)),
-        settings_(read_settings(map_)),
+        settings_(settings_as_written(map_)),
         table_(map_, settings_),
         progress_(progress),
         stop_(std::move(stop)) {}

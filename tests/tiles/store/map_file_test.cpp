@@ -115,6 +115,22 @@ TEST_F(MapFile, DamagedSettingsAreFound) {
   }
 }
 
+TEST_F(MapFile, ASettingThatTheTileLatticeContradictsIsFound) {
+  for (const char* sql :
+       {"UPDATE roadfix_meta SET value = '32636' WHERE key = 'epsg'",
+        "UPDATE roadfix_meta SET value = '1' WHERE key = 'cell_m'",
+        "UPDATE roadfix_meta SET value = '4' WHERE key = 'cell_m'", "UPDATE gpkg_tile_matrix_set SET srs_id = 32636",
+        "UPDATE gpkg_tile_matrix SET pixel_y_size = 1 WHERE zoom_level = 11", "DELETE FROM gpkg_tile_matrix"}) {
+    const auto whole = folder / "whole.gpkg";
+    fs::copy_file(path, whole, fs::copy_options::overwrite_existing);
+    execute(sql);
+    EXPECT_EQ(opened(), "map-corrupt") << sql;
+    EXPECT_EQ(testing::code_of([&] { MapWriter::settings_of(path); }), "map-corrupt") << sql;
+    EXPECT_FALSE(verify_map(path).problems.empty()) << sql;
+    fs::rename(whole, path);
+  }
+}
+
 TEST_F(MapFile, OneInWalModeSaysSoInAFolderThatMayNotBeWrittenTo) {
   execute("PRAGMA journal_mode = WAL");
   using fs::perms;

@@ -35,7 +35,7 @@ void FusionQueue::add_source(std::int64_t id) {
   for (int zoom = tiles_.finest_zoom() - 1; zoom >= kCoarsestZoom; --zoom) parents.with(zoom).run();
 }
 
-std::int64_t FusionQueue::size() { return sqlite::number(map_, "SELECT count(*) FROM roadfix_pending"); }
+std::int64_t FusionQueue::size() { return count_pending(map_); }
 
 /// The tile as it is stored; empty where nothing was observed.
 std::vector<std::byte> FusionQueue::fused(Tile tile) {

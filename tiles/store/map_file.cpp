@@ -198,6 +198,8 @@ bool lattice_has(Connection& map, const MapSettings& settings) {
 
 std::string read_version(Connection& map) { return meta_value(map, "version"); }
 
+std::int64_t count_pending(Connection& map) { return number(map, "SELECT count(*) FROM roadfix_pending"); }
+
 MapInfo read_info(Connection& map) {
   const Transaction one_view(map, Transaction::Kind::kRead);
   MapInfo info{.settings = read_settings(map)};
@@ -212,7 +214,7 @@ MapInfo read_info(Connection& map) {
   Statement tiles(map, "SELECT count(*) FROM road_probability WHERE zoom_level = ?1");
   tiles.with(zoom_of(info.settings.cell_m)).step();
   info.tiles = tiles.integer(0);
-  info.pending = number(map, "SELECT count(*) FROM roadfix_pending");
+  info.pending = count_pending(map);
   info.error_of_removed_m = error_of_removed_m(map);
   Statement sources(map,
                     "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "

@@ -31,11 +31,13 @@ void recover_map(const std::filesystem::path& path, std::chrono::milliseconds pa
 /// Throws CorruptData ("map-corrupt") where the tables that describe the tiles to other programs name another zone or
 /// cell size: a bit that has flipped in either of them would put every position elsewhere.
 MapSettings read_settings(sqlite::Connection& map);
-std::string read_version(sqlite::Connection& map);
-MapInfo read_info(sqlite::Connection& map);
 /// For who reports what does not fit together.
 MapSettings settings_as_written(sqlite::Connection& map);
 /// The lattice of the tiles is in this zone, and its finest cells have this size.
 bool lattice_has(sqlite::Connection& map, const MapSettings& settings);
+std::string read_version(sqlite::Connection& map);
+/// Tiles that are to be fused.
+std::int64_t count_pending(sqlite::Connection& map);
+MapInfo read_info(sqlite::Connection& map);
 
 }  // namespace roadfix

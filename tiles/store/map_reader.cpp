@@ -24,16 +24,24 @@ namespace {
 using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
+using sqlite::Transaction;
 
 /// A connection with its prepared query serves one thread at a time.
 struct Channel {
   explicit Channel(Connection connection)
       : map(std::make_unique<Connection>(std::move(connection))),
         select(*map,
-               "SELECT tile_data FROM road_probability WHERE zoom_level = ?1 AND tile_column = ?2 AND tile_row = ?3") {}
+               "SELECT tile_data FROM road_probability WHERE zoom_level = ?1 AND tile_column = ?2 AND tile_row = ?3"),
+        data_version(*map, "PRAGMA data_version") {}
   std::unique_ptr<Connection> map;
   Statement select;
+  Statement data_version;  ///< another number whenever somebody has written to the file
+  std::optional<std::int64_t> unchanged_at;
 };
+
+Interrupted renewed(const std::filesystem::path& map, const char* how) {
+  return {"map-renewed", fmt::format("{}: {} while it was read. Try again", map.string(), how)};
+}
 
 TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
   if (!on_lattice(tile, zoom)) return nullptr;
@@ -59,11 +67,16 @@ struct MapReader::State {
     idle.push_back(std::move(first));
   }
 
-  /// Runs `use` on a channel of its own; as many are opened as threads read at once.
+  /// Runs `use` on a channel of its own, in one view of the map as it was opened; as many are opened as threads read at
+  /// once.
   template <typename Use>
   auto with_channel(const Use& use) {
     Channel channel = take();
-    auto result = recovering(channel, use);
+    auto result = recovering(channel, [&](Channel& own) {
+      const Transaction one_view(*own.map, Transaction::Kind::kRead);
+      require_unchanged(own);
+      return use(own);
+    });
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(channel));
     return result;
@@ -80,8 +93,20 @@ struct MapReader::State {
     }
     Channel channel(open_map(path, Access::kRead, patience));
     if (identity_of(path) == file) return channel;
-    throw Interrupted("map-renewed",
-                      fmt::format("{}: another file took its place while it was read. Try again", path.string()));
+    throw renewed(path, "another file took its place");
+  }
+
+  /// Of what was read before, tiles are kept, and others keep what they made of them: nothing of another version may
+  /// come among it. Evidence that is written, or a source that is described otherwise, changes no tile.
+  void require_unchanged(Channel& channel) const {
+    const sqlite::ResetAtEnd reset(channel.data_version);
+    channel.data_version.step();
+    const std::int64_t now = channel.data_version.integer(0);
+    if (channel.unchanged_at == now) return;
+    if (read_version(*channel.map) != info->version || count_pending(*channel.map) != info->pending) {
+      throw renewed(path, "its tiles were changed");
+    }
+    channel.unchanged_at = now;
   }
 
   /// A writer may be killed while we read.

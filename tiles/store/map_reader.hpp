@@ -27,9 +27,10 @@ class MapReader {
   MapReader(MapReader&&) noexcept;
   MapReader& operator=(MapReader&&) noexcept;
 
-  /// As it was when the map was opened. Tiles are read when they are asked for and kept: while a writer changes the
-  /// map, a reader may see old and new ones; a new reader has the map as it is then. Another file that takes the place
-  /// of the map is never read: what needs a descriptor more than there are then throws Interrupted ("map-renewed").
+  /// As it was when the map was opened. Tiles are read when they are asked for and kept. Once a writer has changed one,
+  /// what is not kept throws Interrupted ("map-renewed"), until the map is as it was; a new reader has the map as it is
+  /// then. Another file that takes the place of the map is never read: what needs a descriptor more than there are then
+  /// throws that, too.
   const MapInfo& info() const;
 
   /// Fused cells; geometry.cell_m = settings.cell_m * 2^level with level >= 0, at most 4096 m (levels that the file

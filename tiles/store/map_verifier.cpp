@@ -38,7 +38,7 @@ class Verifier {
     check_database();
     if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
     std::ranges::move(problems_of_description(map_, settings_), std::back_inserter(verdict_.problems));
-    verdict_.tiles_to_fuse = number(map_, "SELECT count(*) FROM roadfix_pending");
+    verdict_.tiles_to_fuse = count_pending(map_);
     check_ledger();
     check_evidence();
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);

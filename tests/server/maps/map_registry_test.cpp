@@ -47,8 +47,8 @@ TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
   registry.refresh();
   const auto second = registry.find("city");
   EXPECT_NE(second->view.version, first->view.version);
-  EXPECT_NO_THROW(first->view.read(GridGeometry::covering(first->view.extent, 2.0)))
-      << "requests under way keep theirs";
+  EXPECT_EQ(code_of([&] { first->view.read(GridGeometry::covering(first->view.extent, 2.0)); }), "map-renewed")
+      << "requests under way mix no tiles of the two";
 
   fs::remove(folder / "city.gpkg");
   registry.refresh();
@@ -84,7 +84,25 @@ TEST(MapRegistry, KeepsAMapThatAWriterHasLockedAsItWasAndItsReadersWaitOnlyASeco
   }
   registry.refresh();
   EXPECT_EQ(registry.find("city")->view.version, "0123456789abcdef") << "the next look sees what was written";
-  EXPECT_NO_THROW(city->view.read(GridGeometry::covering(city->view.extent, 2.0)));
+  EXPECT_NO_THROW(registry.find("city")->view.read(GridGeometry::covering(city->view.extent, 2.0)));
+}
+
+TEST(MapRegistry, KeepsNothingOfAVersionThatCameAndWentBetweenTwoLooks) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  const auto city = registry.find("city");
+  const TileIndex block = roadfix::testing::some_blocks(1).front();
+  const auto cells = [&] { return city->reader->tile(0, block); };
+  {
+    MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
+    roadfix::testing::ingest(writer, {"roads", 2, roadfix::testing::some_blocks(1)});
+    EXPECT_EQ(code_of(cells), "map-renewed");
+    writer.remove_source("roads");
+  }
+  registry.refresh();
+  ASSERT_EQ(registry.find("city"), city) << "it says the same as before";
+  EXPECT_EQ(cells(), roadfix::testing::random_cells(1, block));
 }
 
 TEST(MapRegistry, AsksToComeBackForAMapThatIsLockedWhenItAppears) {

@@ -8,6 +8,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -120,23 +121,49 @@ TEST_F(MapReaderTest, TheVersionTellsThatTheMapHasChanged) {
   EXPECT_NE(MapReader(path).info().version, reader.info().version);
 }
 
-TEST_F(MapReaderTest, ManyThreadsReadWhileAWriterWrites) {
+TEST_F(MapReaderTest, ReadsNothingThatAWriterHasChangedUntilTheMapIsAsItWas) {
+  const MapReader reader(path);
+  const TileIndex kept = source.blocks[0];
+  const TileIndex other = source.blocks[3];
+  const auto code_of_reading_other = [&] { return testing::code_of([&] { reader.tile(0, other); }); };
+  reader.tile(0, kept);
+  const TestSource next{"b", 2, some_blocks(1)};  // over the kept tile alone
+  for (const TileIndex block : writer.begin_source(next.record(), next.blocks, false)) {
+    testing::put_block(writer, next.name, block, random_cells(next.seed, block));
+  }
+  EXPECT_EQ(reader.tile(0, source.blocks[1]), random_cells(source.seed, source.blocks[1])) << "it is not fused yet";
+  writer.finish_source(next.name);
+  EXPECT_EQ(code_of_reading_other(), "map-renewed");
+  EXPECT_EQ(testing::code_of([&] { reader.tiles(0); }), "map-renewed");
+  EXPECT_EQ(reader.tile(0, kept), random_cells(source.seed, kept)) << "as it was when the map was opened";
+  writer.remove_source(next.name);
+  EXPECT_EQ(reader.tile(0, other), random_cells(source.seed, other));
+  testing::open_sqlite(path).execute("INSERT INTO roadfix_pending VALUES (8, 0, 0)");
+  EXPECT_EQ(testing::code_of([&] { reader.tile(1, {0, -1}); }), "map-renewed") << "overviews that wait to be made anew";
+}
+
+TEST_F(MapReaderTest, ManyThreadsReadOneVersionWhileAWriterWritesAnother) {
   const MapReader reader(path, 100'000);
+  const GridGeometry coarse{4.0, {847 * 128, -8165 * 128}, 300, 300};
+  const RoadGrid before = reader.read(coarse);
   std::atomic<bool> go_on = true;
-  std::atomic<int> windows = 0;
+  std::atomic<int> refused = 0;
   std::vector<std::jthread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&] {
       while (go_on) {
-        const auto tile = reader.tile(0, source.blocks[0]);
-        EXPECT_EQ(tile, random_cells(source.seed, source.blocks[0]));
-        reader.read({4.0, {847 * 128, -8165 * 128}, 300, 300});
-        ++windows;
+        try {
+          EXPECT_EQ(reader.tile(0, source.blocks[0]), random_cells(source.seed, source.blocks[0]));
+          EXPECT_EQ(reader.read(coarse).cells, before.cells);
+        } catch (const Interrupted& error) {
+          EXPECT_EQ(error.code(), "map-renewed");
+          ++refused;
+        }
       }
     });
   }
-  ingest(writer, {"b", 2, some_blocks(3, 2)});
-  while (windows < 20) std::this_thread::yield();
+  ingest(writer, {"b", 2, some_blocks(3, 1)});  // over one of the tiles, and beside them
+  while (refused < 20) std::this_thread::yield();
   go_on = false;
 }
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <exception>
 #include <limits>
 #include <utility>
 
@@ -21,6 +22,14 @@ http::ErrorResponse error_response() {
     if (const auto line = failures->line(thrown, response.status, request.id)) spdlog::error("{}", *line);
     return response;
   };
+}
+
+/// While the store of the tracks refuses, problem() and all who ask for a track say so.
+void tidy(TrackRegistry& tracks) {
+  try {
+    tracks.tidy();
+  } catch (const std::exception&) {
+  }
 }
 
 }  // namespace
@@ -81,7 +90,7 @@ Application::~Application() { stop(); }
 
 int Application::start() {
   const int port = parts_->server.start();
-  parts_->maps.watch(parts_->configuration.watch_interval);
+  parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detector->describe());
   return port;

@@ -79,8 +79,8 @@ MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t s
 
 MapRegistry::~MapRegistry() { stop(); }
 
-void MapRegistry::watch(std::chrono::milliseconds interval) {
-  watcher_ = std::jthread([this, interval](std::stop_token stop) {
+void MapRegistry::watch(std::chrono::milliseconds interval, std::function<void()> after_each) {
+  watcher_ = std::jthread([this, interval, after_each = std::move(after_each)](std::stop_token stop) {
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
       const std::optional<std::string> before = problem_;
@@ -92,6 +92,7 @@ void MapRegistry::watch(std::chrono::milliseconds interval) {
         if (error.what() != before)
           spdlog::error("the maps folder {} cannot be read: {}", folder_.string(), error.what());
       }
+      if (after_each) after_each();
       lock.lock();
     }
   });
@@ -158,12 +159,15 @@ bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Sta
 }
 
 void MapRegistry::forget_missing(const std::map<std::string, fs::path>& present) {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(entries_, [&](const auto& item) {
-    if (present.contains(item.first)) return false;
-    spdlog::info("map {} was removed from the folder", item.first);
-    return true;
-  });
+  std::map<std::string, Entry> missing;  // freed when all others need not wait for it
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto item = entries_.begin(); item != entries_.end();) {
+      const auto known = item++;
+      if (!present.contains(known->first)) missing.insert(entries_.extract(known));
+    }
+  }
+  for (const auto& [name, entry] : missing) spdlog::info("map {} was removed from the folder", name);
 }
 
 void MapRegistry::refresh() {
@@ -183,7 +187,7 @@ void MapRegistry::look() {
   const auto files = map_files(folder_);
   for (const auto& [name, path] : files) {
     const Stamp stamp = stamp_of(path);
-    Entry known;
+    Entry known;  // outlives the lock in which another takes its place: to free a map may take long
     {
       const std::lock_guard lock(mutex_);
       const auto found = entries_.find(name);

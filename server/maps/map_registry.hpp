@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -49,8 +50,8 @@ class MapRegistry {
   /// Looks at the folder now. A map that a writer keeps locked stays as it was until the next look. Throws IoFailure
   /// ("maps-folder-unreadable"); all maps stay as they were then.
   void refresh();
-  /// Refreshes in a thread of its own, again and again.
-  void watch(std::chrono::milliseconds interval);
+  /// Refreshes in a thread of its own, again and again, and calls `after_each`, which must not throw.
+  void watch(std::chrono::milliseconds interval, std::function<void()> after_each = {});
   void stop();
 
   /// Why the last look at the folder failed; nullopt where it did not.

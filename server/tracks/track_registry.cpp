@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include "core/locate/tracker_bytes.hpp"
 #include "core/units/error.hpp"
@@ -75,16 +76,11 @@ std::optional<std::string> TrackRegistry::problem() const {
 }
 
 StoredTrack TrackRegistry::create(const std::string& client, const std::string& request) {
-  expire();
+  tidy();
   const api::TrackRequest asked = parsed(request, request_limits_);
   const auto map = maps_.find(asked.map);
   auto fresh = std::make_shared<LiveTrack>(map, calibrated(asked.settings));
   const std::lock_guard lock(mutex_);
-  // Tracks of the map before cannot fly on, and would keep all of it that is in memory. Those that take a step do.
-  std::erase_if(live_, [&](const auto& item) {
-    const auto& [id, track] = item;
-    return track.use_count() == 1 && track->map().name == map->name && track->map().view.version != map->view.version;
-  });
   const std::vector<StoredTrack> flying = store().flying();
   const auto own = std::ranges::count(flying, client, &StoredTrack::client);
   if (static_cast<int>(flying.size()) >= limits_.tracks || own >= limits_.tracks_per_client) {
@@ -206,6 +202,26 @@ void TrackRegistry::end(const std::string& id, TrackEnd how) {
 void TrackRegistry::finish(const std::string& id) {
   const std::lock_guard lock(mutex_);
   end(find(id).id, TrackEnd::kFinished);
+}
+
+void TrackRegistry::tidy() {
+  let_go_of_maps();
+  expire();
+}
+
+/// A track that is not in memory comes back with its next step. One that takes a step keeps its map until then.
+void TrackRegistry::let_go_of_maps() {
+  std::set<const ServedMap*> served;
+  const auto maps = maps_.maps();
+  for (const auto& map : maps) served.insert(map.get());
+  std::vector<std::shared_ptr<LiveTrack>> outdated;  // outlive the lock: the last one frees all of a map
+  const std::lock_guard lock(mutex_);
+  std::erase_if(live_, [&](const auto& item) {
+    const auto& [id, track] = item;
+    if (track.use_count() > 1 || served.contains(&track->map())) return false;
+    outdated.push_back(track);
+    return true;
+  });
 }
 
 void TrackRegistry::expire() {

@@ -48,6 +48,10 @@ class TrackRegistry {
   /// Ends the streams of events.
   void stop() { events_.stop(); }
 
+  /// Ends the tracks that have expired, and lets go of maps that are no longer served. To be called now and then: to
+  /// the clients an expired track has ended anyway.
+  void tidy();
+
   /// `request` is the JSON object of the client. Throws what parse_track and Tracker throw, NotFound ("map-not-found")
   /// and LimitExceeded ("too-many-tracks").
   StoredTrack create(const std::string& client, const std::string& request);
@@ -84,6 +88,7 @@ class TrackRegistry {
   /// Holding `mutex_`.
   void end(const std::string& id, TrackEnd how);
   void expire();
+  void let_go_of_maps();
 
   const std::filesystem::path path_;
   const TrackLimits limits_;

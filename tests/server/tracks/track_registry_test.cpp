@@ -34,16 +34,45 @@ TEST_F(TrackRegistryTest, KeepsNothingOfATrackThatEndsWhileItIsAskedFor) {
   EXPECT_EQ(maps_.find("town").use_count(), unused);
 }
 
-TEST_F(TrackRegistryTest, LetsGoOfAMapThatWasReplacedWhenATrackBeginsOnTheNewOne) {
+TEST_F(TrackRegistryTest, LetsGoOfAMapThatWasReplacedUnlessAStepIsTakenOnIt) {
   const auto tracks = registry();
-  take(*tracks, begin(*tracks), 0);
+  const std::string id = begin(*tracks);
+  take(*tracks, id, 0);
+  auto step = tracks->live(id);
   const std::weak_ptr<const ServedMap> before = maps_.find("town");
   std::filesystem::remove(folder_ / "town.gpkg");
   testing::write_map_file(folder_ / "town.gpkg", testing::street_map(4, {2.0, {300'100, -3'200'050}, 300, 300}), 2.0);
   maps_.refresh();
-  EXPECT_FALSE(before.expired());  // by the track, which may not fly on it any more
-  begin(*tracks);
+  tracks->tidy();
+  EXPECT_FALSE(before.expired());
+  step.reset();
+  tracks->tidy();
   EXPECT_TRUE(before.expired());
+  EXPECT_EQ(code_of([&] { tracks->live(id); }), "map-replaced");
+}
+
+TEST_F(TrackRegistryTest, GoesOnWithAMapThatWasCopiedOverAsIfNothingHadHappened) {
+  const std::vector<std::string> expected = undisturbed(2);
+  const auto tracks = registry();
+  const std::string id = begin(*tracks);
+  EXPECT_EQ(take(*tracks, id, 0), expected[0]);
+  std::filesystem::copy_file(folder_ / "town.gpkg", folder_ / "copy");
+  std::filesystem::rename(folder_ / "copy", folder_ / "town.gpkg");
+  const std::weak_ptr<const ServedMap> before = maps_.find("town");
+  maps_.refresh();
+  tracks->tidy();
+  EXPECT_TRUE(before.expired());
+  EXPECT_EQ(take(*tracks, id, 1), expected[1]);
+}
+
+TEST_F(TrackRegistryTest, LetsGoOfWhatHasExpiredThoughNobodyAsksForATrack) {
+  TrackLimits limits;
+  limits.idle = std::chrono::milliseconds(-1);  // at once
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  ASSERT_NE(tracks->in_memory(id), nullptr);
+  tracks->tidy();
+  EXPECT_EQ(tracks->in_memory(id), nullptr);
 }
 
 TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {

@@ -62,6 +62,7 @@ void end_by(int signal) {
 void watch_signals() {
   const sigset_t signals = watched_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGXFSZ, SIG_IGN);
   // A thread of its own waits for them: nothing but async-signal-safe code may run in a handler.
   std::thread([signals] { wait_for(signals); }).detach();
 }

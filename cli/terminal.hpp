@@ -12,7 +12,8 @@
 namespace roadfix::cli {
 
 /// Called first in main: a signal goes to any thread that does not block it, and those that libraries start block what
-/// the one does that starts them. SIGINT, SIGTERM and SIGHUP still end the process.
+/// the one does that starts them. SIGINT, SIGTERM and SIGHUP still end the process; a file that may not grow any more
+/// (ulimit -f, LimitFSIZE=) does not, but fails to be written to.
 void watch_signals();
 
 /// Requested by the first SIGINT, SIGTERM or, unless it is ignored (nohup), SIGHUP from now on; a second one ends the

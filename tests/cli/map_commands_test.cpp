@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/room.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
@@ -188,6 +189,16 @@ TEST_F(MapCommands, AnAnswerThatFindsNoRoomIsAFailure) {
   const int status = std::system((ROADFIX_PROGRAM " info " + path.string() + " >/dev/full 2>" + err).c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(testing::text_of(err), HasSubstr("[output-unwritable]"));
+}
+
+TEST_F(MapCommands, SayThatAFileMayNotGrowAnyMoreWhereTheProcessWouldBeKilled) {
+  const auto before = testing::tile_bytes(path);
+  const testing::Room room(8192);
+  signal(SIGXFSZ, SIG_DFL);  // as a shell leaves it
+  const ProgramResult full = roadfix("remove " + path.string() + " a");
+  EXPECT_EQ(full.code, 1);
+  EXPECT_THAT(full.err, HasSubstr("File too large [map-io]"));
+  EXPECT_EQ(testing::tile_bytes(path), before);
 }
 
 TEST_F(MapCommands, FailAsTheyWouldWhereNobodyCanBeToldWhy) {

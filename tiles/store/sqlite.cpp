@@ -55,6 +55,12 @@ std::int64_t big_endian(const Header& header, std::size_t at, std::size_t bytes)
   return value;
 }
 
+/// SQLite's message, and what the operating system said where that refused to read or write.
+std::string explained(sqlite3* handle, int code, const std::string& message) {
+  const int reason = (code & 0xff) == SQLITE_IOERR ? sqlite3_system_errno(handle) : 0;
+  return reason == 0 ? message : message + ": " + std::system_category().message(reason);
+}
+
 }  // namespace
 
 void Connection::Close::operator()(sqlite3* handle) const { sqlite3_close(handle); }
@@ -78,7 +84,7 @@ Connection::Connection(const std::filesystem::path& path, Access access, ErrorOf
 
 void Connection::fail(int code, const std::string& detail) const {
   if (code == SQLITE_NOMEM) throw std::bad_alloc();
-  std::rethrow_exception(error_of_(path_, failure_of(code), detail));
+  std::rethrow_exception(error_of_(path_, failure_of(code), explained(handle_.get(), code, detail)));
 }
 
 void Connection::execute(const char* sql) {

@@ -9,6 +9,7 @@
 #include "core/search/search_modes.hpp"
 #include "core/search/search_proof.hpp"
 #include "core/search/search_scan.hpp"
+#include "core/units/memory.hpp"
 
 namespace roadfix {
 
@@ -20,6 +21,9 @@ double ScoreBackground::log_likelihood(double score) const {
 }
 
 namespace {
+
+/// What a search of so much ground has freed does not stay with the process.
+constexpr double kMuchGroundKm2 = 100.0;
 
 SearchResult result_of(const SearchLevels& levels, const Scanned& scanned) {
   SearchResult result;
@@ -33,10 +37,8 @@ SearchResult result_of(const SearchLevels& levels, const Scanned& scanned) {
   return result;
 }
 
-}  // namespace
-
-SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
-                    const SearchOptions& options) {
+SearchResult searched(const GridReader& read, double finest_cell_m, const FeatureMap& features,
+                      const PoseRegion& region, const SearchOptions& options) {
   const Deadline deadline(options.stop, options.deadline);
   const SearchLevels levels(read, finest_cell_m, features, region, options);
   const SearchScan scan(levels, options);
@@ -64,6 +66,15 @@ SearchResult search(const GridReader& read, double finest_cell_m, const FeatureM
   result.nearby = found.nearby;
   result.outside = std::move(found.outside);
   result.refined = result.refined && found.complete;
+  return result;
+}
+
+}  // namespace
+
+SearchResult search(const GridReader& read, double finest_cell_m, const FeatureMap& features, const PoseRegion& region,
+                    const SearchOptions& options) {
+  SearchResult result = searched(read, finest_cell_m, features, region, options);
+  if (region.area_km2() >= kMuchGroundKm2) give_back_freed_memory();
   return result;
 }
 

@@ -4,8 +4,13 @@
 namespace roadfix {
 
 /// For programs that take and free megabytes again and again, as a service does with each request: freed memory is kept
-/// for the next request, up to some 64 MiB for each thread that took it, where glibc would return it to the kernel and
-/// pay for every page anew. Call it first in main(). Does nothing with another C library.
+/// for the next request, for each processor up to some 64 MiB beyond what is in use and all that lies between, where
+/// glibc would return it to the kernel and pay for every page anew. Call it first in main(). Does nothing with another
+/// C library.
 void keep_freed_memory();
+
+/// After work that took hundreds of megabytes: all that is freed goes back to the kernel, also between blocks that are
+/// kept, which would hold it for ever. Takes some milliseconds. Does nothing with another C library.
+void give_back_freed_memory();
 
 }  // namespace roadfix

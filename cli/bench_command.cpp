@@ -150,12 +150,12 @@ void run_bench(BenchArguments& arguments) {
   require_apart(outputs, {arguments.manifest});
   require_writable(outputs);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
-  const auto detector = make_detector(arguments.detector);
+  const Detectors detectors(arguments.detector);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
   bench::BenchOptions& options = arguments.options;
   options.maps = {
-      detector.get(),
+      &detectors,
       arguments.cell_m,
       options.seed,
       options.jobs,
@@ -171,13 +171,13 @@ void run_bench(BenchArguments& arguments) {
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
   std::FILE* out = printed_beside(outputs);
-  fmt::print(out, "detector {}\nseed {}, cells of {} m\n\n{}", detector->describe(), options.seed, arguments.cell_m,
+  fmt::print(out, "detector {}\nseed {}, cells of {} m\n\n{}", detectors.describe(), options.seed, arguments.cell_m,
              bench::to_table(results));
   const std::vector<bench::Outcome> outcomes = bench::road_outcomes(results);
   const bench::Honesty honesty = bench::honesty_of(outcomes);
   fmt::print(out, "\n{}", bench::to_text(honesty));
   if (!arguments.json_file.empty()) {
-    write_json(document(arguments, detector->describe(), results, left_out), arguments.json_file);
+    write_json(document(arguments, detectors.describe(), results, left_out), arguments.json_file);
   }
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
   const nlohmann::json origin = origin_of(arguments, manifest, left_out);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,6 +29,7 @@ namespace {
 
 struct DetectOptions {
   DetectorChoice detector;
+  ComparedWith compared = ComparedWith::kImagery;
   std::string image;
   std::string target;
   FrameOptions frame;
@@ -129,7 +131,7 @@ void run_detect(const DetectOptions& options) {
   require_apart({options.target}, {options.image});
   require_png_name(options.target);
   require_own_world_file(options);
-  const auto detector = make_detector(options.detector);
+  const auto detector = make_detector(options.detector, options.compared);
   const Picture picture = read_picture(options, *detector);
   const api::Features features = api::detected(picture.frame, {*detector, options.cell_m, {}, options.seed});
   const FeatureMap& map = features.map;
@@ -175,6 +177,12 @@ void add_detect_command(CLI::App& app) {
       ->capture_default_str()
       ->check(seed());
   command->add_flag("--json", options->json, "Answer as JSON");
+  command
+      ->add_option("--compare-with", options->compared,
+                   "What the map shows that the feature map is for: imagery (default) or roads, that is road data. "
+                   "Each has its network")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, ComparedWith>{{"imagery", ComparedWith::kImagery}, {"roads", ComparedWith::kRoads}}));
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });
 }

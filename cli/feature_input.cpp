@@ -11,6 +11,7 @@
 #include "cli/detector_options.hpp"
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
+#include "core/detect/detectors.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 
@@ -93,10 +94,10 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   add_detector_options(command, o.detector);
 }
 
-api::Features read_feature_input(const FeatureInputOptions& options, double map_cell_m) {
+api::Features read_feature_input(const FeatureInputOptions& options, const MapView& map) {
   require_frame_for(options.frame);
-  const auto detector = options.frame.given() ? make_detector(options.detector) : nullptr;
-  const auto read = [&](const std::string& path) { return features_in(path, options, detector.get(), map_cell_m); };
+  const auto detector = options.frame.given() ? Detectors(options.detector).for_map(map.imagery_reader) : nullptr;
+  const auto read = [&](const std::string& path) { return features_in(path, options, detector.get(), map.cell_m); };
   api::Features first = read(options.path);
   if (options.also.empty()) return first;
   if (options.also.size() >= kMaxFrames) {

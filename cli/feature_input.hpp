@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/frame_options.hpp"
 #include "core/detect/make_detector.hpp"
+#include "core/locate/map_view.hpp"
 
 namespace roadfix::cli {
 
@@ -27,9 +28,9 @@ struct FeatureInputOptions {
 /// Adds the input file and its options; `options` must live as long as the command.
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
 
-/// Roads of a frame come in cells of `map_cell_m`; several frames are laid together. Without options
-/// of a frame the input is a feature map. Throws InvalidInput "input-kind-missing" where it does not say so itself and
-/// no option does.
-api::Features read_feature_input(const FeatureInputOptions& options, double map_cell_m);
+/// Roads of a frame come in the map's cells, by the detector that suits the map; several frames are laid together.
+/// Without options of a frame the input is a feature map. Throws InvalidInput "input-kind-missing" where it does not
+/// say so itself and no option does.
+api::Features read_feature_input(const FeatureInputOptions& options, const MapView& map);
 
 }  // namespace roadfix::cli

@@ -88,7 +88,7 @@ void run_fix(const FixArguments& options) {
   const MapView view = view_with_notes(options.map);
   const Prior prior = prior_of(options);
   search_region(view, prior, options.fix);  // before the frame, in which roads are looked for
-  api::Features input = read_feature_input(options.input, view.cell_m);
+  api::Features input = read_feature_input(options.input, view);
   FixOptions fix_options = options.fix;
   if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
   fix_options.own_frame = std::move(input.own_frame);

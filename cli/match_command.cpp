@@ -89,7 +89,7 @@ void run_match(const MatchArguments& options) {
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
   const MapView view = view_with_notes(options.map);
-  const api::Features input = read_feature_input(options.input, view.cell_m);
+  const api::Features input = read_feature_input(options.input, view);
   MatchOptions match_options = options.match;
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.map, poses, match_options);

@@ -45,7 +45,8 @@ def detected(options, detector, pair):
         picture, answer = Path(place) / "picture.png", Path(place) / "roads.png"
         cv2.imwrite(str(picture), np.dstack([level.image[:, :, ::-1], pair.seen.astype(np.uint8) * 255]))
         name, _, orientations = detector.partition(":")
-        command = [options.roadfix, "detect", picture, answer, "--gsd", level.gsd_m, "--cell", CELL_M, "--detector", name]
+        command = [options.roadfix, "detect", picture, answer, "--gsd", level.gsd_m, "--cell", CELL_M, "--detector", name,
+                   "--compare-with", "roads"]
         command += ["--orientations", orientations] if orientations else []
         command += ["--model", options.model] if options.model and name == "neural" else []
         subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL)

@@ -38,12 +38,12 @@ struct Application::Parts {
   explicit Parts(Configuration c)
       : configuration(std::move(c)),
         maps(configuration.maps, configuration.map_cache_bytes, configuration.search_cache_bytes),
-        detector(make_detector(configuration.detector)),
+        detectors(configuration.detector),
         pictures(configuration.picture_cache_bytes),
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
                configuration.track_limits, maps, configuration.limits, configuration.calibration),
         search_threads(configuration.search_threads),
-        service{maps,   *detector, configuration.limits, configuration.http,       metrics, pictures,
+        service{maps,   detectors, configuration.limits, configuration.http,       metrics, pictures,
                 tracks, steps,     search_threads,       configuration.calibration},
         server(configuration.http, make_router(service), error_response(), metrics) {
     metrics.describe(kAnswers, "Fixes and steps of tracks by their status.");
@@ -74,7 +74,7 @@ struct Application::Parts {
 
   const Configuration configuration;
   MapRegistry maps;
-  std::unique_ptr<RoadDetector> detector;
+  Detectors detectors;
   PictureCache pictures;
   http::Metrics metrics;
   TrackRegistry tracks;
@@ -92,7 +92,7 @@ int Application::start() {
   const int port = parts_->server.start();
   parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
-  spdlog::info("detector: {}", parts_->detector->describe());
+  spdlog::info("detector: {}", parts_->detectors.describe());
   return port;
 }
 

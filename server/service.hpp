@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/detect/road_detector.hpp"
+#include "core/detect/detectors.hpp"
 #include "core/locate/calibration.hpp"
 #include "server/api/limits.hpp"
 #include "server/http/metrics.hpp"
@@ -18,7 +18,7 @@ namespace roadfix::server {
 
 struct Service {
   MapRegistry& maps;
-  const RoadDetector& detector;
+  const Detectors& detectors;
   const api::Limits& limits;
   const http::ServerSettings& http;
   http::Metrics& metrics;

@@ -19,8 +19,8 @@ constexpr const char* kRepeated = "frames-repeated";
 
 class RoadsMethod : public Method {
  public:
-  RoadsMethod(const MapView& map, const RoadDetector& detector, const RoadsOptions& options)
-      : map_(map), detector_(detector), options_(options) {}
+  RoadsMethod(const MapView& map, std::shared_ptr<const RoadDetector> detector, const RoadsOptions& options)
+      : map_(map), detector_(std::move(detector)), options_(options) {}
 
   Answer answer(const Query& query) const override {
     const auto start = std::chrono::steady_clock::now();
@@ -56,7 +56,7 @@ class RoadsMethod : public Method {
 
  private:
   FeatureMap detected(const GroundView& view) const {
-    return detect_features(detector_, view, options_.cell_m, options_.seed);
+    return detect_features(*detector_, view, options_.cell_m, options_.seed);
   }
 
   std::vector<PlacedFeatures> parts_of(const Query& query) const {
@@ -78,15 +78,15 @@ class RoadsMethod : public Method {
   }
 
   const MapView& map_;
-  const RoadDetector& detector_;
+  std::shared_ptr<const RoadDetector> detector_;
   RoadsOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector,
+std::unique_ptr<Method> make_roads_method(const MapView& map, std::shared_ptr<const RoadDetector> detector,
                                           const RoadsOptions& options) {
-  return std::make_unique<RoadsMethod>(map, detector, options);
+  return std::make_unique<RoadsMethod>(map, std::move(detector), options);
 }
 
 }  // namespace roadfix::bench

@@ -14,8 +14,8 @@ struct RoadsOptions {
   FixOptions fix;
 };
 
-/// `map` and `detector` must outlive the method.
-std::unique_ptr<Method> make_roads_method(const MapView& map, const RoadDetector& detector,
+/// `map` must outlive the method.
+std::unique_ptr<Method> make_roads_method(const MapView& map, std::shared_ptr<const RoadDetector> detector,
                                           const RoadsOptions& options);
 
 }  // namespace roadfix::bench

@@ -34,7 +34,8 @@ std::vector<Orthoimage> imagery_for(const Manifest& manifest, const ManifestMap&
 std::unique_ptr<Method> make_method(const std::string& name, const std::vector<Orthoimage>& imagery, const MapView& map,
                                     const BenchOptions& options) {
   if (name == "roads")
-    return make_roads_method(map, *options.maps.detector, {options.maps.cell_m, options.seed, options.fix});
+    return make_roads_method(map, options.maps.detectors->for_map(map.imagery_reader),
+                             {options.maps.cell_m, options.seed, options.fix});
   if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
   return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
 }
@@ -84,7 +85,8 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
 std::vector<Query> queries_of(const QuerySet& set, std::size_t number, const MapView& map, const MapView& from,
                               const BenchOptions& options) {
   try {
-    return make_queries(set, map, from, *options.maps.detector, {options.seed, number, options.limit});
+    const auto detector = options.maps.detectors->for_map(map.imagery_reader);
+    return make_queries(set, map, from, *detector, {options.seed, number, options.limit});
   } catch (const InvalidInput& error) {
     if (error.code() != kNoPlaceForQuery) throw;
     options.left_out(error.what());

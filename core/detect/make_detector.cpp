@@ -4,13 +4,12 @@
 
 #include <algorithm>
 
-#include "core/detect/model_files.hpp"
 #include "core/detect/neural_detector.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 
-std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared) {
   if (std::ranges::find(kDetectorNames, choice.name) == kDetectorNames.end()) {
     throw InvalidInput("unknown-detector", fmt::format("\"{}\" is not a detector: choose one of {}.", choice.name,
                                                        fmt::join(kDetectorNames, ", ")));
@@ -25,7 +24,7 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice) {
     }
     return std::make_unique<TreeRoadDetector>(choice.tree);
   }
-  const auto model = choice.model.empty() ? default_model() : choice.model;
+  const auto model = choice.model.empty() ? default_model(compared) : choice.model;
   if (!model && choice.name == "auto") return std::make_unique<TreeRoadDetector>(choice.tree);
   if (!model) {
     throw InvalidInput("model-missing",

@@ -1,5 +1,5 @@
-// The one place where a user's choice of detector becomes a detector: ingest, detect, fix, bench and the service call
-// it.
+// The one place where a user's choice of detector becomes a detector: ingest, detect and, by Detectors, fix, fly,
+// bench and the service call it.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "core/detect/model_files.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/detect/tree_detector.hpp"
 
@@ -14,7 +15,7 @@ namespace roadfix {
 
 struct DetectorChoice {
   std::string name = "auto";    ///< one of kDetectorNames
-  std::filesystem::path model;  ///< ONNX file of the neural detector; empty = default_model()
+  std::filesystem::path model;  ///< ONNX file of the neural detector; empty = the shipped ones
   int orientations = 1;         ///< NeuralOptions::orientations
   TreeDetectorOptions tree;
 
@@ -26,6 +27,6 @@ inline constexpr std::array<const char*, 3> kDetectorNames{"auto", "neural", "tr
 
 /// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network",
 /// "option-without-effect" (of the other detector) and those of the detectors' constructors.
-std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice);
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared);
 
 }  // namespace roadfix

@@ -10,7 +10,19 @@ namespace roadfix {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> default_model() {
+namespace {
+
+/// In the order of ComparedWith.
+constexpr std::array<const char*, 2> kShipped{"roadnet-imagery.onnx", "roadnet.onnx"};
+
+std::vector<fs::path> shipped_in(const fs::path& folder, ComparedWith compared) {
+  const auto own = static_cast<std::size_t>(compared);
+  return {folder / kShipped.at(own), folder / kShipped.at(1 - own)};
+}
+
+}  // namespace
+
+std::optional<fs::path> default_model(ComparedWith compared) {
   if (const char* named = std::getenv("ROADFIX_MODEL"); named != nullptr && *named != '\0') {
     if (fs::is_regular_file(named)) return named;
     throw InvalidInput("model-missing",
@@ -18,11 +30,15 @@ std::optional<fs::path> default_model() {
   }
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path beside = program.parent_path().parent_path() / "share/roadfix/models/roadnet.onnx";
-  if (auto installed = first_model({beside, fs::path(ROADFIX_INSTALLED_MODELS) / "roadnet.onnx"})) return installed;
+  for (const fs::path& folder :
+       {program.parent_path().parent_path() / "share/roadfix/models", fs::path(ROADFIX_INSTALLED_MODELS)}) {
+    if (auto installed = first_model(shipped_in(folder, compared))) return installed;
+  }
   // Of another user, perhaps, who built this and keeps the sources to himself.
-  const fs::path source = fs::path(ROADFIX_SOURCE_MODELS) / "roadnet.onnx";
-  return fs::is_regular_file(source, ignored) ? std::optional(source) : std::nullopt;
+  for (const fs::path& source : shipped_in(ROADFIX_SOURCE_MODELS, compared)) {
+    if (fs::is_regular_file(source, ignored)) return source;
+  }
+  return std::nullopt;
 }
 
 std::optional<fs::path> first_model(const std::vector<fs::path>& places) {

@@ -1,17 +1,28 @@
 // Where the network's weights lie when nobody names a file.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace roadfix {
 
-/// The first that exists of: environment ROADFIX_MODEL; ../share/roadfix/models/roadnet.onnx beside the running
-/// program's folder; the installation's share folder; models/roadnet.onnx of the source tree this was built from.
+/// What the roads of a picture are compared with: those found in another picture, or drawn ones. One network is trained
+/// for agreement and finds in two pictures of one ground what is in both, whatever it is; another to find what is
+/// drawn.
+enum class ComparedWith { kImagery, kRoads };
+
+/// As SourceRecord::kind calls them, in the order of ComparedWith.
+inline constexpr std::array<std::string_view, 2> kComparedWithNames{"imagery", "roads"};
+
+/// The environment's ROADFIX_MODEL, for both. Else the first that exists of: ../share/roadfix/models beside the running
+/// program's folder; the installation's share folder; models of the source tree this was built from. In each of them
+/// the network for what is compared comes before the other one.
 /// InvalidInput "model-missing" when ROADFIX_MODEL names no file, or when the folders of the program or of the
 /// installation cannot be looked into.
-std::optional<std::filesystem::path> default_model();
+std::optional<std::filesystem::path> default_model(ComparedWith compared);
 
 /// The first of `places` that is a file. InvalidInput "model-missing" at one that cannot be looked at: whoever
 /// installed a network is not to get the answers of the tree instead.

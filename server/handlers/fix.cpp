@@ -29,9 +29,10 @@ api::PositionTime time_of(const http::Request& request, std::optional<std::int64
 }
 
 api::Features features_of(const Service& service, const http::Request& request, const api::Content& content,
-                          double cell_m) {
+                          const MapView& map) {
   const api::TimeLimit limit(request.deadline, request.abandoned);
-  return api::flight_features_of(content, {service.detector, cell_m, limit.token()}, service.limits);
+  const auto detector = service.detectors.for_map(map.imagery_reader);
+  return api::flight_features_of(content, {*detector, map.cell_m, limit.token()}, service.limits);
 }
 
 http::Response post_fix(const Service& service, const http::Request& request) {
@@ -43,7 +44,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   search_region(map->view, prior, options);  // before the frame, which costs a turn among the searches
-  const api::Features features = features_of(service, request, content, map->view.cell_m);
+  const api::Features features = features_of(service, request, content, map->view);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
   api::shorten(options, request.deadline);

@@ -21,8 +21,9 @@ http::Response post_match(const Service& service, const http::Request& request) 
   MatchOptions options;
   options.heading_step = content.fields.optional_angle("heading_step_deg", {0.0, 90.0}).value_or(Angle());
   const api::TimeLimit limit(request.deadline, request.abandoned);
+  const auto detector = service.detectors.for_map(map->view.imagery_reader);
   const api::Features features =
-      api::flight_features_of(content, {service.detector, map->view.cell_m, limit.token()}, service.limits);
+      api::flight_features_of(content, {*detector, map->view.cell_m, limit.token()}, service.limits);
   options.stop = limit.token();
   const SearchThreads::Share share(service.search_threads);
   options.threads = share.threads();

@@ -125,8 +125,8 @@ http::Response take_step(const Service& service, const http::Request& request, P
   const api::TimeLimit limit(request.deadline);
   if (api::shows_ground(step.content)) {
     const auto map = service.maps.find(track.map);
-    input.features =
-        api::features_of(step.content, {service.detector, map->view.cell_m, limit.token()}, service.limits).map;
+    const auto detector = service.detectors.for_map(map->view.imagery_reader);
+    input.features = api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits).map;
   }
   StepLimits limits;
   const SearchThreads::Share share(service.search_threads);

@@ -74,7 +74,7 @@ void detect(benchmark::State& state, const RoadDetector& detector, double gsd_m)
 void detect_by_tree(benchmark::State& state) { detect(state, TreeRoadDetector(TreeDetectorOptions{}), kGsdM); }
 
 void detect_by_network(benchmark::State& state) {
-  const auto model = default_model();
+  const auto model = default_model(ComparedWith::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;
@@ -122,7 +122,7 @@ void ingest_all(benchmark::State& state, const RoadDetector& detector, int jobs)
 void read_store_and_fuse(benchmark::State& state) { ingest_all(state, GradientDetector(), 1); }
 
 void ingest_by_network(benchmark::State& state) {
-  const auto model = default_model();
+  const auto model = default_model(ComparedWith::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
-#include "core/detect/tree_detector.hpp"
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
 #include "server/api/feature_request.hpp"
@@ -34,7 +34,7 @@ class OpenApi : public ::testing::Test {
   const json document_ = json::parse(schema::openapi_json());
   const testing::TemporaryFolder folder_{};
   server::MapRegistry maps_{folder_.path(), 1 << 20};
-  const TreeRoadDetector detector_{};
+  const Detectors detectors_{{"tree", {}, 1, {}}};
   const api::Limits limits_{};
   const http::ServerSettings http_{};
   http::Metrics metrics_;
@@ -42,8 +42,8 @@ class OpenApi : public ::testing::Test {
   server::TrackRegistry tracks_{folder_ / "tracks.sqlite", {}, maps_, limits_};
   server::TrackSteps steps_{tracks_};
   server::SearchThreads search_threads_{1};
-  const server::Service service_{maps_,     detector_, limits_, http_,          metrics_,
-                                 pictures_, tracks_,   steps_,  search_threads_};
+  const server::Service service_{maps_,     detectors_, limits_, http_,          metrics_,
+                                 pictures_, tracks_,    steps_,  search_threads_};
   const http::Router router_ = server::make_router(service_);
 
   const json& resolved(const json& node) const { return testing::resolved(document_, node); }
@@ -136,7 +136,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   fix.insert("time_us");
   match.insert({"heading_step_deg", "poses"});
   std::set<std::string> detect(api::frame_fields().begin(), api::frame_fields().end());
-  detect.insert({"image", "format"});
+  detect.insert({"image", "compare_with", "format"});
   EXPECT_EQ(members("FixRequest"), fix);
   EXPECT_EQ(members("MatchRequest"), match);
   EXPECT_EQ(members("DetectRequest"), detect);
@@ -236,7 +236,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     api::Content content{{}, frame, true};
     content.fields.add(body, api::frame_fields());
     content.fields.add_text("gsd_m", "0.5");
-    api::detected(content, {detector_, 2.0}, limits_);
+    api::detected(content, {*detectors_.for_map(""), 2.0}, limits_);
   });
 }
 

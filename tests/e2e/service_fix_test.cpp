@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "server/api/base64.hpp"
 #include "tests/e2e/served_town.hpp"
@@ -187,6 +188,33 @@ TEST_F(ServiceFix, ScoresPosesInTheirOrder) {
   EXPECT_LT(scores[1]["rho"], 0.5);
   EXPECT_TRUE(scores[2]["rho"].is_null());
   EXPECT_EQ(scores[2]["observed_cells"], 0);
+}
+
+TEST_F(ServiceFix, AFrameOverRoadDataIsReadAsAFeatureMapToBeComparedWithRoads) {
+  cv::Mat frame(400, 400, CV_8UC3);
+  cv::randu(frame, 0, 255);
+  cv::GaussianBlur(frame, frame, {}, 4.0);
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", frame, png);
+  const json poses = {{{"lat", town->place.lat_deg}, {"lon", town->place.lon_deg}, {"heading_deg", 20.0}}};
+  const auto rho_of = [&](json request) {
+    request["poses"] = poses;
+    return testing::json_of(client_.Post("/v1/maps/town/match", request.dump(), "application/json"))["scores"][0]["rho"]
+        .get<double>();
+  };
+  const auto features = [&](const std::string& compared) {
+    return testing::json_of(
+        client_.Post("/v1/detect?gsd_m=1&format=json" + compared, testing::text_of(png), "image/png"));
+  };
+  const json for_roads = features("&compare_with=roads");
+  const json for_imagery = features("&compare_with=imagery");
+  EXPECT_EQ(features("")["cells"], for_imagery["cells"]);
+  if (for_roads["detector"] == for_imagery["detector"]) GTEST_SKIP() << "models/roadnet*.onnx are not both there";
+  const double of_frame = rho_of({{"image", api::base64_encoded(png)}, {"kind", "frame"}, {"gsd_m", 1.0}});
+  EXPECT_EQ(of_frame, rho_of(for_roads));
+  EXPECT_NE(of_frame, rho_of(for_imagery));
+  EXPECT_EQ(testing::refusal(client_.Post("/v1/detect?gsd_m=1&compare_with=x", testing::text_of(png), "image/png")),
+            "400 bad-parameter compare_with");
 }
 
 TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {

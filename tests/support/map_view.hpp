@@ -13,6 +13,7 @@ inline MapView view_of(const RoadGrid& map) {
           UtmZone::from_epsg(32634).value(),
           map.geometry.cell_m,
           map.geometry.box(),
+          {},
           [](GridPoint) { return 0.0; },
           reader_of(map)};
 }

@@ -1,6 +1,8 @@
 #include "tiles/store/map_records.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <map>
 #include <vector>
 
 #include "core/units/floor_div.hpp"
@@ -42,5 +44,18 @@ std::vector<Provenance> parts_of(const MapInfo& info) {
 Provenance provenance_of(const MapInfo& info) { return combined(parts_of(info)); }
 
 std::string credits_of(const MapInfo& info) { return credits_of(parts_of(info)); }
+
+std::string imagery_reader_of(const MapInfo& info) {
+  std::int64_t of_roads = 0;
+  std::map<std::string, std::int64_t> of_readers;
+  for (const SourceStatus& source : info.sources) {
+    if (!source.complete) continue;
+    const bool imagery = source.record.kind == "imagery";
+    const std::string reader = source.record.method.substr(0, source.record.method.find(';'));
+    (imagery ? of_readers[reader] : of_roads) += source.blocks_total;
+  }
+  const auto most = std::ranges::max_element(of_readers, {}, [](const auto& reader) { return reader.second; });
+  return most != of_readers.end() && most->second >= of_roads ? most->first : "";
+}
 
 }  // namespace roadfix

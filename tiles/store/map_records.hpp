@@ -106,4 +106,8 @@ Provenance provenance_of(const MapInfo& info);
 /// separated by "; "; empty where none was told.
 std::string credits_of(const MapInfo& info);
 
+/// Of the complete sources: the detector that read the most tiles of imagery, as RoadDetector::describe() writes it;
+/// empty where road data has more tiles than imagery.
+std::string imagery_reader_of(const MapInfo& info);
+
 }  // namespace roadfix

@@ -33,6 +33,7 @@ MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::
           info.settings.zone,
           info.settings.cell_m,
           info.extent,
+          imagery_reader_of(info),
           registration_around(reader),
           [reader = std::move(reader)](const GridGeometry& geometry) { return reader->read(geometry); },
           search_cache_bytes > 0 ? std::make_shared<SearchCache>(search_cache_bytes) : nullptr};

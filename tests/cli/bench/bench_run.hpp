@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -67,7 +68,7 @@ class BenchRun : public ::testing::Test {
                                          << std::to_string(centre.lat_deg) << ',' << std::to_string(centre.lon_deg)
                                          << ',' << zone.true_from_grid({}, {400350.0, 3999550.0}).degrees() << ",1\n";
     options.jobs = 2;
-    options.maps = {&detector, 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
+    options.maps = {&detectors, 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
     options.progress = [](const std::string&, std::int64_t, std::int64_t) {};
   }
 
@@ -79,7 +80,7 @@ class BenchRun : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder;
-  BrightnessDetector detector;
+  Detectors detectors{std::make_shared<BrightnessDetector>()};
   BenchOptions options;
 };
 

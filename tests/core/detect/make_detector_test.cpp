@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include "core/detect/model_files.hpp"
 #include "core/units/error.hpp"
@@ -37,7 +39,7 @@ class MakeDetector : public ::testing::Test {
 
   static std::string refusal(const DetectorChoice& choice) {
     try {
-      make_detector(choice);
+      make_detector(choice, ComparedWith::kImagery);
     } catch (const InvalidInput& error) {
       return error.code();
     }
@@ -48,19 +50,22 @@ class MakeDetector : public ::testing::Test {
 };
 
 TEST_F(MakeDetector, TakesTheNamedModelAndItsOrientations) {
-  const std::string description = make_detector({"neural", model(), 4, {}})->describe();
+  const std::string description = make_detector({"neural", model(), 4, {}}, ComparedWith::kImagery)->describe();
   EXPECT_NE(description.find("neural tiny"), std::string::npos);
   EXPECT_NE(description.find("orientations=4"), std::string::npos);
 }
 
 TEST_F(MakeDetector, AutoIsNeuralWhereAModelIsNamed) {
-  EXPECT_NE(make_detector({"auto", model(), 1, {}})->describe().find("neural tiny"), std::string::npos);
+  EXPECT_NE(make_detector({"auto", model(), 1, {}}, ComparedWith::kRoads)->describe().find("neural tiny"),
+            std::string::npos);
 }
 
-TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModel) {
+TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModelOfBoth) {
   setenv("ROADFIX_MODEL", model().c_str(), 1);
-  EXPECT_EQ(default_model(), model());
-  EXPECT_NE(make_detector({})->describe().find("neural tiny"), std::string::npos);
+  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+    EXPECT_EQ(default_model(compared), model());
+    EXPECT_NE(make_detector({}, compared)->describe().find("neural tiny"), std::string::npos);
+  }
 }
 
 TEST_F(MakeDetector, AWrongEnvironmentIsSaidAndNotPassedOver) {
@@ -87,7 +92,7 @@ TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
 }
 
 TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
-  EXPECT_EQ(make_detector({"tree", {}, 1, {}})->describe().substr(0, 5), "tree ");
+  EXPECT_EQ(make_detector({"tree", {}, 1, {}}, ComparedWith::kImagery)->describe().substr(0, 5), "tree ");
   EXPECT_EQ(refusal({"tree", model(), 1, {}}), "model-without-network");
 }
 
@@ -100,15 +105,20 @@ TEST_F(MakeDetector, WhatIsSaidOfTheOtherDetectorIsRefused) {
   EXPECT_EQ(refusal({"tree", {}, 8, {}}), "option-without-effect");
 }
 
-TEST_F(MakeDetector, TheShippedWeightsFitTheirDescription) {
-  if (!default_model()) GTEST_SKIP() << "models/roadnet.onnx is not there";
-  DetectorChoice choice;
-  choice.name = "neural";
-  const auto detector = make_detector(choice);
-  EXPECT_NE(detector->describe().find("neural roadnet"), std::string::npos);
+TEST_F(MakeDetector, EitherShippedNetworkFitsItsDescription) {
   const GroundImage image{cv::Mat(120, 90, CV_8UC3, cv::Scalar::all(90)), cv::Mat(120, 90, CV_8UC1, cv::Scalar(255)),
                           1.0};
-  EXPECT_EQ(detector->detect(image, 2.0, 1).observed_count(), 60U * 45U);
+  DetectorChoice choice;
+  choice.name = "neural";
+  std::set<std::string> descriptions;
+  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+    if (!default_model(compared)) GTEST_SKIP() << "models/roadnet*.onnx are not there";
+    const auto detector = make_detector(choice, compared);
+    EXPECT_NE(detector->describe().find("neural roadnet"), std::string::npos);
+    EXPECT_EQ(detector->detect(image, 2.0, 1).observed_count(), 60U * 45U);
+    descriptions.insert(detector->describe());
+  }
+  EXPECT_EQ(descriptions.size(), 2U);
 }
 
 TEST_F(MakeDetector, RefusesANameThatIsNoDetector) { EXPECT_EQ(refusal({"sift", {}, 1, {}}), "unknown-detector"); }

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "core/locate/fix.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/map_file.hpp"
@@ -74,6 +79,41 @@ TEST(MapFileView, CountsTheErrorOfASourceThatWasReplacedWhereTilesStillShowIt) {
   EXPECT_EQ(view_of_file(path).registration_sigma_m({434'000.0, 4'180'000.0}), 40.0);
   writer.finish_source("a");
   EXPECT_EQ(view_of_file(path).registration_sigma_m({434'000.0, 4'180'000.0}), 2.0);
+}
+
+/// Sources "kind method tiles" of the map, one south of the other.
+std::string imagery_reader(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
+  const testing::TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", testing::settings_37n());
+  int row = -8165;
+  for (const auto& [kind, method, tiles] : sources) {
+    SourceRecord record = testing::TestSource{std::to_string(row), 1, {}}.record();
+    record.kind = kind;
+    record.method = method;
+    std::vector<TileIndex> blocks;
+    for (int col = 0; col < tiles; ++col) blocks.push_back({847 + col, row});
+    for (const TileIndex block : writer.begin_source(record, blocks, false)) {
+      testing::put_block(writer, record.name, block, testing::random_cells(1, block));
+    }
+    writer.finish_source(record.name);
+    ++row;
+  }
+  return view_of_file(folder / "m.gpkg").imagery_reader;
+}
+
+TEST(MapFileView, NamesTheDetectorThatReadMostOfTheImagery) {
+  EXPECT_EQ(imagery_reader({{"imagery", "neural a; pixels of 1 m", 2}, {"imagery", "neural b; pixels of 1 m", 3}}),
+            "neural b");
+  EXPECT_EQ(imagery_reader({{"imagery", "neural a; pixels of 1 m", 2},
+                            {"imagery", "neural b; pixels of 1 m", 3},
+                            {"imagery", "neural a; pixels of 0.5 m", 2}}),
+            "neural a");
+}
+
+TEST(MapFileView, NamesNoDetectorWhereMoreTilesShowRoadDataThanImagery) {
+  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}}), "");
+  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}, {"imagery", "neural a; 1", 2}}), "");
+  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 2}, {"imagery", "neural a; 1", 2}}), "neural a");
 }
 
 }  // namespace

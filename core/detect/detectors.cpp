@@ -1,0 +1,37 @@
+#include "core/detect/detectors.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace roadfix {
+namespace {
+
+/// Kind, name and checksum of a network: frames are read in one orientation where the map was read in several.
+std::string_view network_in(std::string_view description) { return description.substr(0, description.find(" gsd_m=")); }
+
+}  // namespace
+
+Detectors::Detectors(const DetectorChoice& choice)
+    : for_imagery_(make_detector(choice, ComparedWith::kImagery)),
+      for_roads_(make_detector(choice, ComparedWith::kRoads)) {}
+
+Detectors::Detectors(std::shared_ptr<const RoadDetector> detector)
+    : for_imagery_(detector), for_roads_(std::move(detector)) {}
+
+std::shared_ptr<const RoadDetector> Detectors::compared_with(ComparedWith compared) const {
+  return compared == ComparedWith::kImagery ? for_imagery_ : for_roads_;
+}
+
+std::shared_ptr<const RoadDetector> Detectors::for_map(std::string_view imagery_reader) const {
+  const bool by_the_other = network_in(imagery_reader) == network_in(for_roads_->describe());
+  return imagery_reader.empty() || by_the_other ? for_roads_ : for_imagery_;
+}
+
+std::string Detectors::describe() const {
+  const std::string imagery = for_imagery_->describe();
+  const std::string roads = for_roads_->describe();
+  return imagery == roads ? imagery : fmt::format("{}; over road data {}", imagery, roads);
+}
+
+}  // namespace roadfix

@@ -1,0 +1,33 @@
+// The detectors of frames: the network that read a map's imagery reads the frames that are compared with it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/detect/make_detector.hpp"
+
+namespace roadfix {
+
+class Detectors {
+ public:
+  /// Throws what make_detector() does.
+  explicit Detectors(const DetectorChoice& choice);
+  /// One for all maps.
+  explicit Detectors(std::shared_ptr<const RoadDetector> detector);
+
+  std::shared_ptr<const RoadDetector> compared_with(ComparedWith compared) const;
+
+  /// `imagery_reader` is MapView::imagery_reader. A map that is read by a detector that is not among these gets the one
+  /// for imagery.
+  std::shared_ptr<const RoadDetector> for_map(std::string_view imagery_reader) const;
+
+  /// One line that names them.
+  std::string describe() const;
+
+ private:
+  std::shared_ptr<const RoadDetector> for_imagery_;
+  std::shared_ptr<const RoadDetector> for_roads_;
+};
+
+}  // namespace roadfix

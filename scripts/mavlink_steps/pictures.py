@@ -20,6 +20,11 @@ class Version(NamedTuple):
     written: float
     in_doubt: bool
 
+    @property
+    def has_coarse_date(self):
+        """In whole seconds, as FAT and copies over some links keep it, instead of fractions."""
+        return self.date_ns % 1_000_000_000 == 0
+
     def is_of(self, status):
         return (self.date_ns, self.size) == (status.st_mtime_ns, status.st_size)
 
@@ -103,6 +108,10 @@ class NewPictures:
         self._finished[path.name] = self._started.pop(path.name)
         if version.in_doubt:
             print(f"{path} is left out: the clock was set while it was written", file=sys.stderr)
+            return False
+        if version.has_coarse_date:
+            print(f"{path} is left out: its date is one in whole seconds: write into a folder that keeps fractions of "
+                  "them (not FAT), or copy without keeping dates", file=sys.stderr)
             return False
         if before is not None and version.written - before.written < READ_S:
             print(f"{path} is left out: it was another picture {version.written - before.written:.1f} s before: give "

@@ -24,6 +24,9 @@ from pictures import NewPictures, Silence  # noqa: E402
 from vehicle import Vehicle  # noqa: E402
 
 
+FRACTION_S = 0.25  # of a second, in dates of files
+
+
 class FakeTime:
     """time.monotonic() and the clock, which may be set."""
 
@@ -100,7 +103,7 @@ class Pictures(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name, "frames")
         self.folder.mkdir()
-        self.clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - 1000, was_set=False)
+        self.clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - FRACTION_S - 1000, was_set=False)
         self.time = FakeTime()
         self.time.__enter__()
         self.addCleanup(self.time.__exit__)
@@ -109,7 +112,7 @@ class Pictures(unittest.TestCase):
         path = Path(self.folder, name)
         path.write_bytes(content)
         if date_s is not None:
-            os.utime(path, (date_s, date_s))
+            os.utime(path, (date_s + FRACTION_S,) * 2)
 
     def new(self, pictures):
         """Names, and what was said."""
@@ -161,6 +164,15 @@ class Pictures(unittest.TestCase):
         self.write("latest.jpg", date_s=120.5)
         self.assertEqual(self.new(new), (["latest.jpg"], ""), "10.1 s later")
 
+    def test_are_left_out_where_their_dates_are_in_whole_seconds_which_a_vehicle_flies_far_in(self):
+        new = NewPictures(self.folder, self.clock)
+        for date_s, is_taken in ((50, False), (52, False), (52.001, True), (54, False)):
+            self.write(f"{date_s}.jpg", date_s=date_s - FRACTION_S)
+            names, words = self.new(new)
+            self.assertEqual(names, [f"{date_s}.jpg"] if is_taken else [])
+            self.assertEqual("is left out: its date is one in whole seconds" in words, not is_taken)
+            self.assertEqual(self.new(new), ([], ""), "it is said once")
+
     def test_in_a_full_folder_are_found_by_their_names_and_those_taken_are_looked_at_by_and_by(self):
         new = NewPictures(self.folder, self.clock)
         for number in range(120):
@@ -189,11 +201,11 @@ class Pictures(unittest.TestCase):
             self.write("between.jpg", date_s=fake.now + fake.ahead_s)
             fake.now += 2.0
             clock.look()
-            self.assertEqual([(path.name, written) for path, written in new()], [("odd.jpg", 100.0)])
+            self.assertEqual([(path.name, written) for path, written in new()], [("odd.jpg", 100.0 + FRACTION_S)])
             self.assertIn("between.jpg is left out: the clock was set while it was written", words.getvalue())
             clock.look()
             self.write("later.jpg", date_s=fake.now + fake.ahead_s)
-            self.assertEqual([(path.name, written) for path, written in new()], [("later.jpg", 102.0)])
+            self.assertEqual([(path.name, written) for path, written in new()], [("later.jpg", 102.0 + FRACTION_S)])
 
     def test_are_waited_for_while_their_folder_cannot_be_read(self):
         self.write("1.jpg", date_s=50)

@@ -6,6 +6,8 @@ import sys
 import time
 from typing import NamedTuple
 
+from lateness import Lateness
+
 ENDINGS = {".jpg": b"\xff\xd9", ".jpeg": b"\xff\xd9", ".png": b"IEND\xaeB`\x82"}
 QUIET_S = 1.0    # a file that ends otherwise, as some cameras' do, is taken once nothing was written for so long
 READ_S = 10.0    # a file that is written anew sooner may be read for the line of the picture before
@@ -40,6 +42,7 @@ class NewPictures:
         self._started = {}     # versions that are not complete, by their names
         self._finished = {}    # versions that were taken
         self._to_look_at = []  # of their names, the next one last
+        self._lateness = Lateness()
         self._fails = False
         for name in self._pictures(os.listdir(folder)):
             try:
@@ -117,7 +120,7 @@ class NewPictures:
             print(f"{path} is left out: it was another picture {version.written - before.written:.1f} s before: give "
                   "each a name of its own", file=sys.stderr)
             return False
-        return True
+        return not self._lateness.is_late(path, version.written)
 
     def _say_that_it_fails(self, error):
         """Where it is not as before. None: it does not."""

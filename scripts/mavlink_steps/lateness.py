@@ -1,0 +1,41 @@
+"""Whether pictures come later and later after they were taken, as where their link brings fewer than are taken. A track
+cannot tell that from a vehicle that flies slower than its odometry says."""
+import math
+import sys
+
+import exif
+
+LATE_S = 0.3            # later than the promptest: the vehicle was elsewhere
+FORGOTTEN_SHARE = 1e-4  # of the time that passes: clocks drift
+
+
+class Lateness:
+    """Compares the times that the files tell with the pictures' own: what a camera writes of its clock is enough, in
+    whatever zone and however wrong."""
+
+    def __init__(self):
+        self._least_s = math.inf  # from the time that a picture tells to its file; holds a difference of the clocks
+        self._last = None
+
+    def of(self, path, written):
+        """Seconds by which it surely came later than the promptest one; below 0 is not surely later, and 0 where it
+        does not say when it was taken. `written`: by time.monotonic()."""
+        try:
+            taken = exif.taken(path)
+        except OSError:  # removed meanwhile
+            taken = None
+        if taken is None:
+            return 0.0
+        came_s = written - taken.date_s
+        passed_s = 0.0 if self._last is None else max(0.0, written - self._last)
+        self._last = written
+        self._least_s = min(came_s, self._least_s + FORGOTTEN_SHARE * passed_s)
+        return came_s - taken.unit_s - self._least_s
+
+    def is_late(self, path, written):
+        """Says so."""
+        late_s = self.of(path, written)
+        if late_s > LATE_S:
+            print(f"{path} is left out: it came {late_s:.1f} s later after it was taken than others: the link is too "
+                  "slow, or the camera's clock was set (then start again)", file=sys.stderr)
+        return late_s > LATE_S

@@ -18,10 +18,11 @@ of JSON in for each step, a line with the answer out.
 import argparse
 import functools
 import json
-import os
 import pathlib
 import sys
 
+from log import Log
+from output import Output
 from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from service import Refused, Service, Silent
 from steps import NewestLine, all_lines, captured, place_and_covariance, read_step
@@ -82,13 +83,14 @@ def parse_arguments(arguments):
 
 
 def fly(lines, options):
-    """Whether all steps were taken."""
+    """Whether all steps were taken and their answers printed."""
     sender = Sender(options.format, options.send, options.max_age) if options.send else None
     service = Service(options.server, options.patience)
     track = Track(service, {"map": options.map, **dict(options.track)}, options.state,
                   lambda track_id: print(f"a track begins: {service.page_of(track_id)}", file=sys.stderr, flush=True))
     folder = pathlib.Path(options.steps or ".").parent
     frame_fields = dict(options.frame)
+    output = Output(must_be_read=sender is None)
     all_taken = True
     for line in NewestLine(lines) if options.live else all_lines(lines):
         for passed in line.passed:
@@ -109,12 +111,13 @@ def fly(lines, options):
             print(f"line {line.number}: {error}", file=sys.stderr)
             all_taken = False
             continue
-        print(json.dumps(answer), flush=True)
-    return all_taken
+        output.print(answer)
+    return all_taken and not output.has_failed
 
 
 def main(arguments=None):
     options = parse_arguments(arguments)
+    sys.stderr = Log(sys.stderr)
     try:
         if options.steps is None:
             sys.stdin.reconfigure(encoding="utf-8", errors="replace")  # a bad byte spoils its line alone
@@ -122,7 +125,6 @@ def main(arguments=None):
         with open(options.steps, encoding="utf-8", errors="replace") as lines:
             return 0 if fly(lines, options) else 1
     except BrokenPipeError:  # nobody reads the answers any more
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (ValueError, OSError) as error:
         print(f"ground_station: {error}", file=sys.stderr)

@@ -24,6 +24,7 @@ from autopilot import Autopilot
 from clock import WallClock
 from gimbal import STATUS, Gimbal
 from lines import Lines
+from log import Log
 from packets import messages
 from pictures import NewPictures, Silence
 from receiver import Receiver
@@ -120,6 +121,7 @@ def follow(link, pictures, clock, options):
 
 def main(arguments=None):
     options = parse_arguments(arguments)
+    sys.stderr = Log(sys.stderr)
     clock = WallClock()
     try:
         pictures = NewPictures(options.watch, clock)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The client of ground stations: its patience, the lines that it reads, the positions that it sends, and the program."""
+import contextlib
 import io
 import json
 import os
@@ -149,11 +150,11 @@ class Positions(unittest.TestCase):
         self.autopilot.bind(("127.0.0.1", 0))
         self.autopilot.setblocking(False)
 
-    def run_program(self, fake, packet_format, lines, *options):
+    def run_program(self, fake, packet_format, lines, *options, stdout=subprocess.PIPE, stderr=subprocess.PIPE):
         return subprocess.run(
             [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", packet_format,
-             "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1], *options], input=lines, capture_output=True, text=True,
-            timeout=60)
+             "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1], *options], input=lines, stdout=stdout,
+            stderr=stderr, text=True, timeout=60)
 
     def sent(self, packet_format, script=(), captured_s_ago=0.0, delay_s=0.0, told_s=None, options=()):
         steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": (time.time() - captured_s_ago) * 1e6})
@@ -173,6 +174,29 @@ class Positions(unittest.TestCase):
             with FakeService() as fake:
                 program = self.run_program(fake, packet_format, 3 * (json.dumps({**place, **alt_m}) + "\n"))
             self.assertEqual(program.stderr.count("says no alt_m"), warnings, packet_format)
+
+    def positions(self):
+        count = 0
+        with contextlib.suppress(BlockingIOError):
+            while self.autopilot.recv(2048):
+                count += 1
+        return count
+
+    def test_come_where_answers_and_messages_find_no_room_or_nobody_reads_them(self):
+        lines = 3 * '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
+        reader, closed = os.pipe()
+        os.close(reader)
+        with open("/dev/full", "w") as full, open(closed, "w") as nobody:
+            for stream, why in ((full, "No space left on device"), (nobody, "Broken pipe")):
+                with FakeService() as fake:
+                    program = self.run_program(fake, "nmea", lines, *self.PATIENT, stdout=stream)
+                self.assertEqual((program.returncode, self.positions()), (1, 3), program.stderr)
+                self.assertEqual(program.stderr.count("no answers are printed from here, the flight goes on"), 1)
+                self.assertIn(why, program.stderr)
+                with FakeService() as fake:
+                    program = self.run_program(fake, "nmea", lines, *self.PATIENT, stderr=stream)
+                self.assertEqual((program.returncode, self.positions()), (0, 3))
+                self.assertEqual(program.stdout.count("\n"), 3)
 
     def test_is_fresh(self):
         for packet_format in ("gps_input", "global_position_sensor"):

@@ -289,10 +289,25 @@ class Program(unittest.TestCase):
         self.assertEqual(self.program.wait(timeout=20), 1)
         self.assertEqual(self.program.stderr.read(), "")
 
+    def test_goes_on_where_what_it_says_finds_no_room(self):
+        with open("/dev/full", "w") as full:
+            program = subprocess.Popen([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera",
+                                        "body", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, stderr=full)
+        self.addCleanup(program.stdout.close)
+        with self.assertRaises(subprocess.TimeoutExpired):
+            program.wait(timeout=1.0)
+        program.kill()
+        program.wait()
+
     def test_says_why_a_picture_is_left_out(self):
         self.start()
         Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")
         self.assertIn("1.jpg is left out: no two ATTITUDE around that time", self.program.stderr.readline())
+
+
+class Log(unittest.TestCase):
+    def test_is_that_of_the_ground_station_too(self):
+        self.assertEqual((PROGRAM / "log.py").read_text(), (PROGRAM.parent / "ground_station" / "log.py").read_text())
 
 
 if __name__ == "__main__":

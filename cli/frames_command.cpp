@@ -15,6 +15,7 @@
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/sources/drone_picture.hpp"
+#include "tiles/sources/picture_tags.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -111,9 +112,28 @@ std::string unnameable(const std::string& name, const std::string& sequence) {
   return "";
 }
 
+void say_left_out(const fs::path& file, std::string_view reason) {
+  fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
+}
+
+/// nullopt, said on stderr, where it is damaged.
+std::optional<PictureTags> tags_of(const fs::path& file) {
+  try {
+    return read_picture_tags(file);
+  } catch (const InvalidInput& error) {
+    std::string_view reason = error.what();
+    const std::string named = file.string() + ": ";
+    if (reason.starts_with(named)) reason.remove_prefix(named.size());
+    say_left_out(file, reason);
+    return std::nullopt;
+  }
+}
+
 /// nullopt, said on stderr, where the file does not tell enough.
 std::optional<Frame> frame_of(const fs::path& file, const fs::path& table_folder, const FramesOptions& options) {
-  DronePicture picture = drone_picture(read_picture_tags(file));
+  const auto tags = tags_of(file);
+  if (!tags) return std::nullopt;
+  DronePicture picture = drone_picture(*tags);
   const auto agl_m = agl_of(picture, options);
   const fs::path whole = fs::absolute(file).lexically_normal();
   const std::string name = whole.lexically_proximate(table_folder).generic_string();
@@ -121,7 +141,7 @@ std::optional<Frame> frame_of(const fs::path& file, const fs::path& table_folder
   std::string reason = unnameable(name, sequence);
   if (reason.empty()) reason = lacks(picture, agl_m);
   if (!reason.empty()) {
-    fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
+    say_left_out(file, reason);
     return std::nullopt;
   }
   return Frame{name, sequence, std::move(picture), *agl_m};

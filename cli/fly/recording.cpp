@@ -42,7 +42,7 @@ std::vector<double> times_of(const Sequence& sequence, double step_s) {
     if (!(passed > 0.0)) {
       throw InvalidInput("recording-time",
                          fmt::format("{} was taken {} s after {}, the frame before it: put the frames of a sequence in "
-                                     "the order of their times",
+                                     "the order of their times, each picture once",
                                      frame.file.string(), passed, before->file.string()));
     }
     times.push_back((times.empty() ? 0.0 : times.back()) + passed);

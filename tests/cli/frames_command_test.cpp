@@ -82,6 +82,19 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
                                 HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
 }
 
+TEST_F(FramesCommand, LeavesOutDamagedFilesOfAFolderButMissesNamedOnes) {
+  picture("good.jpg", tags(120.0));
+  std::ofstream(folder / "flight 1" / "empty.jpg").flush();
+  std::ofstream(folder / "flight 1" / "text.JPG") << "no picture";
+  const std::string place = "'" + (folder / "flight 1").string() + "'";
+  const ProgramResult result = frames(place);
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("empty")), Not(HasSubstr("text"))));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("empty.jpg is left out: cannot be opened ("),
+                                HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 3 pictures")));
+  EXPECT_THAT(frames(place + " none.jpg").err, HasSubstr("[source-not-found]"));
+}
+
 TEST_F(FramesCommand, WritesNoTableThatItsNamesBreak) {
   picture("0001.jpg", tags(118.0));
   const auto flight = folder / "north, a" / "flight, b";

@@ -3,11 +3,13 @@ import base64
 import email.utils
 import http.client
 import json
+import sys
 import time
 import urllib.parse
 
 ANSWER_TIME_S = 90.0  # a search may wait its turn for 30 s and take as long
 SHORTEST_S = 0.2      # an attempt
+MISSED_S = 1.5        # without an answer before that is said
 BUSY = (408, 429, 502, 503, 504)
 NOT_ROADFIX = "not-roadfix"
 
@@ -45,6 +47,7 @@ class Service:
             raise ValueError(f"'{url}' is no address of a service: write http://HOST:PORT")
         self._patience_s = patience_s
         self._connection = None
+        self._is_missed = False
         self.date_s = None
 
     def page_of(self, track_id):
@@ -68,14 +71,18 @@ class Service:
                 self._connect(give_up - time.monotonic())
                 answer, content = self._send(method, path, body, content_type)
                 if answer.status not in BUSY:
+                    self._say_that_it_answers()
                     return self._checked(answer, content, answer_type)
                 reason = str(Refused(answer.status, self._problem(content)))
                 wait_s = max(wait_s, self._retry_after_s(answer))
             except (OSError, http.client.HTTPException) as error:
                 self.close()
                 reason = str(error) or type(error).__name__
-            if time.monotonic() + wait_s > give_up:
+            left_s = give_up - time.monotonic()
+            if wait_s > left_s:
                 raise Silent(f"no answer of {self._url.hostname} within {self._patience_s:g} s ({reason})")
+            if self._patience_s - left_s > MISSED_S:
+                self._say_that_it_is_missed(reason, left_s)
             time.sleep(wait_s)
             pause_s = min(2.0 * pause_s, 2.0)
 
@@ -89,6 +96,17 @@ class Service:
         if not isinstance(answer, dict) or any(name not in answer for name in members):
             raise _not_roadfix(200, f"an answer without {' and '.join(members)}")
         return answer
+
+    def _say_that_it_is_missed(self, reason, left_s):
+        """Once until it answers."""
+        if not self._is_missed:
+            print(f"no answer of {self._url.hostname} yet ({reason}): trying for {left_s:.0f} s more", file=sys.stderr)
+        self._is_missed = True
+
+    def _say_that_it_answers(self):
+        if self._is_missed:
+            print(f"{self._url.hostname} answers again", file=sys.stderr)
+        self._is_missed = False
 
     def _connect(self, left_s):
         """For one attempt. A cut link says nothing: half of the time that is left remains for others. A step that the

@@ -14,6 +14,7 @@ from pathlib import Path
 from unittest import mock
 
 from fake_service import PROGRAM, ROOT, FakeService
+from words import said
 
 from positions import told_age_s
 from service import Service, Silent
@@ -40,6 +41,27 @@ class Patience(unittest.TestCase):
             self.addCleanup(service.close)
             Track(service, {"map": "m"}).step((0.0, 0.0, 0.0), {"time_us": 1})
             self.assertEqual({step["sequence"] for step in fake.steps()}, {1})
+
+
+    def test_is_told_once_and_so_is_its_end(self):
+        with FakeService([503, 503, 503, 200, 503]) as fake, said() as words:
+            service = Service(fake.url, 20.0)
+            self.addCleanup(service.close)
+            track = Track(service, {"map": "m"})
+            for time_us in (1, 2, 3):
+                track.step((0.0, 0.0, 0.0), {"time_us": time_us})
+        self.assertRegex(words.getvalue(), r"^no answer of 127.0.0.1 yet \(503 busy: later\): trying for 1[0-9] s more\n"
+                                           r"127.0.0.1 answers again\n$")
+
+    def test_that_ends_while_the_service_is_away_is_told_of_before(self):
+        with socket.create_server(("127.0.0.1", 0)) as away:
+            port = away.getsockname()[1]
+        with said() as words:
+            service = Service(f"http://127.0.0.1:{port}", 4.0)
+            for _ in range(2):
+                with self.assertRaisesRegex(Silent, "within 4 s .*refused"):
+                    service.ask("GET", "/")
+        self.assertRegex(words.getvalue(), r"^no answer of 127.0.0.1 yet \(.*refused\): trying for [12] s more\n$")
 
 
 class Lines(unittest.TestCase):

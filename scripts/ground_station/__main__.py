@@ -99,7 +99,7 @@ def fly(lines, options):
             step = read_step(line, folder, frame_fields)
         except (ValueError, OSError) as error:
             track.pass_by(*place_and_covariance(line, frame_fields))
-            print(f"line {line.number}: {error}", file=sys.stderr)
+            print(f"{line.name}: {error}", file=sys.stderr)
             all_taken = False
             continue
         try:
@@ -108,7 +108,7 @@ def fly(lines, options):
             send = functools.partial(sender.send, captured(line, step.fields)) if sender else None
             answer = track.step(step.place, step.fields, step.image, step.origin, options.format, send)
         except (ValueError, OSError, Refused, Silent) as error:
-            print(f"line {line.number}: {error}", file=sys.stderr)
+            print(f"{line.name}: {error}", file=sys.stderr)
             all_taken = False
             continue
         output.print(answer)

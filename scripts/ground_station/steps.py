@@ -25,6 +25,11 @@ class Line(NamedTuple):
     passed: tuple = ()
 
     @property
+    def name(self):
+        """With that of its picture: nobody keeps the lines of a flight that is under way."""
+        return f"line {self.number}" + (f" ({self.step['image']})" if self.has_picture else "")
+
+    @property
     def has_picture(self):
         return self.step is not None and self.step.get("image") is not None
 

@@ -103,7 +103,7 @@ def follow(link, pictures, clock, options):
     gimbal = Gimbal(options.gimbal) if options.camera == "gimbal" else None
     receiver = Receiver(autopilot, vehicle, gimbal)
     lines = Lines(vehicle, gimbal, autopilot, clock, options)
-    silence = Silence()
+    silence = Silence(options.watch)
     looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:

@@ -12,7 +12,7 @@ ENDINGS = {".jpg": b"\xff\xd9", ".jpeg": b"\xff\xd9", ".png": b"IEND\xaeB`\x82"}
 QUIET_S = 1.0    # a file that ends otherwise, as some cameras' do, is taken once nothing was written for so long
 READ_S = 10.0    # a file that is written anew sooner may be read for the line of the picture before
 LOOKS = 500      # in each call at files that were taken: a camera leaves tens of thousands
-MISSED_S = 10.0  # without a picture
+MISSED_S = 10.0  # without a picture, or without anything in one
 
 
 class Version(NamedTuple):
@@ -41,6 +41,7 @@ class NewPictures:
         self._others = set()   # names of what is no picture
         self._started = {}     # versions that are not complete, by their names
         self._finished = {}    # versions that were taken
+        self._empty = set()    # names that were told of
         self._to_look_at = []  # of their names, the next one last
         self._lateness = Lateness()
         self._fails = False
@@ -66,6 +67,8 @@ class NewPictures:
                 continue
             if is_whole or (version.size > 0 and time.monotonic() - version.written > QUIET_S):
                 complete.append((version.written, self._folder / name, version))
+            elif version.size == 0:
+                self._say_that_it_stays_empty(name, version)
         return [(path, written) for written, path, version in sorted(complete) if self._take(path, version)]
 
     def _pictures(self, names):
@@ -122,6 +125,11 @@ class NewPictures:
             return False
         return not self._lateness.is_late(path, version.written)
 
+    def _say_that_it_stays_empty(self, name, version):
+        if name not in self._empty and time.monotonic() - version.written > MISSED_S:
+            self._empty.add(name)
+            print(f"{self._folder / name} is empty", file=sys.stderr)
+
     def _say_that_it_fails(self, error):
         """Where it is not as before. None: it does not."""
         if self._fails != (error is not None):
@@ -129,10 +137,20 @@ class NewPictures:
             print(f"no pictures: {error}" if error else f"{self._folder} can be read again", file=sys.stderr)
 
 
-class Silence:
-    """Says where no picture comes though the autopilot speaks."""
+def _newest_folder_in(folder):
+    """And when something was added to it, as a date. None where it holds none."""
+    try:
+        with os.scandir(folder) as entries:
+            return max(((entry.stat().st_mtime, entry.path) for entry in entries if entry.is_dir()), default=None)
+    except OSError:
+        return None
 
-    def __init__(self):
+
+class Silence:
+    """Says where no picture comes into a folder though the autopilot speaks."""
+
+    def __init__(self, folder):
+        self._folder = folder
         self._last = time.monotonic()
         self._is_told = False
 
@@ -145,5 +163,11 @@ class Silence:
             self._last, self._is_told = now, False
         elif not self._is_told and now - self._last > MISSED_S and now - heard <= MISSED_S:
             self._is_told = True
-            print(f"no picture has come for {now - self._last:.0f} s though the autopilot speaks: does the camera "
-                  "write into the folder?", file=sys.stderr)
+            print(f"no picture has come for {now - self._last:.0f} s though the autopilot speaks: {self._question()}",
+                  file=sys.stderr)
+
+    def _question(self):
+        newest = _newest_folder_in(self._folder)
+        if newest is not None and newest[0] > time.time() - (time.monotonic() - self._last):
+            return f"does the camera go on in {newest[1]}?"
+        return "does the camera write into the folder?"

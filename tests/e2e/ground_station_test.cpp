@@ -169,7 +169,7 @@ TEST_F(GroundStation, SaysWhichLineCannotBeTakenAndGoesOn) {
   EXPECT_EQ(answers(result).size(), 2U);
   EXPECT_EQ(answers(result).back()["missed_steps"], 0) << "what was refused has no number";
   for (const char* message : {"line 2: a step is a JSON object", "line 4: a step needs east_m",
-                              "line 5: ", "missing.png", "line 6: 400 unknown-field"}) {
+                              "line 5 (missing.png): ", "line 6: 400 unknown-field"}) {
     EXPECT_THAT(result.err, HasSubstr(message));
   }
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The client of ground stations: its patience, the lines that it reads, the positions that it sends, and the program."""
 import contextlib
+import datetime
 import io
 import json
 import os
@@ -268,7 +269,7 @@ class Program(unittest.TestCase):
             program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
                                      input="\n".join(self.lines_and_a_picture(folder)), capture_output=True, text=True,
                                      timeout=60)
-            self.assertIn("line 3: ", program.stderr)
+            self.assertIn("line 3 (missing.jpg): ", program.stderr)
             self.assertEqual([float(step["forward_m"]) for step in fake.steps()[1:]], [10.0, 20.0])
             self.check_covariances(fake.steps()[1:])
 
@@ -285,6 +286,19 @@ class Program(unittest.TestCase):
             sent = fake.steps()[1:]  # one or two, by how fast the lines were read
         self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
         self.check_covariances(sent)
+
+    def test_says_when_and_of_which_picture_something_is_wrong(self):
+        refused = (422, {"code": "image-damaged", "detail": "no picture"})
+        with FakeService([200, 200, refused]) as fake, tempfile.TemporaryDirectory() as folder:
+            *good, _, bad = self.lines_and_a_picture(folder)
+            began_s = time.time()
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
+                                     input="\n".join([*good, bad]), capture_output=True, text=True, timeout=60)
+        date, words = program.stderr.splitlines()[-1].split(" ", 1)
+        self.assertEqual(words, f"line 3 ({folder}/3.jpg): 422 image-damaged: no picture")
+        self.assertRegex(date, r"^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}\.[0-9]{3}Z$")
+        told_s = datetime.datetime.fromisoformat(date.replace("Z", "+00:00")).timestamp()
+        self.assertTrue(began_s - 0.01 <= told_s <= time.time() + 0.01)
 
     def test_goes_on_after_lines_that_are_no_text(self):
         good = b'{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
@@ -310,7 +324,8 @@ class Program(unittest.TestCase):
             program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
                                      input=lines, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
             os.close(writer)
-        self.assertEqual((program.returncode, program.stderr), (1, f"a track begins: {fake.url}/#track=T\n"))
+        self.assertEqual(program.returncode, 1)
+        self.assertRegex(program.stderr, rf"^\S+Z a track begins: {fake.url}/#track=T\n$")
 
     def test_says_once_where_its_track_is_to_be_seen_and_keeps_the_password(self):
         lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
@@ -318,7 +333,8 @@ class Program(unittest.TestCase):
             server = fake.url.replace("//", "//me:secret@") + "/"
             program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", server, "--map", "m"], input=lines,
                                      capture_output=True, text=True, timeout=60)
-        self.assertEqual((program.returncode, program.stderr), (0, f"a track begins: {fake.url}/#track=T\n"))
+        self.assertEqual(program.returncode, 0)
+        self.assertRegex(program.stderr, rf"^\S+Z a track begins: {fake.url}/#track=T\n$")
 
 
 if __name__ == "__main__":

@@ -182,10 +182,10 @@ class Listening(unittest.TestCase):
             return []
 
         options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, camera="body",
-                                        delay=0.0)
+                                        delay=0.0, watch="frames")
         self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
         began = time.monotonic()
-        with mock.patch.object(self.program, "Silence", lambda: silence), said(), self.assertRaises(End):
+        with mock.patch.object(self.program, "Silence", lambda folder: silence), said(), self.assertRaises(End):
             self.program.follow(self.ours, pictures, clock, options)
         self.assertEqual(calls, ["clock", "pictures"])
         (has_picture, heard), _ = silence.look.call_args

@@ -7,6 +7,7 @@ import math
 import os
 import sys
 import tempfile
+import time
 import types
 import unittest
 from pathlib import Path
@@ -137,7 +138,7 @@ class Pictures(unittest.TestCase):
         self.write("odd.jpg", b"\xff\xd8 and no end", date_s=70)
         self.assertEqual(self.new(new), (["odd.jpg"], ""), "nothing was written for long")
         self.write("empty.jpg", b"", date_s=70)
-        self.assertEqual(self.new(new), ([], ""), "there is nothing in it yet")
+        self.assertEqual(self.new(new)[0], [], "there is nothing in it yet")
 
     def test_are_taken_again_where_a_camera_begins_anew_with_the_names_that_it_gave_before(self):
         for number in range(1, 4):
@@ -221,7 +222,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(self.new(new), (["2.jpg"], f"{self.folder} can be read again\n"))
 
     def test_that_do_not_come_while_the_autopilot_speaks_are_missed(self):
-        silence = Silence()
+        silence = Silence(self.folder)
         for pause_s, has_picture, unheard_s, expected in (
                 (9.9, False, 0.0, ""), (0.2, False, 10.1, ""), (0.0, False, 9.9, "no picture has come for 10 s"),
                 (5.0, False, 0.0, ""), (1.0, True, 0.0, "pictures come again"), (9.9, False, 0.0, ""),
@@ -230,6 +231,32 @@ class Pictures(unittest.TestCase):
             with said() as words:
                 silence.look(has_picture, self.time.now - unheard_s)
             self.assertEqual(words.getvalue()[:len(expected) or None], expected)
+
+    def test_that_go_on_in_another_folder_are_looked_for_there(self):
+        begin_s = time.time()
+        for name, date_s in (("100MEDIA", begin_s - 60.0), ("101MEDIA", begin_s + 5.0), ("102MEDIA", begin_s - 1.0)):
+            Path(self.folder, name).mkdir()
+            os.utime(Path(self.folder, name), (date_s, date_s))
+        silence = Silence(self.folder)
+        self.time.now += 10.1
+        with said() as words:
+            silence.look(False, self.time.now)
+        self.assertIn(f"does the camera go on in {self.folder}/101MEDIA?", words.getvalue())
+        with said() as words:
+            silence.look(True, self.time.now)
+            self.time.now += 10.1
+            silence.look(False, self.time.now)
+        self.assertIn("does the camera write into the folder?", words.getvalue())
+
+    def test_that_stay_empty_are_told_of_once(self):
+        new = NewPictures(self.folder, self.clock)
+        self.write("1.jpg", b"", date_s=self.time.now + 1000)
+        self.assertEqual(self.new(new), ([], ""))
+        self.time.now += 10.5
+        self.assertEqual(self.new(new), ([], f"{self.folder}/1.jpg is empty\n"))
+        self.assertEqual(self.new(new), ([], ""))
+        self.write("1.jpg")
+        self.assertEqual(self.new(new)[0], ["1.jpg"])
 
 
 class LinesOfPictures(unittest.TestCase):

@@ -33,7 +33,7 @@ def parse_setting(text):
     """NAME=VALUE, the value as JSON where it is some."""
     name, equals, value = text.partition("=")
     if not name or not equals:
-        raise argparse.ArgumentTypeError(f"'{text}': write NAME=VALUE")
+        raise argparse.ArgumentTypeError(f"'{text}': write NAME=VALUE, and the file of steps before all options")
     try:
         return name, json.loads(value)
     except ValueError:
@@ -49,7 +49,8 @@ def parse_address(text):
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(
-        prog="ground_station", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog="ground_station", usage="%(prog)s [steps] --map MAP [option ...]", description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="example: python3 scripts/ground_station --map city --track lat=37.76 lon=38.27 radius_m=2000 "
                "--frame fov_deg=78 roll_deg=0 pitch_deg=0 --live --format gps_input --send 127.0.0.1:14550 < steps")
     parser.add_argument("steps", nargs="?", help="file of steps (default: standard input)")

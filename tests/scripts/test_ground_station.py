@@ -287,6 +287,14 @@ class Program(unittest.TestCase):
         self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
         self.check_covariances(sent)
 
+    def test_says_where_the_file_of_steps_stands(self):
+        for option in ("--frame", "--track"):
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", option, "a=1", "flight.jsonl"],
+                                     capture_output=True, text=True, timeout=60)
+            self.assertEqual(program.returncode, 2)
+            self.assertIn("usage: ground_station [steps] --map MAP", program.stderr)
+            self.assertIn("'flight.jsonl': write NAME=VALUE, and the file of steps before all options", program.stderr)
+
     def test_says_when_and_of_which_picture_something_is_wrong(self):
         refused = (422, {"code": "image-damaged", "detail": "no picture"})
         with FakeService([200, 200, refused]) as fake, tempfile.TemporaryDirectory() as folder:

@@ -24,6 +24,7 @@ import sys
 from log import Log
 from output import Output
 from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
+from preflight import check
 from service import Refused, Service, Silent
 from steps import NewestLine, all_lines, captured, place_and_covariance, read_step
 from track import Track
@@ -77,17 +78,25 @@ def parse_arguments(arguments):
                         help="drop positions older than S seconds from capture (monotonic_s, else time_us where it is "
                              "of this computer's clock, else when its line came) to sending (default: %(default)g); of "
                              + " and ".join(PROCESSING) + " the processing time that they report is not counted")
+    parser.add_argument("--check", action="store_true",
+                        help="only look whether the service has the map and knows the fields of --frame, and whether "
+                             "--track begins on it, as is done before each flight")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
     return options
 
 
+def request_of(options):
+    """Of a track."""
+    return {"map": options.map, **dict(options.track)}
+
+
 def fly(lines, options):
     """Whether all steps were taken and their answers printed."""
     sender = Sender(options.format, options.send, options.max_age) if options.send else None
     service = Service(options.server, options.patience)
-    track = Track(service, {"map": options.map, **dict(options.track)}, options.state,
+    track = Track(service, request_of(options), options.state,
                   lambda track_id: print(f"a track begins: {service.page_of(track_id)}", file=sys.stderr, flush=True))
     folder = pathlib.Path(options.steps or ".").parent
     frame_fields = dict(options.frame)
@@ -120,6 +129,9 @@ def main(arguments=None):
     options = parse_arguments(arguments)
     sys.stderr = Log(sys.stderr)
     try:
+        is_there = check(options.server, request_of(options), dict(options.frame))
+        if options.check:
+            return 0 if is_there else 1
         if options.steps is None:
             sys.stdin.reconfigure(encoding="utf-8", errors="replace")  # a bad byte spoils its line alone
             return 0 if fly(sys.stdin, options) else 1
@@ -127,7 +139,7 @@ def main(arguments=None):
             return 0 if fly(lines, options) else 1
     except BrokenPipeError:  # nobody reads the answers any more
         return 1
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, Refused) as error:
         print(f"ground_station: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

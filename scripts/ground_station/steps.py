@@ -13,6 +13,7 @@ CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
 PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m", "roll_deg", "pitch_deg",
                                   "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m",
                                   "nadir_heading_sigma_deg")
+POSITION_FIELDS = ("covariance", "alt_m", "camera_yaw_deg", "satellites", "system", "sensor", "component")
 
 
 class Line(NamedTuple):

@@ -48,6 +48,8 @@ class FakeService:
         self.left_s = None  # of the time of silence; None: what follows from silent_s
         self.set_s = 0.0    # by which the clock was set since the last step
         self.gone = None
+        self.map = (200, {"name": "m", "status": "ready", "version": "7f3a", "bbox": [38.2, 37.7, 38.3, 37.8]})
+        self.readiness = {"status": "ready", "tracks": "ready"}
         fake = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
@@ -69,6 +71,13 @@ class FakeService:
                     self.wfile.write(content)
 
             def do_GET(self):
+                if self.path.startswith("/v1/maps/"):
+                    status, content = fake.map
+                    self.answer(status, json.dumps(content).encode())
+                    return
+                if self.path == "/readyz":
+                    self.answer(200, json.dumps(fake.readiness).encode())
+                    return
                 if fake.gone:
                     self.answer(fake.gone[0], json.dumps(fake.gone[1]).encode())
                     return

@@ -19,8 +19,11 @@ from words import said
 
 from positions import told_age_s
 from service import Service, Silent
-from steps import PICTURE_FIELDS, NewestLine, all_lines, read_step
+from steps import PICTURE_FIELDS, POSITION_FIELDS, NewestLine, all_lines, read_step
 from track import Track
+
+
+BEFORE = r"\S+Z the map 'm' has version 7f3a\n"  # what is said before the flight
 
 
 class Patience(unittest.TestCase):
@@ -97,9 +100,8 @@ class Lines(unittest.TestCase):
         parameters = schema["paths"]["/v1/tracks/{id}/steps"]["post"]["parameters"]
         names = [schema["components"]["parameters"][p["$ref"].split("/")[-1]]["name"] if "$ref" in p else p["name"]
                  for p in parameters]
-        of_the_step = {"sequence", "time_us", "forward_m", "right_m", "turn_deg", "covariance",
-                       "format", "alt_m", "camera_yaw_deg", "satellites", "system", "sensor", "component"}
-        self.assertEqual(set(names) - of_the_step, set(PICTURE_FIELDS))
+        of_the_step = {"sequence", "time_us", "forward_m", "right_m", "turn_deg", "format"}
+        self.assertEqual(set(names) - of_the_step, {*PICTURE_FIELDS, *POSITION_FIELDS})
 
     def test_that_cannot_be_read_say_so(self):
         for text, message in (("[1]", "JSON object"), ('{"north_m": 1, "east_m": 2}', "needs yaw_deg"),
@@ -160,6 +162,64 @@ class Lines(unittest.TestCase):
         with mock.patch("threading.excepthook") as told:
             self.assertEqual([line.number for line in NewestLine(broken())], [1])
         told.assert_called_once()
+
+
+class BeforeTheFlight(unittest.TestCase):
+    def checked(self, fake, *options):
+        """The exit status, and what was said, of a program that would wait for a first step."""
+        program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", *options],
+                                 stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+        self.assertEqual([path for path, _, _ in fake.requests], [])
+        return program.returncode, program.stderr
+
+    def test_the_map_is_looked_for(self):
+        with FakeService() as fake:
+            for check in ([], ["--check"]):
+                status, words = self.checked(fake, "--track", "lat=37.7", "lon=38.3", "radius_m=10", *check)
+                self.assertEqual(status, 0)
+                self.assertRegex(words, f"^{BEFORE}$")
+            fake.map = (404, {"code": "map-not-found", "detail": "there is town"})
+            status, words = self.checked(fake)
+            self.assertEqual(status, 1)
+            self.assertIn("ground_station: 404 map-not-found: there is town", words)
+            fake.map = (200, {"name": "m", "status": "empty", "version": "0", "bbox": None})
+            self.assertEqual(self.checked(fake)[0], 1)
+            fake.map = (200, {"id": "of something else"})
+            self.assertIn("something other than Roadfix answered", self.checked(fake)[1])
+
+    def test_a_place_beside_the_map_is_refused(self):
+        with FakeService() as fake:
+            for place, km in ((("lat=38.25", "lon=37.75", "radius_m=2000"), "47.7"),
+                              (("lat=37.75", "lon=38.32", "radius_m=2000"), None),
+                              (("lat=37.75", "lon=38.32", "radius_m=1000"), "0.7"),
+                              (("lat=37.75", "lon=-321.75", "radius_m=1"), None),
+                              (("bbox=[38.4,37.7,38.5,37.8]",), "5.2"), (("bbox=[38.29,37.7,38.5,37.8]",), None),
+                              (("lat=37.75",), None), (("radius_m=5",), None),
+                              (("lat=north", "lon=1", "radius_m=5"), None)):
+                status, words = self.checked(fake, "--track", *place)
+                self.assertEqual(status, 0 if km is None else 1, place)
+                if km:
+                    self.assertIn(f"the track would begin at least {km} km beside the map, which shows lat 37.7000", words)
+
+    def test_fields_of_frames_that_no_step_has_are_refused(self):
+        with FakeService() as fake:
+            status, words = self.checked(fake, "--frame", "fov_deg=78", "satelites=10")
+            self.assertEqual(status, 1)
+            self.assertIn("--frame satelites: no such field of a step", words)
+            self.assertEqual(self.checked(fake, "--frame", "fov_deg=78", "satellites=10", "exif=true")[0], 0)
+
+    def test_a_service_that_is_away_is_told_and_no_error(self):
+        with FakeService() as fake:
+            pass
+        for check, expected in (([], 0), (["--check"], 1)):
+            status, words = self.checked(fake, *check)
+            self.assertEqual(status, expected)
+            self.assertIn("nothing is checked before the flight: no answer of 127.0.0.1 within 3 s", words)
+
+    def test_tracks_that_cannot_be_kept_are_told(self):
+        with FakeService() as fake:
+            fake.readiness = {"status": "ready", "tracks": "unavailable", "tracks_problem": "the disk is full"}
+            self.assertIn("no track can be flown now: the disk is full", self.checked(fake)[1])
 
 
 class Positions(unittest.TestCase):
@@ -333,7 +393,7 @@ class Program(unittest.TestCase):
                                      input=lines, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
             os.close(writer)
         self.assertEqual(program.returncode, 1)
-        self.assertRegex(program.stderr, rf"^\S+Z a track begins: {fake.url}/#track=T\n$")
+        self.assertRegex(program.stderr, rf"^{BEFORE}\S+Z a track begins: {fake.url}/#track=T\n$")
 
     def test_says_once_where_its_track_is_to_be_seen_and_keeps_the_password(self):
         lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
@@ -342,7 +402,7 @@ class Program(unittest.TestCase):
             program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", server, "--map", "m"], input=lines,
                                      capture_output=True, text=True, timeout=60)
         self.assertEqual(program.returncode, 0)
-        self.assertRegex(program.stderr, rf"^\S+Z a track begins: {fake.url}/#track=T\n$")
+        self.assertRegex(program.stderr, rf"^{BEFORE}\S+Z a track begins: {fake.url}/#track=T\n$")
 
 
 if __name__ == "__main__":

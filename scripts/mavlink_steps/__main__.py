@@ -3,7 +3,7 @@ a folder: a line of JSON for each picture.
 
   mkdir -p frames
   ffmpeg -nostdin -flags low_delay -i rtsp://CAMERA/stream -vf fps=1 -threads 1 "frames/$(date +%s)-%06d.jpg" &
-  python3 scripts/mavlink_steps --listen 14551 --watch frames --camera level |
+  python3 scripts/mavlink_steps --listen 14551 --watch frames --every 1 --camera level |
     python3 scripts/ground_station --map city --frame fov_deg=78 --live
 
 Movements are the sum of velocities: of LOCAL_POSITION_NED, or with --by-air of airspeed and heading (VFR_HUD, ATTITUDE;
@@ -55,6 +55,13 @@ def parse_delay(text):
     return delay_s
 
 
+def parse_interval(text):
+    interval_s = parse_number(text)
+    if interval_s <= 0.0:
+        raise argparse.ArgumentTypeError(f"'{text}': write more than 0")
+    return interval_s
+
+
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(prog="mavlink_steps", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -81,6 +88,10 @@ def parse_arguments(arguments):
                         help="how much higher than the ground in the pictures the take-off lay (default: 0)")
     parser.add_argument("--delay", type=parse_delay, default=0.0, metavar="S",
                         help="from the capture of a picture to its file (default: 0)")
+    parser.add_argument("--every", type=parse_interval, metavar="S",
+                        help="seconds between pictures, by which their names are numbered, as of ffmpeg with fps=1/S: "
+                             "those that come later and later are left out (default: by their EXIF, where they have "
+                             "some)")
     parser.set_defaults(origin=uuid.uuid4().hex)  # sums of velocities begin anew with each start
     return parser.parse_args(arguments)
 
@@ -112,7 +123,7 @@ def follow(link, pictures, clock, options):
             continue
         clock.look()
         new = pictures()
-        silence.look(bool(new), vehicle.heard)
+        silence.look(pictures.have_come, vehicle.heard)
         for path, written in new:
             lines.add(path, written - options.delay)
         lines.print_due()
@@ -124,7 +135,7 @@ def main(arguments=None):
     sys.stderr = Log(sys.stderr)
     clock = WallClock()
     try:
-        pictures = NewPictures(options.watch, clock)
+        pictures = NewPictures(options.watch, clock, options.every)
         family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
         with socket.socket(family, socket.SOCK_DGRAM) as link:
             link.bind(options.listen)

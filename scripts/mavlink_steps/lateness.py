@@ -1,29 +1,33 @@
 """Whether pictures come later and later after they were taken, as where their link brings fewer than are taken. A track
 cannot tell that from a vehicle that flies slower than its odometry says."""
 import math
+import re
 import sys
 
 import exif
 
 LATE_S = 0.3            # later than the promptest: the vehicle was elsewhere
 FORGOTTEN_SHARE = 1e-4  # of the time that passes: clocks drift
+NUMBERED = re.compile("(.*?)([0-9]+)")
 
 
 class Lateness:
     """Compares the times that the files tell with the pictures' own: what a camera writes of its clock is enough, in
-    whatever zone and however wrong."""
+    whatever zone and however wrong. `every_s`: instead, of pictures that are numbered by the time between them."""
 
-    def __init__(self):
+    def __init__(self, every_s=None):
+        self._every_s = every_s
+        self._row, self._number = None, -1  # name before the number, and the number
+        self._begin()
+
+    def _begin(self):
         self._least_s = math.inf  # from the time that a picture tells to its file; holds a difference of the clocks
         self._last = None
 
     def of(self, path, written):
         """Seconds by which it surely came later than the promptest one; below 0 is not surely later, and 0 where it
         does not say when it was taken. `written`: by time.monotonic()."""
-        try:
-            taken = exif.taken(path)
-        except OSError:  # removed meanwhile
-            taken = None
+        taken = self._taken(path)
         if taken is None:
             return 0.0
         came_s = written - taken.date_s
@@ -32,10 +36,29 @@ class Lateness:
         self._least_s = min(came_s, self._least_s + FORGOTTEN_SHARE * passed_s)
         return came_s - taken.unit_s - self._least_s
 
+    def _taken(self, path):
+        if self._every_s is not None:
+            return self._by_number(path)
+        try:
+            return exif.taken(path)
+        except OSError:  # removed meanwhile
+            return None
+
+    def _by_number(self, path):
+        found = NUMBERED.fullmatch(path.stem)
+        if not found:
+            return None
+        row, number = found[1], int(found[2])
+        if row != self._row or number <= self._number:  # the camera or its link began anew
+            self._begin()
+        self._row, self._number = row, number
+        return exif.Taken(number * self._every_s, 0.0)
+
     def is_late(self, path, written):
         """Says so."""
         late_s = self.of(path, written)
         if late_s > LATE_S:
             print(f"{path} is left out: it came {late_s:.1f} s later after it was taken than others: the link is too "
-                  "slow, or the camera's clock was set (then start again)", file=sys.stderr)
+                  f"slow, or {'--every is wrong' if self._every_s else 'the camera was given another time'} (then "
+                  "start again)", file=sys.stderr)
         return late_s > LATE_S

@@ -33,9 +33,9 @@ class Version(NamedTuple):
 
 class NewPictures:
     """Those that are written after this was made, anew or under new names. `clock`: a WallClock, by which files have
-    their dates."""
+    their dates. `every_s`: as Lateness has it. `have_come`: whether any had at the last call, be they left out."""
 
-    def __init__(self, folder, clock):
+    def __init__(self, folder, clock, every_s=None):
         self._folder = pathlib.Path(folder)
         self._clock = clock
         self._others = set()   # names of what is no picture
@@ -43,7 +43,8 @@ class NewPictures:
         self._finished = {}    # versions that were taken
         self._empty = set()    # names that were told of
         self._to_look_at = []  # of their names, the next one last
-        self._lateness = Lateness()
+        self._lateness = Lateness(every_s)
+        self.have_come = False
         self._fails = False
         for name in self._pictures(os.listdir(folder)):
             try:
@@ -53,6 +54,7 @@ class NewPictures:
 
     def __call__(self):
         """Path and time.monotonic() of each that is complete since the last call, the oldest first."""
+        self.have_come = False
         try:
             names = self._pictures(os.listdir(self._folder))
         except OSError as error:
@@ -69,6 +71,7 @@ class NewPictures:
                 complete.append((version.written, self._folder / name, version))
             elif version.size == 0:
                 self._say_that_it_stays_empty(name, version)
+        self.have_come = bool(complete)
         return [(path, written) for written, path, version in sorted(complete) if self._take(path, version)]
 
     def _pictures(self, names):

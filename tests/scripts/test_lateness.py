@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures that come later and later, told by what their EXIF says."""
+"""Pictures that come later and later, told by their EXIF or by their numbers."""
 import datetime
 import os
 import random
@@ -122,6 +122,21 @@ class Latenesses(Folder):
             for minute in range(300):
                 self.assertFalse(self.late(lateness, 60.0 * minute * pace, 5000.0 + 60.0 * minute)[0], (pace, minute))
 
+    def late_number(self, lateness, name, written):
+        with said():
+            return lateness.is_late(self.path.with_name(name), written)
+
+    def test_of_a_stream_are_told_by_the_numbers_of_its_frames(self):
+        lateness = Lateness(2.0)
+        for number, late_s, is_late in ((1, 0.5, False), (2, 0.7, False), (3, 0.9, True), (5, 0.6, False),
+                                        (6, 0.1, False), (7, 0.5, True)):
+            written = 100.0 + 2.0 * number + late_s
+            self.assertEqual(self.late_number(lateness, f"17-{number:06}.jpg", written), is_late, number)
+        for name, written, is_late in (("18-000001.jpg", 200.0, False), ("18-000002.jpg", 202.4, True),
+                                       ("18-000001.jpg", 210.0, False), ("18-000002.jpg", 212.4, True),
+                                       ("photo.jpg", 300.0, False)):
+            self.assertEqual(self.late_number(lateness, name, written), is_late, name)
+
     def test_keep_pictures_of_a_folder_back(self):
         clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - NOON_S, was_set=False)
         pictures = NewPictures(self.path.parent, clock)
@@ -132,6 +147,20 @@ class Latenesses(Folder):
             with said() as words:
                 self.assertEqual([path.name for path, _ in pictures()], [] if number == 2 else [f"{number}.jpg"])
             self.assertEqual("2.jpg is left out: it came 0.9 s later" in words.getvalue(), number == 2)
+
+    def test_keep_frames_of_a_stream_back(self):
+        clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - NOON_S, was_set=False)
+        pictures = NewPictures(self.path.parent, clock, 1.0)
+        for number in range(8):
+            self.path = self.path.with_name(f"17-{number:06}.jpg")
+            self.path.write_bytes(b"\xff\xd8\xff\xd9")
+            os.utime(self.path, (NOON_S + 1.1 * number + 0.25,) * 2)
+            with said() as words:
+                self.assertEqual(len(pictures()), 1 if number < 4 else 0, number)
+            self.assertEqual("or --every is wrong" in words.getvalue(), number >= 4)
+            self.assertTrue(pictures.have_come)
+        self.assertEqual(pictures(), [])
+        self.assertFalse(pictures.have_come)
 
     def test_are_none_where_the_picture_does_not_say_when_it_was_taken(self):
         lateness = Lateness()

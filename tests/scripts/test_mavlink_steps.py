@@ -181,6 +181,8 @@ class Listening(unittest.TestCase):
             calls.append("pictures")
             return []
 
+        pictures.have_come = False
+
         options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, camera="body",
                                         delay=0.0, watch="frames")
         self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
@@ -271,7 +273,8 @@ class Program(unittest.TestCase):
 
     def test_refuses_what_is_no_number_delay_or_system(self):
         for option, value in (("--agl", "nan"), ("--takeoff-agl", "inf"), ("--camera-yaw", "x"), ("--delay", "-0.1"),
-                              ("--delay", "nan"), ("--system", "0"), ("--system", "256")):
+                              ("--delay", "nan"), ("--system", "0"), ("--system", "256"),
+                              ("--every", "0"), ("--every", "nan")):
             ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera", "body",
                                     option, value], stderr=subprocess.PIPE, text=True, timeout=60)
             self.assertEqual(ended.returncode, 2)

@@ -1,8 +1,9 @@
-"""What a program tells on standard error. scripts/ground_station and scripts/mavlink_steps each have a copy of this file,
-since their folders are used apart."""
+"""What a program tells on standard error. scripts/ground_station and scripts/mavlink_steps each have a copy of this
+file, since their folders are used apart."""
 import contextlib
 import datetime
 import io
+import os
 
 
 def _now():
@@ -15,7 +16,7 @@ class Log(io.TextIOBase):
     disk."""
 
     def __init__(self, stream):
-        self._stream = stream
+        self._stream = stream or open(os.devnull, "w", encoding="utf-8")  # None where it was closed from the start
         self._begins_line = True
 
     def write(self, text):

@@ -281,6 +281,15 @@ class Positions(unittest.TestCase):
                 self.assertEqual((program.returncode, self.positions()), (0, 3))
                 self.assertEqual(program.stdout.count("\n"), 3)
 
+    def test_come_where_there_is_no_standard_error(self):
+        with FakeService() as fake:
+            place = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}'
+            command = [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", "nmea", "--send",
+                       "127.0.0.1:%d" % self.autopilot.getsockname()[1], *self.PATIENT]
+            program = subprocess.run(["sh", "-c", '"$@" 2>&-', "sh", *command], input=place + "\n", text=True,
+                                     stdout=subprocess.PIPE, timeout=60)
+        self.assertEqual((program.returncode, self.positions(), program.stdout.count("\n")), (0, 1, 1))
+
     def test_is_fresh(self):
         for packet_format in ("gps_input", "global_position_sensor"):
             self.assertTrue(self.sent(packet_format, options=self.PATIENT))

@@ -5,7 +5,6 @@
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
-#include "core/units/error.hpp"
 #include "tiles/pipeline/source_shift.hpp"
 #include "tiles/store/map_writer.hpp"
 
@@ -19,9 +18,7 @@ struct RemoveArguments {
 
 void remove_source(const RemoveArguments& options) {
   const std::stop_token stop = stop_on_signals();
-  const auto settings = MapWriter::settings_of(options.map);
-  if (!settings) throw NotFound("map-not-found", fmt::format("{}: no such file", options.map));
-  MapWriter writer(options.map, *settings);
+  MapWriter writer = MapWriter::existing(options.map);
   bool was_there = false;
   {
     Progress progress("fusing", "tiles");

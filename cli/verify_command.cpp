@@ -57,9 +57,7 @@ void print_text(const std::string& path, const MapVerdict& verdict) {
 }
 
 void repair(const std::string& path, const std::stop_token& stop) {
-  const auto settings = MapWriter::settings_of(path);
-  if (!settings) throw NotFound("map-not-found", fmt::format("{}: there is no such map", path));
-  MapWriter writer(path, *settings);
+  MapWriter writer = MapWriter::existing(path);
   std::vector<std::string> lost;
   {
     Progress progress("repair", "tiles");

@@ -11,6 +11,7 @@
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/tracks/track_times.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -23,9 +24,7 @@ std::vector<std::string> fix_fields() {
 /// The frame was captured at time_us, or when the request came.
 api::PositionTime time_of(const http::Request& request, std::optional<std::int64_t> time_us) {
   const auto spent = time_spent(request);
-  if (time_us) return {*time_us, spent};
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return {std::chrono::duration_cast<std::chrono::microseconds>(now - spent).count(), spent};
+  return {time_us.value_or(now_us() - spent.count()), spent};
 }
 
 api::Features features_of(const Service& service, const http::Request& request, const api::Content& content,

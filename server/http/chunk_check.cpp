@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/http/url.hpp"
+
 namespace roadfix::http {
 namespace {
 
 constexpr int kMostDigits = 15;
-
-int hex_value(char byte) {
-  if (byte >= '0' && byte <= '9') return byte - '0';
-  if (byte >= 'a' && byte <= 'f') return byte - 'a' + 10;
-  if (byte >= 'A' && byte <= 'F') return byte - 'A' + 10;
-  return -1;
-}
 
 }  // namespace
 
@@ -72,7 +67,7 @@ bool ChunkCheck::is_trailer(char next) const {
 }
 
 bool ChunkCheck::in_size(char byte) {
-  if (const int value = hex_value(byte); value >= 0) {
+  if (const int value = hex_digit(byte); value >= 0) {
     left_ = left_ << 4U | static_cast<std::size_t>(value);
     return ++digits_ <= kMostDigits;
   }

@@ -10,13 +10,6 @@
 namespace roadfix::http {
 namespace {
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 [[noreturn]] void refuse(std::size_t byte, std::string_view what) {
   throw InvalidInput("bad-url", fmt::format("byte {} of the request target: {}", byte, what));
 }
@@ -60,6 +53,13 @@ std::size_t end_of_authority(std::string_view target) {
 }
 
 }  // namespace
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
 
 std::string percent_decoded(std::string_view text, bool form, std::size_t offset) {
   std::string decoded;

@@ -22,6 +22,9 @@ Target parse_target(std::string_view target);
 /// The host of "192.0.2.1:4711", "[2001:db8::1]:4711" or "maps.example.org:8080", or of one without a port.
 std::string_view without_port(std::string_view host);
 
+/// What a hexadecimal digit stands for; -1 for any other byte.
+int hex_digit(char c);
+
 /// "+" is a space where `form` is set. Throws like parse_target; `offset` is added to the byte position.
 std::string percent_decoded(std::string_view text, bool form, std::size_t offset = 0);
 

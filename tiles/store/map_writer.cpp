@@ -118,6 +118,11 @@ std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& p
   return read_settings(map);
 }
 
+MapWriter MapWriter::existing(const std::filesystem::path& path) {
+  Connection map = open_map(path, Access::kRead);
+  return {path, read_settings(map)};
+}
+
 std::vector<SourceRecord> MapWriter::records_of(const std::filesystem::path& path, const std::string& source) {
   std::vector<SourceRecord> records;
   if (!is_there(path)) return records;

@@ -36,6 +36,9 @@ class MapWriter {
   /// Settings of an existing map; nullopt where no file is.
   static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
 
+  /// The map as it is. Throws NotFound ("map-not-found") where no file is, and what the constructor does.
+  static MapWriter existing(const std::filesystem::path& path);
+
   /// What the map tells of the sources of this name, complete or not, the one in force first; nothing where no file is.
   static std::vector<SourceRecord> records_of(const std::filesystem::path& path, const std::string& source);
 

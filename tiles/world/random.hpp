@@ -18,15 +18,12 @@ class Random {
 
   /// In [0, 1).
   double unit() { return unit_interval(engine_()); }
-  double uniform(double low, double high) { return low + (high - low) * unit(); }
+  double uniform(double low, double high) { return roadfix::uniform(engine_, low, high); }
   bool chance(double probability) { return unit() < probability; }
   /// In [0, count); count > 0.
   std::size_t index(std::size_t count) { return static_cast<std::size_t>(unit() * static_cast<double>(count)); }
   int integer(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
-  double normal() {
-    const double u = unit();
-    return normal_pair(u, unit()).first;
-  }
+  double normal() { return roadfix::normal(engine_); }
   std::uint64_t bits() { return engine_(); }
 
  private:

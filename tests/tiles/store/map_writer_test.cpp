@@ -270,6 +270,7 @@ TEST(MapWriter, RefusesWhatDoesNotFit) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";
   EXPECT_EQ(MapWriter::settings_of(path), std::nullopt);
+  EXPECT_EQ(code_of([&] { MapWriter::existing(path); }), "map-not-found");
   EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(3.0)); }), "cell-size-not-supported");
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(code_of([&] { MapWriter(folder / "no/such/folder/m.gpkg", settings_37n()); }), "map-not-writable");

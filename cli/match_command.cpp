@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -37,21 +35,13 @@ struct MatchArguments {
 
 /// "LAT,LON,HEADING"; `where` names the text in the message.
 GeoPose parse_pose(std::string_view text, const std::string& where) {
-  std::array<double, 3> values{};
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    while (at != end && *at == ' ') ++at;
-    const auto [stop, error] = std::from_chars(at, end, values[i]);
-    const bool last = i + 1 == values.size();
-    if (error != std::errc() || (last ? stop != end : (stop == end || *stop != ','))) {
-      throw InvalidInput(
-          "pose-unreadable",
-          fmt::format("{}: \"{}\" is not a pose: write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
-    }
-    at = last ? stop : stop + 1;
+  const std::vector<double> values = numbers_in(text, ',').value_or(std::vector<double>());
+  if (values.size() != 3) {
+    throw InvalidInput(
+        "pose-unreadable",
+        fmt::format("{}: \"{}\" is not a pose: write LATITUDE,LONGITUDE,HEADING in degrees", where, text));
   }
-  if (!(std::abs(values[2]) <= 360.0)) {
+  if (std::abs(values[2]) > 360.0) {
     throw InvalidInput("pose-unreadable",
                        fmt::format("{}: the heading of \"{}\" is not within -360 to 360 degrees", where, text));
   }

@@ -17,16 +17,6 @@ constexpr double kAnyNumber = 1e10;  // Unix times too
   throw InvalidInput("frames-csv", fmt::format("frames CSV, line {}: {}", line, what));
 }
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const auto end = text.find(separator);
-    parts.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
 /// As spreadsheets write a field that holds a comma.
 void refuse_quotes(std::string_view text, int line) {
   if (text.find('"') == std::string_view::npos) return;

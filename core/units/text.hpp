@@ -2,9 +2,11 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace roadfix {
 
@@ -24,6 +26,21 @@ std::optional<Number> as_number(std::string_view text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// The trimmed parts between separators, one more than there are of them.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// These parts as numbers; nullopt where one is not finite or no number.
+template <typename Number = double>
+std::optional<std::vector<Number>> numbers_in(std::string_view text, char separator) {
+  std::vector<Number> numbers;
+  for (const std::string_view part : split(text, separator)) {
+    const auto number = as_number<Number>(part);
+    if (!number || !std::isfinite(static_cast<double>(*number))) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
 }
 
 }  // namespace roadfix

@@ -187,18 +187,9 @@ std::optional<std::vector<double>> Fields::optional_numbers(const std::string& n
   if (value == nullptr) return std::nullopt;
   std::vector<double> numbers;
   if (value->from_text) {
-    std::string_view rest = value->json.get_ref<const std::string&>();
-    for (bool more = true; more && numbers.size() <= max;) {
-      const std::size_t comma = rest.find(',');
-      const auto number = parse_number(rest.substr(0, comma));
-      if (!number) {
-        numbers.clear();
-        break;
-      }
-      numbers.push_back(*number);
-      more = comma != std::string_view::npos;
-      if (more) rest.remove_prefix(comma + 1);
-    }
+    const auto& text = value->json.get_ref<const std::string&>();
+    const auto commas = static_cast<std::size_t>(std::ranges::count(text, ','));
+    if (commas < max) numbers = numbers_in(text, ',').value_or(std::vector<double>());
   } else if (value->json.is_array() && value->json.size() <= max) {
     for (const json& element : value->json) numbers.push_back(to_number(name, element));
   }

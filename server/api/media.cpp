@@ -58,13 +58,9 @@ double quality(std::span<const Preference> preferences, std::string_view type) {
 }  // namespace
 
 const Media& negotiated(std::string_view accept, std::span<const Media> offered) {
+  if (accept.empty()) return offered.front();
   std::vector<Preference> preferences;
-  for (std::size_t begin = 0; begin < accept.size();) {
-    const std::size_t end = std::min(accept.find(',', begin), accept.size());
-    preferences.push_back(preference(accept.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  if (preferences.empty()) return offered.front();
+  for (const std::string_view element : split(accept, ',')) preferences.push_back(preference(element));
   const auto best = std::ranges::max_element(offered, {}, [&](const Media& m) { return quality(preferences, m.type); });
   if (quality(preferences, best->type) > 0.0) return *best;
   std::string types;

@@ -28,21 +28,15 @@ bool is_usable_id(const std::string& id) {
   return !id.empty() && id.size() <= kMaxIdLength && std::ranges::all_of(id, [](char c) { return c > ' ' && c < 127; });
 }
 
-/// The parts between the commas of a header, without blanks and in small letters.
-std::vector<std::string> list_of(const std::string& header) {
+/// In small letters.
+std::string without_blanks(const std::string& header) {
   std::string text = lower_case(header);
   std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
+  return text;
 }
 
 /// RFC 9110 8.4.1: in any case, and under its old name.
-bool is_gzip(const std::string& coding) {
+bool is_gzip(std::string_view coding) {
   const std::string name = lower_case(coding);
   return name == "gzip" || name == "x-gzip";
 }
@@ -51,10 +45,12 @@ bool is_gzip(const std::string& coding) {
 bool accepts_gzip(const std::string& accept_encoding) {
   std::optional<bool> named;
   bool any = false;
-  for (const std::string& coding : list_of(accept_encoding)) {
+  const std::string codings = without_blanks(accept_encoding);
+  for (const std::string_view coding : split(codings, ',')) {
     const std::size_t weight = coding.find(";q=");
-    const bool wanted = weight == std::string::npos || coding.find_first_of("123456789", weight) != std::string::npos;
-    const std::string name = coding.substr(0, coding.find(';'));
+    const bool wanted =
+        weight == std::string_view::npos || coding.find_first_of("123456789", weight) != std::string_view::npos;
+    const std::string_view name = coding.substr(0, coding.find(';'));
     if (is_gzip(name)) named = wanted;
     if (name == "*") any = wanted;
   }
@@ -64,8 +60,9 @@ bool accepts_gzip(const std::string& accept_encoding) {
 /// RFC 9112 9.6: one of a list, in any case.
 bool asks_to_close(const httplib::Request& head) {
   const auto [first, last] = head.headers.equal_range("Connection");
-  return std::any_of(first, last,
-                     [](const auto& header) { return std::ranges::count(list_of(header.second), "close") > 0; });
+  return std::any_of(first, last, [](const auto& header) {
+    return std::ranges::count(split(without_blanks(header.second), ','), "close") > 0;
+  });
 }
 
 bool is_token(const std::string& name) {

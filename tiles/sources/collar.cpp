@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "core/detect/painted_border.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 
 namespace roadfix {
 namespace {
@@ -69,17 +69,8 @@ std::optional<Rgb> find_collar(RasterFile& file, const ValueRange& range) {
 Rgb parse_colour(const std::string& text) {
   if (text == "white") return {255, 255, 255};
   if (text == "black") return {0, 0, 0};
-  std::array<std::uint8_t, 3> parts{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool good = true;
-  for (std::size_t i = 0; good && i < parts.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, parts[i]);
-    const bool last = i + 1 == parts.size();
-    good = error == std::errc{} && (last ? next == end : next != end && *next == ',');
-    at = next + (good && !last ? 1 : 0);
-  }
-  if (!good) {
+  const auto parts = numbers_in<std::uint8_t>(text, ',').value_or(std::vector<std::uint8_t>());
+  if (parts.size() != 3) {
     throw InvalidInput(
         "colour-unknown",
         fmt::format("'{}' is not a colour: write white, black or red,green,blue with 0 to 255 each", text));

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
-#include <cstdio>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <span>
 #include <system_error>
 
-#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/sources/line_on_plane.hpp"
 #include "tiles/sources/poly_file.hpp"
 #include "tiles/sources/vector_file.hpp"
@@ -58,23 +60,26 @@ OGRSpatialReference crs_of_extent(const VectorFile& file, OGRLayer& layer) {
                                  file.path(), layer.GetName()));
 }
 
-/// Of digits and what separates them, and no file.
+/// Of four parts, or of nothing but digits and what separates them; and no file.
 bool looks_like_numbers(const std::string& extent) {
   std::error_code none;
-  return extent.find_first_not_of("0123456789.,;+- ") == std::string::npos && !std::filesystem::exists(extent, none);
+  return (split(extent, ',').size() == 4 || extent.find_first_not_of("0123456789.,;+- ") == std::string::npos) &&
+         !std::filesystem::exists(extent, none);
+}
+
+bool lies_on_earth(const GeoBox& box) {
+  const auto on_earth = [](LatLon at) { return std::abs(at.lat_deg) <= 90.0 && std::abs(at.lon_deg) <= 360.0; };
+  return on_earth(box.south_west) && on_earth(box.north_east);
 }
 
 }  // namespace
 
-std::optional<OGREnvelope> box_in_degrees(const std::string& extent) {
-  OGREnvelope box;
-  int used = 0;
-  const bool four =
-      std::sscanf(extent.c_str(), "%lf,%lf,%lf,%lf%n", &box.MinX, &box.MinY, &box.MaxX, &box.MaxY, &used) == 4 &&
-      static_cast<std::size_t>(used) == extent.size();
+std::optional<GeoBox> box_in_degrees(const std::string& extent) {
+  const std::optional<std::vector<double>> sides = numbers_in(extent, ',');
+  const bool four = sides && sides->size() == 4;
   if (!four && !looks_like_numbers(extent)) return std::nullopt;
-  box.MaxX = eastern_side_deg(box.MinX, box.MaxX);
-  if (!four || !(box.MinX < box.MaxX && box.MinY < box.MaxY && box.MinY >= -90.0 && box.MaxY <= 90.0)) {
+  const GeoBox box = four ? geo_box_of(std::span<const double, 4>(*sides)) : GeoBox{};
+  if (box.empty() || !lies_on_earth(box)) {
     throw InvalidInput(
         "extent-unreadable",
         fmt::format("--extent {}: write west,south,east,north in degrees, west and south first", extent));
@@ -84,9 +89,12 @@ std::optional<OGREnvelope> box_in_degrees(const std::string& extent) {
 
 std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
   const OGRSpatialReference plane = utm_reference(zone);
-  if (const std::optional<OGREnvelope> box = box_in_degrees(extent)) {
+  if (const std::optional<GeoBox> box = box_in_degrees(extent)) {
+    OGREnvelope degrees;
+    degrees.Merge(box->south_west.lon_deg, box->south_west.lat_deg);
+    degrees.Merge(box->north_east.lon_deg, box->north_east.lat_deg);
     const TransformationPtr to_plane = transformation(wgs84_reference(), plane, "--extent");
-    return {box_on_plane(*box, *to_plane, "--extent")};
+    return {box_on_plane(degrees, *to_plane, "--extent")};
   }
   std::vector<PlanePolygon> polygons;
   if (is_poly_file(extent)) {
@@ -105,9 +113,15 @@ std::vector<PlanePolygon> read_extent(const std::string& extent, UtmZone zone) {
 }
 
 LatLon centre_of_extent(const std::string& extent) {
-  std::optional<OGREnvelope> box = box_in_degrees(extent);
-  if (is_poly_file(extent)) read_poly_file(extent)->getEnvelope(&box.emplace());
-  if (box) return {(box->MinY + box->MaxY) / 2.0, (box->MinX + box->MaxX) / 2.0};
+  if (const std::optional<GeoBox> box = box_in_degrees(extent)) {
+    return {std::midpoint(box->south_west.lat_deg, box->north_east.lat_deg),
+            std::midpoint(box->south_west.lon_deg, box->north_east.lon_deg)};
+  }
+  if (is_poly_file(extent)) {
+    OGREnvelope box;
+    read_poly_file(extent)->getEnvelope(&box);
+    return {(box.MinY + box.MaxY) / 2.0, (box.MinX + box.MaxX) / 2.0};
+  }
   VectorFile file(extent, {});
   for (OGRLayer* layer : file.layers()) {
     const std::optional<OGREnvelope> own = file.extent_of(*layer);

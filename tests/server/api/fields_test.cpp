@@ -114,9 +114,10 @@ TEST(Fields, ReadTrueAndFalse) {
 }
 
 TEST(Fields, ReadListsOfNumbers) {
-  const Fields text(
-      http::Parameters{{"bbox", "1,2.5,-3,4"}, {"short", "1,2"}, {"long", "1,2,3,4,5"}, {"odd", "1,,3,4"}});
+  const Fields text(http::Parameters{
+      {"bbox", "1,2.5,-3,4"}, {"short", "1,2"}, {"long", "1,2,3,4,5"}, {"odd", "1,,3,4"}, {"blanks", "1, 2,3 ,4"}});
   EXPECT_THAT(*text.optional_numbers("bbox", 4), ::testing::ElementsAre(1, 2.5, -3, 4));
+  EXPECT_THAT(*text.optional_numbers("blanks", 4), ::testing::ElementsAre(1, 2, 3, 4));
   for (const char* name : {"short", "long", "odd"}) {
     EXPECT_EQ(code_of([&] { text.optional_numbers(name, 4); }), std::string("bad-parameter ") + name);
   }

@@ -120,6 +120,14 @@ TEST_F(StatedExtent, OfTooFewNumbersIsNoFileThatIsMissing) {
   }
 }
 
+TEST_F(StatedExtent, OfNumbersThatAreNoPlacesOnEarthIsRefusedAsSuch) {
+  for (const char* extent : {"0x26,37,39,38", "-inf,0,inf,1", "nan,0,1,1", "-1e9,0,1e9,1", "0,-91,1,0", "1,0,1,1"}) {
+    EXPECT_THAT(message_of([&] { centre_of_roads({"roads.gpkg"}, {.crs = "", .layer = "", .extent = extent}); }),
+                HasSubstr("write west,south,east,north"))
+        << extent;
+  }
+}
+
 TEST_F(StatedExtent, MayCoverThePolygonsOfAnOsmosisFilter) {
   const std::string path = geojson({feature(R"("highway":"primary")", at(-150, 0), at(150, 0))});
   VectorOptions options;

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace roadfix {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr GridBox kNowhere{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
 
 double central_meridian_deg(const UtmZone& zone) { return 6.0 * zone.number() - 183.0; }
 
@@ -35,7 +31,7 @@ NearBox near_place(const UtmZone& zone, const GeoBox& box, const GridBox& place,
 }
 
 GridBox on_plane(const UtmZone& zone, const NearBox& part) {
-  GridBox result = kNowhere;
+  GridBox result = kEmptyBox;
   if (part.empty()) return result;
   // A parallel turns at the central meridian, a meridian at the equator.
   for (const double lat : {part.south, std::clamp(0.0, part.south, part.north), part.north}) {
@@ -99,7 +95,7 @@ GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {
 }
 
 GridBox grid_box_around(const UtmZone& zone, const GeoBox& box, const GridBox& place) {
-  GridBox result = kNowhere;
+  GridBox result = kEmptyBox;
   if (place.empty()) return result;
   for (const double turn_deg : kTurnsDeg) {
     result = united(result, on_plane(zone, near_place(zone, box, place, turn_deg)));

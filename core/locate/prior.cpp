@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/units/error.hpp"
@@ -34,8 +33,7 @@ std::vector<GridQuad> quads_in(const MapView& map, const GeoBox& box) {
 
 /// The part of the box that one of them reaches into; empty where they do not meet.
 GridBox within(const std::vector<GridQuad>& quads, const GridBox& box) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  GridBox result{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  GridBox result = kEmptyBox;
   for (const GridQuad& quad : quads) {
     const GridBox part = quad.within(box);
     if (!part.empty()) result = united(result, part);

@@ -19,7 +19,7 @@ std::optional<Prior> prior_within(const MapView& map, const GridCircle& circle) 
 }  // namespace
 
 std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
-  GridBox box{{p.east_m[0], p.north_m[0]}, {p.east_m[0], p.north_m[0]}};
+  GridBox box = kEmptyBox;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const GridPoint at{p.east_m[i], p.north_m[i]};
     box = united(box, {at, at});

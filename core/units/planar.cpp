@@ -10,6 +10,18 @@ GridBox united(const GridBox& a, const GridBox& b) {
           {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};
 }
 
+GridBox united(std::span<const GridBox> boxes) {
+  GridBox all = kEmptyBox;
+  for (const GridBox& box : boxes) all = united(all, box);
+  return all;
+}
+
+GridBox box_around(std::span<const GridPoint> points) {
+  GridBox box = kEmptyBox;
+  for (const GridPoint point : points) box = united(box, {point, point});
+  return box;
+}
+
 GridBox intersection(const GridBox& a, const GridBox& b) {
   return {{std::max(a.min.east_m, b.min.east_m), std::max(a.min.north_m, b.min.north_m)},
           {std::min(a.max.east_m, b.max.east_m), std::min(a.max.north_m, b.max.north_m)}};

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <span>
 
 #include "core/units/angle.hpp"
 
@@ -54,8 +56,18 @@ struct GridBox {
   }
 };
 
-/// The smallest box that holds both; neither is empty.
+/// The empty box that united() leaves out.
+inline constexpr GridBox kEmptyBox{
+    {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()},
+    {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}};
+
+/// The smallest box that holds both; neither is empty, other than kEmptyBox.
 GridBox united(const GridBox& a, const GridBox& b);
+/// The same of all of them; kEmptyBox of none.
+GridBox united(std::span<const GridBox> boxes);
+
+/// The smallest box that holds them; kEmptyBox of none.
+GridBox box_around(std::span<const GridPoint> points);
 
 /// What both hold; empty where they do not meet.
 GridBox intersection(const GridBox& a, const GridBox& b);

@@ -60,10 +60,6 @@ GridPoint PixelToGrid::at(int x, int y) const {
   return {blend(&GridPoint::east_m), blend(&GridPoint::north_m)};
 }
 
-GridBox PixelToGrid::box() const {
-  GridBox box{points_.front(), points_.front()};
-  for (const GridPoint p : points_) box = united(box, {p, p});
-  return box;
-}
+GridBox PixelToGrid::box() const { return box_around(points_); }
 
 }  // namespace roadfix::api

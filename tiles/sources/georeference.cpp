@@ -125,12 +125,10 @@ GridBox Georeference::footprint() const {
   std::vector<cv::Point2d> back = points;
   to_pixels(back);
   require_way_back(*file_, pixels, back);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  GridBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  GridBox box = kEmptyBox;
   for (const cv::Point2d& p : points) {
-    if (std::isnan(p.x)) continue;
-    box.min = {std::min(box.min.east_m, p.x), std::min(box.min.north_m, p.y)};
-    box.max = {std::max(box.max.east_m, p.x), std::max(box.max.north_m, p.y)};
+    const GridPoint at{p.x, p.y};
+    if (!std::isnan(p.x)) box = united(box, {at, at});
   }
   if (box.empty() || !box.overlaps(kLattice)) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
   return box;

@@ -10,10 +10,7 @@
 namespace roadfix {
 
 GridBox box_of(const RoadNetwork& network, const RoadLine& line) {
-  const auto points = std::span(network.points).subspan(line.first_point, line.points);
-  GridBox box{points.front(), points.front()};
-  for (const GridPoint point : points) box = united(box, {point, point});
-  return box;
+  return box_around(std::span(network.points).subspan(line.first_point, line.points));
 }
 
 std::vector<GridBox> boxes_of(const RoadNetwork& network, std::span<const RoadLine> lines) {

@@ -153,7 +153,7 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
   const Georeference georeference(file, zone_);
   Image image{std::move(content), georeference.footprint(), georeference.gsd_m(),
               rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt, file.full_opacity()};
-  extent_ = images_.empty() ? image.footprint : united(extent_, image.footprint);
+  extent_ = united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
   channels_ = std::max(channels_, image.content.channels);
   integers_ = integers_ || image.content.integers;

@@ -78,7 +78,7 @@ class Mosaic {
   ValueRule rule_;
   UtmZone zone_;
   std::vector<Image> images_;
-  GridBox extent_;
+  GridBox extent_ = kEmptyBox;
   double gsd_m_ = 0.0;
   int channels_ = 1;
   bool integers_ = false;

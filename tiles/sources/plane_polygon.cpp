@@ -6,21 +6,9 @@
 #include <tuple>
 
 namespace roadfix {
-namespace {
-
-GridBox box_of(const std::vector<GridPoint>& ring) {
-  GridBox box{ring.front(), ring.front()};
-  for (const GridPoint& p : ring) {
-    box.min = {std::min(box.min.east_m, p.east_m), std::min(box.min.north_m, p.north_m)};
-    box.max = {std::max(box.max.east_m, p.east_m), std::max(box.max.north_m, p.north_m)};
-  }
-  return box;
-}
-
-}  // namespace
 
 PlanePolygon::PlanePolygon(const std::vector<GridPoint>& outer, const std::vector<std::vector<GridPoint>>& holes)
-    : box_(box_of(outer)) {
+    : box_(box_around(outer)) {
   add_ring(outer);
   for (const std::vector<GridPoint>& hole : holes) add_ring(hole);
   sort_into_strips();

@@ -22,12 +22,6 @@ bool meet_swapped(const OGREnvelope& roads, const OGREnvelope& ground) {
   return roads.Intersects(swapped) != FALSE;
 }
 
-GridBox united_of(const std::vector<GridBox>& boxes) {
-  GridBox all = boxes.front();
-  for (const GridBox& box : boxes) all = united(all, box);
-  return all;
-}
-
 }  // namespace
 
 void require_roads_on_ground(const RoadNetwork& network, const std::string& path, const std::string& extent,
@@ -39,8 +33,8 @@ void require_roads_on_ground(const RoadNetwork& network, const std::string& path
     return std::ranges::any_of(ground, [&](const GridBox& part) { return !intersection(part, box).empty(); });
   };
   if (std::ranges::any_of(network.lines, on_ground)) return;
-  const std::optional<OGREnvelope> of_roads = box_on_earth(united_of(boxes_of(network, network.lines)), zone);
-  const std::optional<OGREnvelope> of_ground = box_on_earth(united_of(ground), zone);
+  const std::optional<OGREnvelope> of_roads = box_on_earth(united(boxes_of(network, network.lines)), zone);
+  const std::optional<OGREnvelope> of_ground = box_on_earth(united(ground), zone);
   std::string remedy = "Name ground that holds them";
   if (of_roads && of_ground && meet_swapped(*of_roads, *of_ground)) {
     remedy += "; latitude and longitude may be swapped in one of the two, and W,S,E,N begins with a longitude";

@@ -23,6 +23,20 @@ TEST(GridBox, UnitedHoldsBoth) {
   EXPECT_EQ(both.max, (GridPoint{30.0, 99.0}));
 }
 
+TEST(GridBox, UnitedOfManyLeavesOutTheEmptyOne) {
+  const std::array<GridBox, 3> boxes{kEmptyBox, kBox, {{0.0, 30.0}, {15.0, 99.0}}};
+  EXPECT_EQ(united(boxes).min, (GridPoint{0.0, 20.0}));
+  EXPECT_EQ(united(boxes).max, (GridPoint{30.0, 99.0}));
+  EXPECT_TRUE(united(std::span<const GridBox>()).empty());
+}
+
+TEST(GridBox, AroundPointsTouchesTheOutermost) {
+  const std::array<GridPoint, 3> points{{{1.0, 5.0}, {-2.0, 3.0}, {0.0, 4.0}}};
+  EXPECT_EQ(box_around(points).min, (GridPoint{-2.0, 3.0}));
+  EXPECT_EQ(box_around(points).max, (GridPoint{1.0, 5.0}));
+  EXPECT_TRUE(box_around({}).empty());
+}
+
 TEST(GridBox, IntersectionIsWhatBothHold) {
   const GridBox shared = intersection(kBox, {{0.0, 30.0}, {15.0, 99.0}});
   EXPECT_EQ(shared.min, (GridPoint{10.0, 30.0}));

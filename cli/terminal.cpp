@@ -96,7 +96,7 @@ void Progress::update(std::int64_t done, std::int64_t total) {
   print(done, total);
 }
 
-std::function<void(std::int64_t done, std::int64_t total)> Progress::updates() {
+OnProgress Progress::updates() {
   return [this](std::int64_t done, std::int64_t total) { update(done, total); };
 }
 

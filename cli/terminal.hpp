@@ -4,10 +4,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <string>
+
+#include "core/units/progress.hpp"
 
 namespace roadfix::cli {
 
@@ -32,7 +33,7 @@ class Progress {
   /// Safe from several threads. The rate counts only what was done since the first call (resumed work is not speed).
   void update(std::int64_t done, std::int64_t total);
   /// update() for work that reports how far it is. The progress must outlive it.
-  std::function<void(std::int64_t done, std::int64_t total)> updates();
+  OnProgress updates();
 
  private:
   void print(std::int64_t done, std::int64_t total);

@@ -19,7 +19,8 @@ class Counter {
   void step() {
     if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
     rethrow_failure();
-    campaign_.progress(++done_, total_);
+    const std::int64_t done = ++done_;
+    if (campaign_.progress) campaign_.progress(done, total_);
   }
 
   /// Of one flight: it ends the others at their next step, since their figures would not be told.
@@ -57,7 +58,7 @@ std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone) {
       const auto localizer = campaign.localizer(result.filter, seed);
       result.runs[i] = {seed, localize(flight, *localizer, zone, [&](const Record& record, const Localizer& at) {
                           counter.step();
-                          if (i == 0) campaign.watch(result.filter, record, at);
+                          if (i == 0 && campaign.watch) campaign.watch(result.filter, record, at);
                         })};
     }
   };

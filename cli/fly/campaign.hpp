@@ -10,6 +10,7 @@
 #include "cli/fly/flight.hpp"
 #include "cli/fly/localizer.hpp"
 #include "cli/fly/summary.hpp"
+#include "core/units/progress.hpp"
 
 namespace roadfix::fly {
 
@@ -37,9 +38,9 @@ struct Campaign {
   std::vector<std::string> filters{"default"};
   std::uint64_t seed = 1;  ///< of the first flight; the next ones count up
   int jobs = 1;            ///< flights at a time; results do not depend on it
-  /// Of the first flight, from one thread, filter by filter.
+  /// Of the first flight, from one thread, filter by filter; may be empty.
   std::function<void(const std::string& filter, const Record& record, const Localizer& localizer)> watch;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  OnProgress progress;  ///< in steps; from any of the threads, several at a time
   std::stop_token stop;
 };
 

@@ -72,8 +72,7 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
 }  // namespace
 
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
-                                       const RecordingOptions& options,
-                                       const std::function<void(std::int64_t, std::int64_t)>& seen) {
+                                       const RecordingOptions& options, const OnProgress& progress) {
   const std::vector<Sequence> sequences = sequences_of(evaluation::read_frames_csv(csv), options.max_frames);
   std::int64_t total = 0;
   for (const Sequence& sequence : sequences) total += std::ssize(sequence.frames);
@@ -84,7 +83,8 @@ std::vector<Recording> read_recordings(const std::filesystem::path& csv, const U
     Recording recording{sequence.name, {}};
     for (std::size_t i = 0; i < times.size(); ++i) {
       recording.frames.push_back(recorded(csv.parent_path(), sequence.frames[i], times[i], zone, options));
-      seen(++done, total);
+      ++done;
+      if (progress) progress(done, total);
     }
     recordings.push_back(std::move(recording));
   }

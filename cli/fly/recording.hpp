@@ -10,6 +10,7 @@
 #include "cli/fly/flight.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/detect/road_detector.hpp"
+#include "core/units/progress.hpp"
 
 namespace roadfix::fly {
 
@@ -35,11 +36,10 @@ struct RecordingOptions {
 };
 
 /// The flights of a CSV as evaluation::read_frames_csv reads it, one for each sequence, in its order. Each frame has
-/// its roads detected once; `seen` is called with (done, of all). Throws as evaluation::read_frames_csv and
+/// its roads detected once, of which `progress` tells. Throws as evaluation::read_frames_csv and
 /// evaluation::read_frame, and InvalidInput "recording-time" where a sequence's times run backwards.
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
-                                       const RecordingOptions& options,
-                                       const std::function<void(std::int64_t, std::int64_t)>& seen);
+                                       const RecordingOptions& options, const OnProgress& progress = {});
 
 /// Frames are lost as the plan says, and its odometry's errors are added to the true way from frame to frame. The seed
 /// draws both; `seen` is called after each step.

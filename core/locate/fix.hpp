@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -16,6 +15,7 @@
 #include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/prior.hpp"
+#include "core/units/progress.hpp"
 
 namespace roadfix {
 
@@ -36,9 +36,9 @@ struct FixOptions {
   /// out.
   std::optional<FeatureMap> own_frame{};
   int threads = 1;
-  std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< see SearchOptions
-  std::stop_token stop{};                                                 ///< Interrupted when requested
-  std::shared_ptr<const Calibration> calibration{};                       ///< nullptr = the one that is shipped
+  OnProgress progress{};                             ///< see SearchOptions
+  std::stop_token stop{};                            ///< Interrupted when requested
+  std::shared_ptr<const Calibration> calibration{};  ///< nullptr = the one that is shipped
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };

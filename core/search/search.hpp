@@ -23,6 +23,7 @@
 #include "core/grid/road_grid.hpp"
 #include "core/search/search_cache.hpp"
 #include "core/units/pose_region.hpp"
+#include "core/units/progress.hpp"
 
 namespace roadfix {
 
@@ -49,7 +50,7 @@ struct SearchOptions {
   std::optional<std::chrono::steady_clock::time_point> deadline;
   /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
   /// at a time.
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  OnProgress progress;
   /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
 };

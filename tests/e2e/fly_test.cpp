@@ -34,8 +34,6 @@ class Vehicles : public ::testing::Test {
     campaign_.filters = {"default"};
     campaign_.flights.number = kVehicles;
     campaign_.jobs = kVehicles;
-    campaign_.watch = [](const std::string&, const Record&, const Localizer&) {};
-    campaign_.progress = [](std::int64_t, std::int64_t) {};
     plan_.map = "town";
     plan_.filter.particles = 500;
     plan_.patience = 1h;

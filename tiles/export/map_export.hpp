@@ -6,8 +6,8 @@
 #include <optional>
 #include <stop_token>
 
+#include "core/units/progress.hpp"
 #include "tiles/store/map_reader.hpp"
-#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 

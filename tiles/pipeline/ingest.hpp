@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "core/units/progress.hpp"
 #include "tiles/pipeline/source_shift.hpp"
 #include "tiles/sources/cell_source.hpp"
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/map_writer.hpp"
-#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 

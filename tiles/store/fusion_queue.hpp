@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tiles/store/progress.hpp"
+#include "core/units/progress.hpp"
 #include "tiles/store/sqlite.hpp"
 #include "tiles/store/tile_table.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/units/progress.hpp"
 #include "tiles/store/map_records.hpp"
-#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 

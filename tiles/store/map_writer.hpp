@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/grid/cell_array.hpp"
+#include "core/units/progress.hpp"
 #include "tiles/store/map_records.hpp"
-#include "tiles/store/progress.hpp"
 
 namespace roadfix {
 

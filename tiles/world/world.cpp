@@ -76,7 +76,7 @@ Plans plans_of(const WorldSettings& settings, const Placement& placement) {
 
 class Photographer {
  public:
-  Photographer(const Placement& placement, std::uint64_t seed, const WorldProgress& progress, std::stop_token stop)
+  Photographer(const Placement& placement, std::uint64_t seed, const OnProgress& progress, std::stop_token stop)
       : placement_(placement), texture_(seed), progress_(progress), stop_(std::move(stop)) {}
 
   void photograph(const Plan& plan, const Conditions& conditions, const std::string& path) {
@@ -100,7 +100,7 @@ class Photographer {
 
   const Placement& placement_;
   Texture texture_;
-  const WorldProgress& progress_;
+  const OnProgress& progress_;
   std::stop_token stop_;
   std::int64_t done_ = 0;
 };
@@ -121,8 +121,8 @@ WorldReport report_of(const Plan& before, const Plan& after, const Placement& pl
 
 }  // namespace
 
-WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
-                         const WorldProgress& progress, const std::stop_token& stop) {
+WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder, const OnProgress& progress,
+                         const std::stop_token& stop) {
   check(settings);
   const Placement placement = place(settings, centre_of(settings));
   const auto [before, after] = plans_of(settings, placement);

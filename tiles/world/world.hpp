@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <stop_token>
 
 #include "core/units/planar.hpp"
+#include "core/units/progress.hpp"
 #include "tiles/world/plan.hpp"
 #include "tiles/world/settings.hpp"
 
@@ -25,16 +25,14 @@ struct WorldReport {
   int frames = 0;
 };
 
-using WorldProgress = std::function<void(std::int64_t tiles_done, std::int64_t tiles)>;
-
-/// Pixels of one step of progress.
+/// Pixels on a side of what progress counts.
 inline constexpr int kTilePx = 1024;
 
 /// Writes pre.tif, post.tif, roads.geojson, frames/, bench.json where there are frames, and at last world.json into the
 /// folder, which is made where it is missing. What an earlier world left there goes first, so that a folder without
 /// world.json holds an unfinished one and never parts of two. The same settings give the same bytes. Throws
 /// InvalidInput for settings that cannot be met, IoFailure, Interrupted.
-WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder,
-                         const WorldProgress& progress, const std::stop_token& stop);
+WorldReport render_world(const WorldSettings& settings, const std::filesystem::path& folder, const OnProgress& progress,
+                         const std::stop_token& stop);
 
 }  // namespace roadfix::world

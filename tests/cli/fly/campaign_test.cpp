@@ -32,8 +32,6 @@ class Campaigns : public ::testing::Test {
     campaign.localizer = library_localizers(map, {200}, {});
     campaign.filters = {"default", "paper"};
     campaign.flights.number = 2;
-    campaign.watch = [](const std::string&, const Record&, const Localizer&) {};
-    campaign.progress = [](std::int64_t, std::int64_t) {};
   }
 
   RoadGrid town = testing::street_map(41, {2.0, {300'100, -3'200'050}, 300, 300});

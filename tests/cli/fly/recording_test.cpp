@@ -38,7 +38,7 @@ class Recordings : public ::testing::Test {
 
   std::vector<Recording> recorded(const std::string& lines) const {
     std::ofstream(folder / "frames.csv") << "file,lat,lon,heading_deg,gsd_m,sequence,time_s\n" << lines;
-    return read_recordings(folder / "frames.csv", zone, options, [](std::int64_t, std::int64_t) {});
+    return read_recordings(folder / "frames.csv", zone, options);
   }
   Flight replayed(const Recording& recording, std::uint64_t seed = 1) const {
     return replay(recording, plan, seed, [] {});
@@ -127,9 +127,7 @@ TEST_F(Recordings, KeepTheirPicturesForADetectorElsewhere) {
 TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
   std::ofstream(folder / "camera.csv") << "file,lat,lon,heading_deg,agl_m,focal_px,roll_deg,pitch_deg\n"
                                           "10.png,57.5,21,0,100,50,0,30\n";
-  const auto read = [&] {
-    return read_recordings(folder / "camera.csv", zone, options, [](std::int64_t, std::int64_t) {}).at(0).frames.at(0);
-  };
+  const auto read = [&] { return read_recordings(folder / "camera.csv", zone, options).at(0).frames.at(0); };
   const RecordedFrame seen = read();
   EXPECT_EQ(seen.footprint.width_m, 20 * 100.0 / 50.0);
   EXPECT_EQ(seen.footprint.height_m, 30 * 100.0 / 50.0);
@@ -148,7 +146,7 @@ TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
   EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
   EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "image-unreadable");
-  EXPECT_EQ(code_of([&] { read_recordings(folder / "none.csv", zone, options, {}); }), "frames-missing");
+  EXPECT_EQ(code_of([&] { read_recordings(folder / "none.csv", zone, options); }), "frames-missing");
 }
 
 }  // namespace

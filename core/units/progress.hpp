@@ -1,4 +1,4 @@
-// How far a long work on a map has come.
+// How far a long work has come.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace roadfix {
 
-/// Called with what is done and what there is in all, in tiles or blocks unless it says otherwise; may be empty.
+/// Called with what is done and what there is in all; may be empty.
 using OnProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
 }  // namespace roadfix

@@ -11,8 +11,8 @@
 namespace roadfix::server {
 
 /// Faults of the service (500) are told each time. What stands in its way from outside (503: a disk that is full, a map
-/// that is damaged, no memory) is told at most once in 10 s for each code, since every client meets it. That more is
-/// asked than it can do is not told: the metrics count it.
+/// that is damaged, a file that another holds, no memory) is told at most once in 10 s for each code, since every
+/// client meets it. That more is asked than it can do is not told: the metrics count it.
 class FailureLog {
  public:
   using Clock = std::chrono::steady_clock;

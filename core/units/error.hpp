@@ -49,6 +49,11 @@ class Interrupted : public Error {
   using Error::Error;
 };
 
+/// Another holds what the work needs, or changed it meanwhile: it may be there for another try.
+class InUse : public Error {
+  using Error::Error;
+};
+
 /// What `work` returns; what is wrong with its input is said of `where` ("frame.png: ...").
 template <typename Work>
 auto said_of(const std::string& where, const Work& work) {

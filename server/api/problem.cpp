@@ -160,6 +160,7 @@ int status_of(const Error& error) {
   if (dynamic_cast<const NotFound*>(&error) != nullptr) return 404;
   if (dynamic_cast<const LimitExceeded*>(&error) != nullptr) return 422;
   if (dynamic_cast<const Interrupted*>(&error) != nullptr) return 503;
+  if (dynamic_cast<const InUse*>(&error) != nullptr) return 503;
   return 500;
 }
 

@@ -123,7 +123,7 @@ MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
 MapRegistry::Entry MapRegistry::seen(const Entry& known, const fs::path& path, const Stamp& stamp) const {
   try {
     return is_current(known, path, stamp) ? Entry{stamp, known.map, {}} : opened(path, stamp);
-  } catch (const Interrupted& busy) {
+  } catch (const InUse& busy) {
     if (known.map != nullptr) return known;  // and its stamp, so that the next look goes on
     return {stamp, nullptr, {path.stem(), busy.code(), busy.what()}};
   }
@@ -136,7 +136,7 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
     auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, search_cache_bytes_)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     return {stamp, std::move(map), {}};
-  } catch (const Interrupted&) {
+  } catch (const InUse&) {
     throw;
   } catch (const Error& error) {
     return {stamp, nullptr, {name, error.code(), error.what()}};
@@ -151,7 +151,7 @@ bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Sta
   if (entry.stamp.inode != stamp.inode) return false;
   try {
     return says_the_same(MapReader(path, 0, kLockPatience).info(), entry.map->reader->info());
-  } catch (const Interrupted&) {
+  } catch (const InUse&) {
     throw;
   } catch (const Error&) {
     return false;  // opened() finds the same and reports it
@@ -234,7 +234,7 @@ std::shared_ptr<const ServedMap> MapRegistry::find(const std::string& name) cons
   }
   const auto& [stamp, map, problem] = found->second;
   if (map != nullptr) return map;
-  if (problem.code == kBusy) throw Interrupted(kBusy, problem.reason);
+  if (problem.code == kBusy) throw InUse(kBusy, problem.reason);
   throw IoFailure("map-unreadable", fmt::format("the map '{}' cannot be read: {}", name, problem.reason));
 }
 

@@ -59,7 +59,7 @@ class MapRegistry {
   std::vector<std::shared_ptr<const ServedMap>> maps() const;
   std::vector<UnreadableMap> unreadable() const;
   /// The name is the file's without .gpkg. Throws NotFound ("map-not-found"), IoFailure ("map-unreadable") with the
-  /// reason, or Interrupted ("map-busy") of one that was locked at every look. What reads of a map waits a second for a
+  /// reason, or InUse ("map-busy") of one that was locked at every look. What reads of a map waits a second for a
   /// writer that has locked it, then throws that, too.
   std::shared_ptr<const ServedMap> find(const std::string& name) const;
   std::size_t cached_bytes() const;

@@ -71,7 +71,7 @@ std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failur
               "{}: the file of the tracks is damaged or no such file ({}): move it away and restart the service", file,
               detail)));
     case Failure::kBusy:
-      return make_exception_ptr(Interrupted(
+      return make_exception_ptr(InUse(
           "track-store-busy",
           fmt::format("{}: another service uses this file: stop it, or start this one with --tracks FILE", file)));
     case Failure::kNeedsRecovery:

@@ -2,7 +2,7 @@
 // when the process or the machine dies. One process at a time has it open.
 //
 // All functions may be called from several threads and throw IoFailure ("track-store-full", "track-store-read-only",
-// "track-store-unavailable"), CorruptData ("track-store-corrupt") or Interrupted ("track-store-busy").
+// "track-store-unavailable"), CorruptData ("track-store-corrupt") or InUse ("track-store-busy").
 #pragma once
 
 #include <cstddef>

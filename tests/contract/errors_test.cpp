@@ -84,6 +84,7 @@ int status_as(const std::string& type, const std::string& code) {
   if (type == "CorruptData") return api::status_of(CorruptData(code, ""));
   if (type == "IoFailure") return api::status_of(IoFailure(code, ""));
   if (type == "Interrupted") return api::status_of(Interrupted(code, ""));
+  if (type == "InUse") return api::status_of(InUse(code, ""));
   throw std::runtime_error("which status has " + type + "?");
 }
 

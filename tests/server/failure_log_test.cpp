@@ -36,6 +36,13 @@ TEST(FailureLog, TellsOfAFullDiskNowAndThen) {
   EXPECT_EQ(log.line(full, 503, "f", start + 30s), "request f failed: no space left [track-store-full]");
 }
 
+TEST(FailureLog, TellsOfAFileThatAnotherHoldsButNotOfWorkThatTookTooLong) {
+  FailureLog log;
+  EXPECT_EQ(log.line(thrown(InUse("track-store-busy", "stop it")), 503, "a"),
+            "request a failed: stop it [track-store-busy]");
+  EXPECT_EQ(log.line(thrown(Interrupted("request-deadline", "too long")), 503, "a"), std::nullopt);
+}
+
 TEST(FailureLog, TellsOfMissingMemoryNowAndThen) {
   FailureLog log;
   const FailureLog::Clock::time_point start{};

@@ -29,7 +29,7 @@ std::exception_ptr map_error(const std::filesystem::path& map, sqlite::Failure f
           CorruptData("map-corrupt", fmt::format("{}: its tables are not those of a map ({})", file, detail)));
     case Failure::kBusy:
       return make_exception_ptr(
-          Interrupted("map-busy", fmt::format("{}: another process has locked the file. Try again", file)));
+          InUse("map-busy", fmt::format("{}: another process has locked the file. Try again", file)));
     case Failure::kNotWritable:
       return make_exception_ptr(
           IoFailure("map-not-writable", fmt::format("{}: cannot be written to ({})", file, detail)));

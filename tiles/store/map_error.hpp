@@ -12,7 +12,7 @@ namespace roadfix {
 /// Code of the IoFailure for sqlite::Failure::kNeedsRecovery.
 inline constexpr const char* kMapNeedsRecovery = "map-needs-recovery";
 
-/// InvalidInput ("map-not-ours"), CorruptData ("map-corrupt"), Interrupted ("map-busy") or IoFailure
+/// InvalidInput ("map-not-ours"), CorruptData ("map-corrupt"), InUse ("map-busy") or IoFailure
 /// ("map-needs-recovery", "map-not-writable", "disk-full", "map-io").
 std::exception_ptr map_error(const std::filesystem::path& map, sqlite::Failure failure, const std::string& detail);
 

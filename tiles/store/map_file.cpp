@@ -121,7 +121,7 @@ void look_into(Connection& map, std::chrono::milliseconds patience) {
 void leave_wal_mode(Connection& map) {
   try {
     Statement(map, "PRAGMA journal_mode = DELETE").run();
-  } catch (const Interrupted&) {
+  } catch (const InUse&) {
     // Somebody has it open; it can be written to all the same, and the next writer tries again.
   }
 }

@@ -19,13 +19,13 @@ bool is_there(const std::filesystem::path& path);
 
 /// Opens what create_map made. Undoes what a killed writer left half done, even for reading where that is possible.
 /// Throws NotFound ("map-not-found"), InvalidInput ("map-not-ours", "map-from-newer-version", "map-from-older-version")
-/// or CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), and, as all that uses the connection, Interrupted
+/// or CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), and, as all that uses the connection, InUse
 /// ("map-busy") where a writer keeps the file locked for longer than `patience`.
 sqlite::Connection open_map(const std::filesystem::path& path, sqlite::Access access,
                             std::chrono::milliseconds patience = sqlite::kPatience);
 
 /// Rolls back what a killed writer left. Throws IoFailure ("map-needs-recovery") where the file cannot be written to,
-/// Interrupted ("map-busy").
+/// InUse ("map-busy").
 void recover_map(const std::filesystem::path& path, std::chrono::milliseconds patience);
 
 /// Throws CorruptData ("map-corrupt") where the tables that describe the tiles to other programs name another zone or

@@ -39,7 +39,7 @@ struct Channel {
   std::optional<std::int64_t> unchanged_at;
 };
 
-Interrupted renewed(const std::filesystem::path& map, const char* how) {
+InUse renewed(const std::filesystem::path& map, const char* how) {
   return {"map-renewed", fmt::format("{}: {} while it was read. Try again", map.string(), how)};
 }
 

@@ -18,7 +18,7 @@ class MapReader {
  public:
   /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file at the end of a
   /// transaction, and from the middle of a large one on. This and all that reads waits for it as long as `patience`,
-  /// then throws Interrupted ("map-busy").
+  /// then throws InUse ("map-busy").
   /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
   /// ("map-not-ours", "map-from-newer-version", "map-from-older-version") or IoFailure.
   explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20,
@@ -28,7 +28,7 @@ class MapReader {
   MapReader& operator=(MapReader&&) noexcept;
 
   /// As it was when the map was opened. Tiles are read when they are asked for and kept. Once a writer has changed one,
-  /// what is not kept throws Interrupted ("map-renewed"), until the map is as it was; a new reader has the map as it is
+  /// what is not kept throws InUse ("map-renewed"), until the map is as it was; a new reader has the map as it is
   /// then. Another file that takes the place of the map is never read: what needs a descriptor more than there are then
   /// throws that, too.
   const MapInfo& info() const;

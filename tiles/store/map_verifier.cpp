@@ -44,9 +44,9 @@ class Verifier {
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
     check_summary();
     if (number(map_, "PRAGMA data_version") != at_start) {
-      throw Interrupted("map-changed", fmt::format("{}: it was written to while it was being verified. Repeat when the "
-                                                   "ingest has ended",
-                                                   map_.path().string()));
+      throw InUse("map-changed", fmt::format("{}: it was written to while it was being verified. Repeat when the "
+                                             "ingest has ended",
+                                             map_.path().string()));
     }
     return std::move(verdict_);
   }

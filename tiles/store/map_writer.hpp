@@ -26,7 +26,7 @@ struct FinishedBlock {
 class MapWriter {
  public:
   /// Opens the map or creates it with the settings. Throws InvalidInput when an existing map has other settings, is not
-  /// ours or is from a newer version; Interrupted ("map-in-use") when another writer holds it.
+  /// ours or is from a newer version; InUse ("map-in-use") when another writer holds it.
   MapWriter(const std::filesystem::path& path, const MapSettings& settings);
   ~MapWriter();
   MapWriter(MapWriter&&) noexcept;

@@ -39,8 +39,8 @@ WriterLock::WriterLock(const std::filesystem::path& map) : path_(map.string() + 
                                     "that has locks",
                                     map.string(), std::strerror(reason)));
       }
-      throw Interrupted("map-in-use",
-                        fmt::format("{}: another process is writing this map. Wait until it has ended", map.string()));
+      throw InUse("map-in-use",
+                  fmt::format("{}: another process is writing this map. Wait until it has ended", map.string()));
     }
     if (still_there(descriptor_, path_)) return;
     close(descriptor_);

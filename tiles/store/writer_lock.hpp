@@ -8,7 +8,7 @@ namespace roadfix {
 
 class WriterLock {
  public:
-  /// Throws Interrupted ("map-in-use") when another writer holds the map, IoFailure where no file can be made.
+  /// Throws InUse ("map-in-use") when another writer holds the map, IoFailure where no file can be made.
   explicit WriterLock(const std::filesystem::path& map);
   ~WriterLock();
   WriterLock(const WriterLock&) = delete;

@@ -21,6 +21,7 @@ TEST(Problem, GivesEachClassOfErrorsItsStatus) {
   EXPECT_EQ(status_of(LimitExceeded("search-area-too-large", "m")), 422);
   EXPECT_EQ(status_of(LimitExceeded("body-too-large", "m")), 413);
   EXPECT_EQ(status_of(Interrupted("time-limit", "m")), 503);
+  EXPECT_EQ(status_of(InUse("map-busy", "m")), 503);
   EXPECT_EQ(status_of(CorruptData("tile-corrupt", "m")), 500);
   EXPECT_EQ(status_of(IoFailure("disk-full", "m")), 500);
   EXPECT_EQ(status_of(IoFailure("map-unreadable", "m")), 503);

@@ -155,7 +155,7 @@ TEST_F(MapReaderTest, ManyThreadsReadOneVersionWhileAWriterWritesAnother) {
         try {
           EXPECT_EQ(reader.tile(0, source.blocks[0]), random_cells(source.seed, source.blocks[0]));
           EXPECT_EQ(reader.read(coarse).cells, before.cells);
-        } catch (const Interrupted& error) {
+        } catch (const InUse& error) {
           EXPECT_EQ(error.code(), "map-renewed");
           ++refused;
         }
@@ -182,7 +182,7 @@ TEST_F(MapReaderTest, NeverReadsAnotherFileThatTookItsPlace) {
       for (int i = 0; i < 200; ++i) {
         try {
           if (reader.tile(0, source.blocks[0]) != expected) ++others;
-        } catch (const Interrupted&) {  // of those that need a descriptor of their own
+        } catch (const InUse&) {  // of those that need a descriptor of their own
         }
       }
     });

@@ -30,7 +30,7 @@ struct FlyOptions {
   std::vector<double> kidnap;            ///< step and metres; empty = none
   std::optional<double> registration_m;  ///< default: what the map says of itself
   fly::CameraErrors camera;
-  FeatureQuality quality{0.2, 0.2, 0.0, 2.0, 0.0, 0.0};
+  FeatureQuality quality{.erase = 0.2, .invent = 0.2, .shift_m = 2.0};
   DetectorChoice detector;
   fly::Campaign campaign;
   int runs = 1;

@@ -167,7 +167,7 @@ void Filter::resample() {
   auto count = static_cast<std::size_t>(options_.max_particles);
   std::vector<std::size_t> ancestors = systematic_ancestors(p.weight, count, offset);
   if (options_.adapts_count) {
-    const double wanted = kld_sample_count(occupied_bins(p, ancestors, options_.kld), options_.kld);
+    const double wanted = kld_sample_count(occupied_bins(p, ancestors));
     count = static_cast<std::size_t>(
         std::clamp(std::ceil(wanted), static_cast<double>(options_.min_particles), static_cast<double>(count)));
     if (count != ancestors.size()) ancestors = systematic_ancestors(p.weight, count, offset);

@@ -25,8 +25,7 @@ enum class Injection {
 struct FilterOptions {
   int min_particles = 1'000;
   int max_particles = 10'000;
-  bool adapts_count = true;  ///< by KLD sampling; else always max_particles
-  KldOptions kld;
+  bool adapts_count = true;      ///< by KLD sampling; else always max_particles
   double effective_share = 0.5;  ///< resample when fewer are effective; 1 = after every measurement
   Injection injection = Injection::kLikelihoodAverages;
   double injected_share = 0.15;  ///< of kFixedShare; the most of kLikelihoodAverages

@@ -9,13 +9,15 @@ namespace roadfix {
 namespace {
 
 /// Sum over the cells of log P(l | m) - log P(l | chance).
-double detection_log_ratio(const MatchSums& s, double a, double b) {
+double detection_log_ratio(const MatchSums& s) {
+  constexpr double kDetectionRate = 0.6;  // a
+  constexpr double kFalseRate = 0.1;      // b
   const auto n = static_cast<double>(s.n);
   const double average = std::clamp(s.l / n, 1e-3, 1.0 - 1e-3);
-  const double hit = std::log(a) - std::log(average);
-  const double false_alarm = std::log(b) - std::log(average);
-  const double miss = std::log1p(-a) - std::log1p(-average);
-  const double quiet = std::log1p(-b) - std::log1p(-average);
+  const double hit = std::log(kDetectionRate) - std::log(average);
+  const double false_alarm = std::log(kFalseRate) - std::log(average);
+  const double miss = std::log1p(-kDetectionRate) - std::log1p(-average);
+  const double quiet = std::log1p(-kFalseRate) - std::log1p(-average);
   return s.ml * hit + (s.l - s.ml) * false_alarm + (s.m - s.ml) * miss + (n - s.m - s.l + s.ml) * quiet;
 }
 
@@ -26,7 +28,7 @@ double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t fram
   const double samples_per_cell = std::min(1.0, cell_m * cell_m / independent_m2);
   double log_ratio = 0.0;
   if (kind == LikelihoodKind::kDetectionRates) {
-    if (sums.n > 0) log_ratio = samples_per_cell * detection_log_ratio(sums, detection_rate, false_rate);
+    if (sums.n > 0) log_ratio = samples_per_cell * detection_log_ratio(sums);
   } else {
     const double samples = samples_per_cell * static_cast<double>(std::max(frame_cells, sums.n));
     const double seen = samples_per_cell * static_cast<double>(sums.n);

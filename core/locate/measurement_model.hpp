@@ -11,9 +11,9 @@ enum class LikelihoodKind {
   /// How much likelier the correlation (Pearson's, over the means of m and l apart) is at the true pose than by chance,
   /// both taken as normal with the spread that independent samples of the ground leave.
   kCorrelation,
-  /// Each cell by its own: P(l = 1) = m a + (1 - m) b with detection rates a and b, against a
-  /// chance of l as often as it is on average. Between no road and road, log P is taken as linear in m, so that three
-  /// sums are enough.
+  /// Each cell by its own: P(l = 1) = m a + (1 - m) b, where a road of the map is seen with a = 0.6 and road is seen
+  /// where the map has none with b = 0.1, against a chance of l as often as it is on average. Between no road and road,
+  /// log P is taken as linear in m, so that three sums are enough.
   kDetectionRates,
   /// Equation (7) as it is.
   kEquation7,
@@ -23,8 +23,6 @@ enum class LikelihoodKind {
 struct MeasurementModel {
   LikelihoodKind kind = LikelihoodKind::kCorrelation;
   double expected_correlation = 0.25;  ///< mean correlation at the true pose, 0 to 1
-  double detection_rate = 0.6;         ///< a: probability that a road of the map is seen
-  double false_rate = 0.1;             ///< b: probability that road is seen where the map has none
   /// Square metres of ground that count as one independent sample, since errors of near cells go together. Four times
   /// the kSampleM2 of a search: a sample that is counted twice makes a track sure too early.
   double independent_m2 = 900.0;

@@ -17,9 +17,7 @@ using http::InvalidField;
 using nlohmann::json;
 
 /// A pose is three numbers in an object: four values, and something for the rest of the request.
-JsonLimits json_limits(const Limits& limits) {
-  return {limits.json_depth, static_cast<std::size_t>(limits.poses) * 4 + 1000};
-}
+std::size_t json_values(const Limits& limits) { return static_cast<std::size_t>(limits.poses) * 4 + 1000; }
 
 void add_picture(Content& content, std::vector<std::uint8_t> bytes) {
   if (content.has_picture) throw http::given_twice("image");
@@ -30,7 +28,7 @@ void add_picture(Content& content, std::vector<std::uint8_t> bytes) {
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {
-  content.fields.add(parse_json(text, json_limits(limits)), known);
+  content.fields.add(parse_json(text, json_values(limits)), known);
   if (content.fields.has("image")) add_picture(content, bytes_of_base64("image", content.fields.take_text("image")));
 }
 

@@ -15,7 +15,7 @@ using http::InvalidField;
 using nlohmann::json;
 
 /// Counts brackets and commas outside strings; whether it is JSON at all is left to the parser.
-void check_shape(std::string_view text, const JsonLimits& limits) {
+void check_shape(std::string_view text, std::size_t max_values) {
   int depth = 0;
   std::size_t values = 0;
   bool in_string = false;
@@ -29,12 +29,12 @@ void check_shape(std::string_view text, const JsonLimits& limits) {
     if (c == '"') in_string = true;
     if (c == ']' || c == '}') --depth;
     const bool opens = c == '[' || c == '{';
-    if (opens && ++depth > limits.depth) {
-      throw InvalidField("json-too-deep", "body", fmt::format("the JSON is nested more than {} deep", limits.depth), i);
+    if (opens && ++depth > kJsonDepth) {
+      throw InvalidField("json-too-deep", "body", fmt::format("the JSON is nested more than {} deep", kJsonDepth), i);
     }
-    if ((opens || c == ',') && ++values > limits.values) {
+    if ((opens || c == ',') && ++values > max_values) {
       throw LimitExceeded("too-many-poses",
-                          fmt::format("the JSON has more than {} values; send fewer poses", limits.values));
+                          fmt::format("the JSON has more than {} values; send fewer poses", max_values));
     }
   }
 }
@@ -50,8 +50,8 @@ std::string reason_of(const json::exception& error) {
 
 }  // namespace
 
-json parse_json(std::string_view text, const JsonLimits& limits) {
-  check_shape(text, limits);
+json parse_json(std::string_view text, std::size_t max_values) {
+  check_shape(text, max_values);
   try {
     return parse_with_names_once(text, refuse_second);
   } catch (const json::parse_error& error) {

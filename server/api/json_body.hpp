@@ -7,13 +7,11 @@
 
 namespace roadfix::api {
 
-struct JsonLimits {
-  int depth = 16;
-  std::size_t values = 1'000'000;  ///< numbers, strings, objects and arrays together
-};
+inline constexpr int kJsonDepth = 16;
 
-/// Throws InvalidField ("bad-json" with the byte, "json-too-deep", "duplicate-parameter" with the name) or
-/// LimitExceeded ("too-many-poses"), the only thing that makes a request's JSON that long.
-nlohmann::json parse_json(std::string_view text, const JsonLimits& limits);
+/// `max_values` counts numbers, strings, objects and arrays together. Throws InvalidField ("bad-json" with the byte,
+/// "json-too-deep", "duplicate-parameter" with the name) or LimitExceeded ("too-many-poses"), the only thing that makes
+/// a request's JSON that long.
+nlohmann::json parse_json(std::string_view text, std::size_t max_values = 1'000'000);
 
 }  // namespace roadfix::api

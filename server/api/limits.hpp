@@ -10,7 +10,6 @@ struct Limits {
   std::int64_t cells = 16'000'000;   ///< of a window or feature map
   int poses = 100'000;
   double search_km2 = 2'000.0;
-  int json_depth = 16;
   int modes = 64;
   int particles = 50'000;  ///< of a track
   int frames = 16;         ///< laid together in one request

@@ -1,4 +1,5 @@
 #include "schema/schema.hpp"
+#include "server/api/json_body.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 
@@ -36,7 +37,7 @@ http::Response limits(const Service& service, const http::Request& /*unused*/) {
                         {"cells", service.limits.cells},
                         {"poses", service.limits.poses},
                         {"search_km2", service.limits.search_km2},
-                        {"json_depth", service.limits.json_depth},
+                        {"json_depth", api::kJsonDepth},
                         {"modes", service.limits.modes},
                         {"particles", service.limits.particles},
                         {"tracks", service.tracks.limits().tracks},

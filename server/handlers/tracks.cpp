@@ -70,7 +70,7 @@ http::Response post_track(const Service& service, const http::Request& request) 
     throw http::InvalidField("unsupported-media-type", "Content-Type",
                              "a track is begun with a JSON object (Content-Type: application/json)");
   }
-  const json asked = without_nulls(api::parse_json(request.body, {service.limits.json_depth, 1000}));
+  const json asked = without_nulls(api::parse_json(request.body, 1000));
   const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
   http::Response response = json_response(track_json(service, track));
   response.status = 201;

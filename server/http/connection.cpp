@@ -123,7 +123,7 @@ bool Connection::is_slow(Pace& pace, std::size_t bytes) const {
   const auto now = Clock::now();
   const std::chrono::duration<double> time = now - pace.since;
   if (time <= limits_.grace) return false;
-  if (static_cast<double>(bytes - pace.bytes) < time.count() * static_cast<double>(limits_.bytes_per_s)) return true;
+  if (static_cast<double>(bytes - pace.bytes) < time.count() * static_cast<double>(kLeastBytesPerS)) return true;
   pace = {now, bytes};
   return false;
 }

@@ -14,14 +14,16 @@
 
 namespace roadfix::http {
 
+/// See ConnectionLimits::grace.
+inline constexpr std::size_t kLeastBytesPerS = 4 << 10;
+
 struct ConnectionLimits {
   std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its headers
   std::chrono::milliseconds body{60'000};  ///< for the whole body
   std::chrono::milliseconds write{30'000};
   std::size_t head_bytes = 64 << 10;
-  /// While others wait for a thread, a peer that sends or takes less than so much over the grace is let go of.
+  /// While others wait for a thread, a peer that is slower than kLeastBytesPerS over the grace is let go of.
   std::chrono::milliseconds grace{2'000};
-  std::size_t bytes_per_s = 4 << 10;
   std::function<bool()> others_wait = [] { return false; };
 };
 
@@ -40,8 +42,6 @@ class Connection : public httplib::Stream {
   bool at_end() const { return at_end_; }
   /// Whether the peer has closed its side or the connection broke. Half closed looks no different from here.
   bool peer_has_left() const;
-
-  const ConnectionLimits& limits() const { return limits_; }
 
   void begin_head();
   void begin_body(bool chunked);

@@ -194,7 +194,7 @@ void read_body(Exchange& exchange, const httplib::ContentReader& reader, const B
       throw Interrupted("request-timeout",
                         fmt::format("the body came slower than {} KiB/s while other clients waited: send it again, or "
                                     "send less",
-                                    exchange.connection->limits().bytes_per_s >> 10));
+                                    kLeastBytesPerS >> 10));
     case Connection::Failure::kCutOff:
       throw InvalidInput("body-cut-off",
                          fmt::format("the body ended after {} bytes, before its announced end", body.size()));

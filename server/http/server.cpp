@@ -41,7 +41,7 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
                  [this] { return admission_.waiting(); });
   set_tcp_nodelay(true);
   // The connection loop (server_connection.cpp) is ours; these are what the Keep-Alive header says.
-  set_keep_alive_max_count(static_cast<std::size_t>(settings_.keep_alive_requests));
+  set_keep_alive_max_count(kKeepAliveRequests);
   set_keep_alive_timeout(std::chrono::duration_cast<std::chrono::seconds>(settings_.idle_time).count());
   // Not the library's default: SO_REUSEPORT lets a second service take the same port unnoticed.
   set_socket_options([](socket_t socket) {

@@ -21,7 +21,6 @@ struct ServerSettings {
   int port = 8080;                    ///< 0 = any free one
   int threads = 64;                   ///< connections served at the same time
   int max_waiting_connections = 256;  ///< beyond them new ones are answered 503
-  int keep_alive_requests = 10'000;   ///< per connection
   std::chrono::milliseconds idle_time{15'000};
   std::chrono::milliseconds head_time{10'000};
   std::chrono::milliseconds body_time{60'000};
@@ -32,7 +31,6 @@ struct ServerSettings {
   std::chrono::milliseconds request_time{30'000};
   std::chrono::milliseconds turn_time{30'000};  ///< that a heavy request waits for its turn
   std::size_t head_bytes = 64 << 10;
-  std::size_t target_bytes = 4096;
   std::size_t body_bytes = std::size_t{64} << 20;         ///< after unpacking
   std::size_t all_bodies_bytes = std::size_t{512} << 20;  ///< of all requests at once; at least body_bytes
   int heavy_running = 2;

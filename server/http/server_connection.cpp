@@ -44,8 +44,7 @@ void Server::Impl::serve_connection(Connection& connection) {
     return;
   }
   for (int served = 1; wait_for_request(connection, served == 1); ++served) {
-    const bool last =
-        stopping_ || served >= settings_.keep_alive_requests || (served >= kTurnRequests && pool_->waiting() > 0);
+    const bool last = stopping_ || served >= kKeepAliveRequests || (served >= kTurnRequests && pool_->waiting() > 0);
     if (!serve_request(connection, last)) break;
   }
 }

@@ -20,6 +20,8 @@
 
 namespace roadfix::http {
 
+inline constexpr int kKeepAliveRequests = 10'000;  ///< of one connection
+
 class Server::Impl : public httplib::Server {
  public:
   Impl(ServerSettings settings, Router router, ErrorResponse on_error, Metrics& metrics);

@@ -14,6 +14,8 @@ namespace {
 
 using HandlerResponse = httplib::Server::HandlerResponse;
 
+constexpr std::size_t kTargetBytes = 4096;
+
 /// The request that this thread is passing through cpp-httplib, whose callbacks carry no context.
 thread_local Exchange* t_exchange = nullptr;
 
@@ -36,8 +38,8 @@ InvalidInput bad_range() {
   return {"bad-header", "the Range header is not one of bytes=FIRST-LAST: leave it out, since answers come whole"};
 }
 
-LimitExceeded url_too_long(std::size_t limit) {
-  return {"url-too-long", fmt::format("the request target is longer than {} bytes", limit)};
+LimitExceeded url_too_long() {
+  return {"url-too-long", fmt::format("the request target is longer than {} bytes", kTargetBytes)};
 }
 
 }  // namespace
@@ -121,7 +123,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     const bool close = std::exchange(exchange.must_close, true);
     check_headers(head);
     exchange.must_close = close;
-    if (head.target.size() > settings_.target_bytes) throw url_too_long(settings_.target_bytes);
+    if (head.target.size() > kTargetBytes) throw url_too_long();
     exchange.target = parse_target(head.target);
     request.path = exchange.target.path;
     request.query = exchange.target.query;
@@ -214,7 +216,7 @@ void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response re
 std::exception_ptr Server::Impl::refusal_of_head(const Exchange& exchange, int status) const {
   switch (status) {
     case 414:
-      return std::make_exception_ptr(url_too_long(settings_.target_bytes));
+      return std::make_exception_ptr(url_too_long());
     case 416:
       return std::make_exception_ptr(bad_range());
     default:

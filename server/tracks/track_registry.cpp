@@ -23,7 +23,7 @@ std::string new_id() {
 
 api::TrackRequest parsed(const std::string& request, const api::Limits& limits) {
   api::Fields fields;
-  fields.add(api::parse_json(request, {}), api::track_members());
+  fields.add(api::parse_json(request), api::track_members());
   return api::parse_track(fields, limits);
 }
 

@@ -20,7 +20,7 @@ namespace api = roadfix::api;
 api::Fields fields_of(const std::string& body, std::vector<std::string> known) {
   known.insert(known.end(), api::position_fields().begin(), api::position_fields().end());
   api::Fields fields;
-  fields.add(api::parse_json(body, {16, 1000}), known);
+  fields.add(api::parse_json(body, 1000), known);
   return fields;
 }
 

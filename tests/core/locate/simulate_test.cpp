@@ -124,7 +124,8 @@ TEST(SimulateFeatures, ShiftByTheStatedSpread) {
 }
 
 TEST(SimulateFeatures, EqualGeneratorsGiveEqualFeatures) {
-  const FeatureQuality quality{0.2, 0.2, 0.1, 5.0, 0.02, 2.0};
+  const FeatureQuality quality{
+      .erase = 0.2, .invent = 0.2, .block = 0.1, .shift_m = 5.0, .scale = 0.02, .tilt_deg = 2.0};
   EXPECT_EQ(simulated(100, quality, 7).cells, simulated(100, quality, 7).cells);
   EXPECT_NE(simulated(100, quality, 7).cells, simulated(100, quality, 8).cells);
 }

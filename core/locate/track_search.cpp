@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "core/locate/other_places.hpp"
-#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -15,7 +14,7 @@ constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for e
 
 std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& prior, FixOptions options,
                                      double time_share) const {
-  options.max_search_km2 = settings_.max_search_km2;
+  if (settings_.max_search_km2 && region_of(map_, prior).area_km2() > *settings_.max_search_km2) return std::nullopt;
   options.threads = limits_.threads;
   if (limits_.searches_end) {
     const auto left = time_share * (*limits_.searches_end - std::chrono::steady_clock::now());
@@ -23,11 +22,7 @@ std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& pr
   }
   options.stop = limits_.stop;
   options.calibration = settings_.calibration;
-  try {
-    return locate(map_, features, prior, options);
-  } catch (const LimitExceeded&) {
-    return std::nullopt;
-  }
+  return locate(map_, features, prior, options);
 }
 
 bool TrackSearch::holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const {

@@ -26,7 +26,7 @@ struct FixOptions {
   /// [0, kMaxScaleRange].
   double scale_range = 0.0;
   std::optional<double> max_search_km2{};  ///< beyond it LimitExceeded
-  /// At it the search ends as it is: no_fix with what it has.
+  /// After so long the search ends as it is: no_fix with what it has.
   std::optional<std::chrono::milliseconds> time_limit{};
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
   std::chrono::milliseconds proof_time{0};

@@ -21,9 +21,9 @@ std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
 class GroundAround {
  public:
-  /// Wide enough for the footprint up to `cells` away from each pose. `headings` says how many headings footprints will
-  /// be turned to: where they are many, those a quarter turn apart share a footprint. `complete()` is false, and the
-  /// rest must not be used, if time was over before.
+  /// The ground of the footprint at each pose, at the next larger scale too, and up to `cells` away. Where footprints
+  /// will be turned to many `headings`, those a quarter turn apart share one. `complete()` is false, and the rest must
+  /// not be used, if time was over before.
   GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
                const std::vector<LatticePose>& poses);
 

@@ -19,8 +19,8 @@ struct VectorOptions {
   std::string crs;    ///< replaces that of the file
   std::string layer;  ///< only this one; empty for all
   /// Ground that the source covers: "W,S,E,N" in degrees (W above E across the antimeridian) or a file with polygons
-  /// (of OGR, or a polygon filter of Osmosis), which know nothing of their holes; empty = bounding box of
-  /// the lines of each layer, at least 32 m and twice the widest road across (of the tile for vector tiles).
+  /// (of OGR, or a polygon filter of Osmosis), whose holes are not covered; empty = bounding box of the lines of each
+  /// layer, at least 32 m and twice the widest road across (of the tile for vector tiles).
   std::string extent;
 };
 

@@ -14,6 +14,7 @@
 #include "cli/bench/calibrate.hpp"
 #include "cli/bench/curves.hpp"
 #include "cli/bench/honesty.hpp"
+#include "cli/bench/quality.hpp"
 #include "cli/bench/queries.hpp"
 #include "cli/bench/run.hpp"
 #include "cli/calibration_option.hpp"
@@ -107,19 +108,9 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
   std::filesystem::create_directories(folder);
   write_file(folder + "/reliability.svg", bench::reliability_svg(honesty));
   write_file(folder + "/answered.svg", bench::answered_svg(results));
-  struct Curve {
-    const char* file;
-    double FeatureQuality::*property;
-    const char* name;
-  };
-  for (const Curve& curve : {Curve{"erased", &FeatureQuality::erase, "share of the road cells erased"},
-                             {"invented", &FeatureQuality::invent, "invented road cells, as a share of the true ones"},
-                             {"blocked", &FeatureQuality::block, "share of the footprint not observed"},
-                             {"shifted", &FeatureQuality::shift_m, "shift of map against ground, m (1 sigma per axis)"},
-                             {"scaled", &FeatureQuality::scale, "relative error of the scale (1 sigma)"},
-                             {"tilted", &FeatureQuality::tilt_deg, "tilt, degrees (1 sigma per axis)"}}) {
-    if (const auto svg = bench::degraded_svg(results, curve.property, curve.name))
-      write_file(fmt::format("{}/{}.svg", folder, curve.file), *svg);
+  for (const bench::QualityProperty& property : bench::kQualityProperties) {
+    if (const auto svg = bench::degraded_svg(results, property.value, std::string(property.axis)))
+      write_file(fmt::format("{}/{}.svg", folder, property.curve), *svg);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <sstream>
 
+#include "cli/bench/quality.hpp"
 #include "core/search/search.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "cli/bench/quality.hpp"
 #include "cli/bench/query_poses.hpp"
 #include "cli/evaluation/frame_files.hpp"
 #include "cli/evaluation/random.hpp"

@@ -1,9 +1,7 @@
 // Feature maps of stated quality, cut out of a map: what a detector of that quality would hand over.
 #pragma once
 
-#include <array>
 #include <random>
-#include <string_view>
 
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
@@ -22,23 +20,6 @@ struct FeatureQuality {
 
   friend bool operator==(const FeatureQuality&, const FeatureQuality&) = default;
 };
-
-struct QualityProperty {
-  std::string_view key;  ///< in manifests of the bench
-  double FeatureQuality::*value;
-  double max;              ///< the most that a manifest may ask for
-  std::string_view words;  ///< what stands behind its value, which is in percent before "%"
-};
-
-/// All of them. They are drawn in this order, so that another one would change what seeds give.
-inline constexpr std::array<QualityProperty, 6> kQualityProperties{
-    {{"erase", &FeatureQuality::erase, 1.0, "% erased"},
-     {"invent", &FeatureQuality::invent, 10.0, "% invented"},
-     {"block", &FeatureQuality::block, 0.9, "% blocked"},
-     {"shift_m", &FeatureQuality::shift_m, 1000.0, "m shifted"},
-     {"scale", &FeatureQuality::scale, 0.2, "% scaled"},
-     {"tilt_deg", &FeatureQuality::tilt_deg, 20.0, "deg tilted"}}};
-static_assert(sizeof(FeatureQuality) == kQualityProperties.size() * sizeof(double), "a property is not in the table");
 
 /// The map under a footprint of cols x rows cells (of the map's size) centred on the pose, in the body frame, with the
 /// quality applied. The same generator gives the same cells on every platform.

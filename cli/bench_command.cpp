@@ -175,7 +175,7 @@ void run_bench(BenchArguments& arguments) {
   if (!arguments.calibrate_file.empty()) learn(arguments, origin, outcomes, out);
   if (!arguments.calibrate_headings_file.empty()) learn_headings(arguments, origin, outcomes, out);
   if (!left_out.empty()) {
-    throw InvalidInput(bench::kNoPlaceForQuery,
+    throw InvalidInput("no-place-for-query",
                        fmt::format("{} of {} sets of queries could not be asked:\n  {}", left_out.size(),
                                    manifest.queries.size(), fmt::join(left_out, "\n  ")));
   }

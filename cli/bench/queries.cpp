@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "cli/bench/quality.hpp"
@@ -47,25 +48,34 @@ GridPoint centre_of_prior(const GridPoint& truth, const QuerySet& set, Random& r
   return {truth.east_m + radius * std::cos(direction), truth.north_m + radius * std::sin(direction)};
 }
 
-GeoCircle circle_around(const GridPoint& truth, const QuerySet& set, const MapView& map, Random& random) {
+/// nullopt where none meets the map.
+std::optional<GeoCircle> circle_around(const GridPoint& truth, const QuerySet& set, const MapView& map,
+                                       Random& random) {
   constexpr int kTries = 100;
   for (int i = 0; i < kTries; ++i) {
     const GridPoint centre = centre_of_prior(truth, set, random);
     if (!contains({centre, *set.prior_radius_m}, nearest(map.extent, centre))) continue;
-    return {map.zone.unproject(centre), *set.prior_radius_m};
+    return GeoCircle{map.zone.unproject(centre), *set.prior_radius_m};
   }
-  throw InvalidInput(kPriorOutsideMap, fmt::format("{}: no such circle meets the map '{}'", describe(set), map.name));
+  return std::nullopt;
 }
 
-/// `truth` is any place of the map where the query does not lie on it.
-Prior prior_around(const GridPoint& truth, Angle true_heading, const QuerySet& set, const MapView& map,
-                   Random& random) {
-  Prior prior;
-  if (set.prior_radius_m) prior.circle = circle_around(truth, set, map, random);
-  if (const auto range = set.prior_heading_range) {
-    prior.heading = HeadingRange{(true_heading + uniform(random, -1.0, 1.0) * *range).wrapped(), *range};
+/// `truth` is any place of the map where the query does not lie on it. Leaves a frame beyond the map, which no circle
+/// around it may meet, unasked.
+void tell_prior(Query& query, const GridPoint& truth, Angle true_heading, const QuerySet& set, const MapView& map,
+                Random& random) {
+  if (set.prior_radius_m) {
+    query.prior.circle = circle_around(truth, set, map, random);
+    if (!query.prior.circle) {
+      query.unasked = kPriorOutsideMap;
+      if (!map.extent.contains(truth)) return;
+      throw InvalidInput(kPriorOutsideMap,
+                         fmt::format("{}: no such circle meets the map '{}'", describe(set), map.name));
+    }
   }
-  return prior;
+  if (const auto range = set.prior_heading_range) {
+    query.prior.heading = HeadingRange{(true_heading + uniform(random, -1.0, 1.0) * *range).wrapped(), *range};
+  }
 }
 
 GeoPose geo(const GridPose& pose, const UtmZone& zone) {
@@ -86,21 +96,39 @@ std::optional<GeoPose> truth_of(const GridPose& pose, const QuerySet& set, const
   return geo(pose, zone);
 }
 
-GridPose draw(const PoseSampling& sampling, const QuerySet& set, Random& random) {
-  const auto pose = draw_pose(sampling, random);
-  if (pose) return *pose;
-  throw InvalidInput(
-      kNoPlaceForQuery,
-      fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its observed part "
-                  "and the map '{}'",
-                  describe(set), set.footprint.width_m, set.footprint.height_m, set.map));
-}
-
 int number_of(int wanted, const QueryDrawing& drawing) {
   return drawing.limit > 0 ? std::min(wanted, drawing.limit) : wanted;
 }
 
-std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+/// Fills in what is seen at a pose.
+using Show = std::function<void(const GridPose& pose, Random& random, Query& query)>;
+
+/// Queries "NAME/0000" and so on at poses on the plane of the zone.
+DrawnQueries at_poses(const PoseSampling& sampling, const UtmZone& zone, const std::string& name, const Show& show,
+                      const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
+  DrawnQueries drawn;
+  for (int i = 0; i < number_of(set.count, drawing); ++i) {
+    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
+    const auto pose = draw_pose(sampling, random);
+    if (!pose) {
+      return {{},
+              fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its observed "
+                          "part and the map '{}'",
+                          describe(set), set.footprint.width_m, set.footprint.height_m, set.map)};
+    }
+    Query query;
+    query.id = fmt::format("{}/{:04}", name, i);
+    query.truth = truth_of(*pose, set, map.zone);
+    show(*pose, random, query);
+    tell_prior(query, set.elsewhere ? anywhere_on(map, random) : pose->position, geo(*pose, zone).heading, set, map,
+               random);
+    query.scale_range = set.prior_scale_range;
+    drawn.queries.push_back(std::move(query));
+  }
+  return drawn;
+}
+
+DrawnQueries from_imagery(const QuerySet& set, const MapView& map, const QueryDrawing& drawing) {
   // Ground that is not on the map may lie anywhere on Earth.
   const UtmZone zone = set.elsewhere ? zone_of_image(set.path.string()) : map.zone;
   const Orthoimage ortho = read_orthoimage(set.path.string(), zone);
@@ -109,20 +137,10 @@ std::vector<Query> from_imagery(const QuerySet& set, const MapView& map, const Q
   const Observed in_map = set.elsewhere ? Observed([](GridPoint) { return true; }) : seen_by(grid);
   const PoseSampling sampling{without(ortho.box(), set.exclude), set.footprint,
                               [&](GridPoint p) { return in_imagery(p) && in_map(p); }};
-  std::vector<Query> queries;
-  for (int i = 0; i < number_of(set.count, drawing); ++i) {
-    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
-    const GridPose pose = draw(sampling, set, random);
-    Query query;
-    query.id = fmt::format("{}/{:04}", set.path.stem().string(), i);
-    query.truth = truth_of(pose, set, map.zone);
+  const auto show = [&](const GridPose& pose, Random& /*unused*/, Query& query) {
     query.view = rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m));
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, zone).heading, set,
-                               map, random);
-    query.scale_range = set.prior_scale_range;
-    queries.push_back(std::move(query));
-  }
-  return queries;
+  };
+  return at_poses(sampling, zone, set.path.stem().string(), show, set, map, drawing);
 }
 
 /// A place of one map can be found in the other only where both lie on one plane.
@@ -133,8 +151,7 @@ void require_same_plane(const QuerySet& set, const MapView& map, const MapView& 
                                                         map.name, from.name));
 }
 
-std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapView& from,
-                             const QueryDrawing& drawing) {
+DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& from, const QueryDrawing& drawing) {
   require_same_plane(set, map, from);
   const RoadGrid grid = whole(from);
   const bool on_two_maps = !set.elsewhere && set.from != set.map;
@@ -144,22 +161,12 @@ std::vector<Query> simulated(const QuerySet& set, const MapView& map, const MapV
   const auto cells = [&](double side_m) { return static_cast<int>(std::lround(side_m / from.cell_m)); };
   const PoseSampling sampling{without(from.extent, set.exclude), set.footprint,
                               [&](GridPoint p) { return in_ground(p) && in_map(p); }};
-  std::vector<Query> queries;
-  for (int i = 0; i < number_of(set.count, drawing); ++i) {
-    Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
-    const GridPose pose = draw(sampling, set, random);
-    Query query;
-    query.id = fmt::format("simulated/{:04}", i);
-    query.truth = truth_of(pose, set, map.zone);
+  const auto show = [&](const GridPose& pose, Random& random, Query& query) {
     const FeatureQuality quality = draw(set.noise, random);
     query.features =
         simulate_features(grid, pose, cells(set.footprint.width_m), cells(set.footprint.height_m), quality, random);
-    query.prior = prior_around(set.elsewhere ? anywhere_on(map, random) : pose.position, geo(pose, from.zone).heading,
-                               set, map, random);
-    query.scale_range = set.prior_scale_range;
-    queries.push_back(std::move(query));
-  }
-  return queries;
+  };
+  return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
 GroundView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
@@ -201,17 +208,6 @@ void require_places_near(const MapView& map, const std::vector<FrameTruth>& fram
   if (far == frames.end()) return;
   throw InvalidInput("position-outside-zone", fmt::format("{}: {} is too far from the UTM zone of the map '{}': {}",
                                                           set.path.string(), described(*far), map.name, kAdvice));
-}
-
-/// Leaves a frame beyond the map, which no circle around it may meet, unasked.
-void tell_prior(Query& query, const GridPoint& truth, Angle true_heading, const QuerySet& set, const MapView& map,
-                Random& random) {
-  try {
-    query.prior = prior_around(truth, true_heading, set, map, random);
-  } catch (const InvalidInput& error) {
-    if (error.code() != kPriorOutsideMap || map.extent.contains(truth)) throw;
-    query.unasked = kPriorOutsideMap;
-  }
 }
 
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
@@ -267,13 +263,13 @@ std::string ground_words(const QuerySet& set) {
 
 }  // namespace
 
-std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
-                                const RoadDetector& detector, const QueryDrawing& drawing) {
+DrawnQueries make_queries(const QuerySet& set, const MapView& map, const MapView& from, const RoadDetector& detector,
+                          const QueryDrawing& drawing) {
   switch (set.kind) {
     case QuerySet::Kind::kImage:
       return from_imagery(set, map, drawing);
     case QuerySet::Kind::kFrames:
-      return real_frames(set, map, detector, drawing);
+      return {real_frames(set, map, detector, drawing), {}};
     case QuerySet::Kind::kSimulated:
       return simulated(set, map, from, drawing);
   }

@@ -16,14 +16,16 @@ struct QueryDrawing {
   int limit = 0;          ///< at most so many; 0 = all
 };
 
-/// Code of the InvalidInput where no pose fits.
-inline constexpr const char* kNoPlaceForQuery = "no-place-for-query";
+struct DrawnQueries {
+  std::vector<Query> queries;
+  std::string why_none;  ///< where there are none, since no place was found for one of them; else empty
+};
 
 /// `map` is searched; simulated queries are cut out of `from`; of camera frames what `detector` makes use of is kept.
-/// Throws InvalidInput kNoPlaceForQuery, "frames-csv" naming line and column, "frames-outside-map" where no frame lies
-/// on the map, "position-outside-zone" naming one that is far away, and what reading the imagery throws.
-std::vector<Query> make_queries(const QuerySet& set, const MapView& map, const MapView& from,
-                                const RoadDetector& detector, const QueryDrawing& drawing);
+/// Throws InvalidInput "frames-csv" naming line and column, "frames-outside-map" where no frame lies on the map,
+/// "position-outside-zone" naming one that is far away, "prior-outside-map", and what reading the imagery throws.
+DrawnQueries make_queries(const QuerySet& set, const MapView& map, const MapView& from, const RoadDetector& detector,
+                          const QueryDrawing& drawing);
 
 /// Of simulated feature maps that are all equally bad; otherwise nullopt.
 std::optional<FeatureQuality> common_quality(const QuerySet& set);

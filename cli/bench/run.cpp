@@ -81,19 +81,6 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   return outcomes;
 }
 
-/// Nothing where no place was found for them: the other sets are worth asking all the same.
-std::vector<Query> queries_of(const QuerySet& set, std::size_t number, const MapView& map, const MapView& from,
-                              const BenchOptions& options) {
-  try {
-    const auto detector = options.maps.detectors->for_map(map.imagery_reader);
-    return make_queries(set, map, from, *detector, {options.seed, number, options.limit});
-  } catch (const InvalidInput& error) {
-    if (error.code() != kNoPlaceForQuery) throw;
-    options.left_out(error.what());
-    return {};
-  }
-}
-
 }  // namespace
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
@@ -115,7 +102,10 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
                                      describe(set), set.map));
         continue;
       }
-      const std::vector<Query> queries = queries_of(set, i, map, maps.at(set.from), options);
+      const auto detector = options.maps.detectors->for_map(map.imagery_reader);
+      const auto [queries, why_none] =
+          make_queries(set, map, maps.at(set.from), *detector, {options.seed, i, options.limit});
+      if (!why_none.empty()) options.left_out(why_none);  // the other sets are worth asking all the same
       if (queries.empty()) continue;
       for (const std::string& name : manifest.methods) {
         if (!methods[name]) continue;

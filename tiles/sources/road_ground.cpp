@@ -50,16 +50,16 @@ void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference&
 
 void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer) {
   const std::optional<OGREnvelope> box = layer.extent_seen();
-  if (layer.lines() > 0 && box) refuse_degrees_as_metres(*box, file.crs_of(layer.layer()), file.path());
+  if (layer.counts().lines > 0 && box) refuse_degrees_as_metres(*box, file.crs_of(layer.layer()), file.path());
 }
 
 void refuse_as_nowhere(VectorFile& file, const RoadLayer& layer) {
-  if (layer.impossible_lines() > layer.lines()) refuse_as_nowhere(file.path(), "give the right one with --crs");
+  if (layer.counts().impossible > layer.counts().lines) refuse_as_nowhere(file.path(), "give the right one with --crs");
 }
 
 PositionError datum_error_of(VectorFile& file, const RoadLayer& layer, UtmZone zone) {
   const std::optional<OGREnvelope> box = layer.extent_seen();
-  if (layer.lines() == 0 || !box) return {};
+  if (layer.counts().lines == 0 || !box) return {};
   const OGRSpatialReference crs = file.crs_of(layer.layer());
   double east_m = (box->MinX + box->MaxX) / 2.0;
   double north_m = (box->MinY + box->MaxY) / 2.0;
@@ -71,7 +71,7 @@ PositionError datum_error_of(VectorFile& file, const RoadLayer& layer, UtmZone z
 std::optional<LayerGround> ground_of(VectorFile& file, const RoadLayer& layer, const RoadNetwork& network,
                                      std::span<const RoadLine> lines, UtmZone zone) {
   const bool tile = vector_tile_of(file.path()).has_value();
-  if (layer.lines() == 0 && !tile) return std::nullopt;  // shops say nothing about roads
+  if (layer.counts().lines == 0 && !tile) return std::nullopt;  // shops say nothing about roads
   std::optional<OGREnvelope> box = file.cut_out(layer.layer());
   if (!box) box = layer.extent_seen();
   if (!box) return std::nullopt;

@@ -125,6 +125,15 @@ std::optional<std::string> class_attribute_in(const VectorFile& file, OGRLayer& 
   return std::nullopt;
 }
 
+/// Whether an attribute could say of a line without a class that it is a river, a railway or the like.
+bool tells_other_lines(OGRLayer& layer) {
+  constexpr std::array<std::string_view, 13> kOthers{"aerialway", "barrier",  "boundary", "building", "landuse",
+                                                     "leisure",   "man_made", "natural",  "power",    "railway",
+                                                     "route",     "subtype",  "waterway"};
+  const auto has = [&](std::string_view name) { return has_attribute(layer, std::string(name)); };
+  return std::ranges::any_of(kPacked, has) || std::ranges::any_of(kOthers, has);
+}
+
 }  // namespace
 
 int AttributePlaces::operator()(std::string_view name) {
@@ -138,11 +147,13 @@ int AttributePlaces::operator()(std::string_view name) {
 }
 
 RoadLayer::RoadLayer(const VectorFile& file, OGRLayer& layer, TransformationPtr to_plane, const RoadRules& rules)
-    : layer_(&layer),
+    : path_(file.path()),
+      layer_(&layer),
       to_plane_(std::move(to_plane)),
       places_(layer),
       limits_(coordinate_limits(file.crs_of(layer))),
-      rules_(rules) {
+      rules_(rules),
+      tells_other_lines_(tells_other_lines(layer)) {
   const std::optional<std::string> attribute = class_attribute_in(file, layer, rules);
   if (attribute) rules_.set_class_attribute(*attribute);
   classified_ = attribute.has_value();
@@ -157,14 +168,6 @@ std::string RoadLayer::attributes() const {
   return names.empty() ? "no attributes" : names;
 }
 
-bool RoadLayer::tells_other_lines() const {
-  constexpr std::array<std::string_view, 13> kOthers{"aerialway", "barrier",  "boundary", "building", "landuse",
-                                                     "leisure",   "man_made", "natural",  "power",    "railway",
-                                                     "route",     "subtype",  "waterway"};
-  const auto has = [&](std::string_view name) { return has_attribute(*layer_, std::string(name)); };
-  return std::ranges::any_of(kPacked, has) || std::ranges::any_of(kOthers, has);
-}
-
 std::optional<OGREnvelope> RoadLayer::extent_seen() const {
   return seen_.IsInit() != 0 ? std::optional(seen_) : std::nullopt;
 }
@@ -177,13 +180,18 @@ std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
     return std::nullopt;
   }
   if (!limits_.hold(geometry)) {
-    if (impossible_++ == 0) first_impossible_ = feature.GetFID();
+    if (counts_.impossible++ == 0) {
+      counts_.first_impossible = fmt::format("{} of layer '{}' of {}", feature.GetFID(), name(), path_);
+    }
     return std::nullopt;
   }
   std::string road_class = classified_ ? tags(rules_.class_attribute()) : std::string();
-  ++lines_;
-  if (!road_class.empty() && !rules_.knows(road_class)) ++unknown_classes_[road_class];
-  if (classified_ && road_class.empty()) ++without_class_;
+  ++counts_.lines;
+  if (!road_class.empty() && !rules_.knows(road_class)) ++counts_.unknown_classes[road_class];
+  if (classified_ && road_class.empty()) {
+    ++counts_.without_class;
+    if (!tells_other_lines_) ++counts_.roads_without_class;
+  }
   if (!classified_ || rules_.knows(road_class)) {
     OGREnvelope own;
     geometry.getEnvelope(&own);

@@ -13,6 +13,7 @@
 
 #include "tiles/sources/coordinate_limits.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/line_counts.hpp"
 #include "tiles/sources/road_rules.hpp"
 #include "tiles/sources/vector_file.hpp"
 
@@ -64,35 +65,25 @@ class RoadLayer {
   /// Widths in metres of the drawn features that state them in an attribute of the layer or in the one that the user
   /// named, by the attribute's name in the file.
   const std::map<std::string, std::vector<double>>& stated_widths() const { return stated_widths_; }
-  /// Lines that were seen, and how many of them have a class that the rules do not know, by class.
-  std::int64_t lines() const { return lines_; }
-  const std::map<std::string, std::int64_t>& unknown_classes() const { return unknown_classes_; }
-  /// Lines that were not looked at further, since no place on Earth has their coordinates, and the number of the first.
-  std::int64_t impossible_lines() const { return impossible_; }
-  std::int64_t first_impossible() const { return first_impossible_; }
+  /// Of the lines that were seen. Impossible ones were not looked at further.
+  const LineCounts& counts() const { return counts_; }
   /// Areas that would be drawn if they were lines.
   std::int64_t areas() const { return areas_; }
-  /// Lines without a class where the layer has classes.
-  std::int64_t lines_without_class() const { return without_class_; }
-  /// Whether an attribute could say of a line without a class that it is a river, a railway or the like.
-  bool tells_other_lines() const;
 
  private:
   void note_stated_width(const OGRFeature& feature, const std::optional<StatedWidth>& stated);
 
+  std::string path_;
   OGRLayer* layer_;
   TransformationPtr to_plane_;
   AttributePlaces places_;
   CoordinateLimits limits_;
   RoadRules rules_;
   bool classified_ = false;
+  bool tells_other_lines_;
   OGREnvelope seen_;
   std::map<std::string, std::vector<double>> stated_widths_;
-  std::int64_t lines_ = 0;
-  std::map<std::string, std::int64_t> unknown_classes_;
-  std::int64_t without_class_ = 0;
-  std::int64_t impossible_ = 0;
-  std::int64_t first_impossible_ = 0;
+  LineCounts counts_;
   std::int64_t areas_ = 0;
 };
 

@@ -58,17 +58,9 @@ std::size_t index_of(const std::string& road_class, RoadNetwork& network) {
 
 /// Takes down what is known of a layer once all its features were seen.
 void add_layer(const RoadLayer& layer, const RoadRules& rules, const std::string& path, RoadParts& parts) {
-  if (layer.lines() == 0) return;
+  if (layer.counts().lines == 0) return;
   parts.of(layer).network.areas += layer.areas();
-  LineCounts& counts = parts.counts;
-  counts.lines += layer.lines();
-  for (const auto& [name, count] : layer.unknown_classes()) counts.unknown_classes[name] += count;
-  if (counts.impossible == 0 && layer.impossible_lines() > 0) {
-    counts.first_impossible = fmt::format("{} of layer '{}' of {}", layer.first_impossible(), layer.name(), path);
-  }
-  counts.impossible += layer.impossible_lines();
-  counts.without_class += layer.lines_without_class();
-  if (!layer.tells_other_lines()) counts.roads_without_class += layer.lines_without_class();
+  parts.counts += layer.counts();
   for (const auto& [name, widths] : layer.stated_widths()) {
     std::vector<double>& of_all = parts.of(layer).network.stated_widths[name];
     of_all.insert(of_all.end(), widths.begin(), widths.end());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/grid/cell_moments.hpp"
+#include "core/grid/observed_range.hpp"
 #include "core/locate/search_figures.hpp"
 #include "core/match/score.hpp"
 
@@ -31,12 +32,10 @@ GroundReach ground_reach(const FeatureMap& features) {
   const CellArray& cells = features.cells;
   double farthest = 0.0;
   for (int row = 0; row < cells.rows(); ++row) {
-    const auto in = cells.row(row);
-    const auto first = std::ranges::find_if(in, is_observed);
-    if (first == in.end()) continue;
-    const auto last = std::find_if(in.rbegin(), in.rend(), is_observed);
-    const double left = features.nadir.col - static_cast<double>(first - in.begin());
-    const double right = static_cast<double>(in.rend() - last) - features.nadir.col;
+    const auto seen = observed_in(cells.row(row));
+    if (!seen) continue;
+    const double left = features.nadir.col - seen->first;
+    const double right = seen->end - features.nadir.col;
     const double along = std::max(features.nadir.row - row, row + 1 - features.nadir.row);
     farthest = std::max(farthest, std::hypot(std::max(left, right), along));
   }

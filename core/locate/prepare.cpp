@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grid/observed_range.hpp"
 #include "core/grid/resample.hpp"
 #include "core/search/search.hpp"
 #include "core/units/error.hpp"
@@ -65,24 +66,21 @@ FeatureMap nothing_observed_of(FeatureMap features) {
 /// left too far from the nadir is as good as nothing.
 FeatureMap cropped_to_observed(const FeatureMap& features) {
   const CellArray& cells = features.cells;
-  int first_col = cells.cols();
-  int last_col = -1;
+  ColumnRange cols{cells.cols(), 0};
   int first_row = cells.rows();
   int last_row = -1;
   for (int row = 0; row < cells.rows(); ++row) {
-    for (int col = 0; col < cells.cols(); ++col) {
-      if (!is_observed(cells.at(col, row))) continue;
-      first_col = std::min(first_col, col);
-      last_col = std::max(last_col, col);
-      first_row = std::min(first_row, row);
-      last_row = row;
-    }
+    const auto seen = observed_in(cells.row(row));
+    if (!seen) continue;
+    cols = {std::min(cols.first, seen->first), std::max(cols.end, seen->end)};
+    first_row = std::min(first_row, row);
+    last_row = row;
   }
   if (last_row < 0) return nothing_observed_of(features);
   FeatureMap result = features;
-  result.cells = CellArray(last_col - first_col + 1, last_row - first_row + 1);
-  paste(cells, result.cells, -first_col, -first_row);
-  result.nadir = {features.nadir.col - first_col, features.nadir.row - first_row};
+  result.cells = CellArray(cols.end - cols.first, last_row - first_row + 1);
+  paste(cells, result.cells, -cols.first, -first_row);
+  result.nadir = {features.nadir.col - cols.first, features.nadir.row - first_row};
   return is_near_nadir(result) ? result : nothing_observed_of(result);
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <limits>
 
+#include "core/grid/observed_range.hpp"
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/evidence_table.hpp"
@@ -26,12 +27,10 @@ struct ObservedCells {
 
   void add(TileIndex tile, const CellArray& cells) {
     for (int row = 0; row < cells.rows(); ++row) {
-      const auto line = cells.row(row);
-      const auto first = std::ranges::find_if(line, is_observed);
-      if (first == line.end()) continue;
-      const auto last = std::find_if(line.rbegin(), line.rend(), is_observed);
-      west = std::min(west, tile.col * kTileCells + static_cast<int>(first - line.begin()));
-      east = std::max(east, tile.col * kTileCells + static_cast<int>(last.base() - line.begin()));
+      const auto seen = observed_in(cells.row(row));
+      if (!seen) continue;
+      west = std::min(west, tile.col * kTileCells + seen->first);
+      east = std::max(east, tile.col * kTileCells + seen->end);
       north = std::min(north, tile.row * kTileCells + row);
       south = std::max(south, tile.row * kTileCells + row + 1);
     }

@@ -115,7 +115,7 @@ void add_limits(CLI::App& command, ServeOptions& o) {
   auto& limits = o.service.limits;
   OptionGroup group(command, "Limits of one request");
   group.mib("--max-body", http.body_bytes, "Body in MiB, after unpacking");
-  group.seconds("--body-time", http.body_time, "Seconds that a body may take to arrive");
+  group.seconds("--body-time", http.connection.body, "Seconds that a body may take to arrive");
   group.number("--max-pixels", limits.pixels, "Pixels of a picture");
   group.number("--max-cells", limits.cells, "Cells of a window or feature map");
   group.number("--max-poses", limits.poses, "Poses of a match");

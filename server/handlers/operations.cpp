@@ -44,7 +44,7 @@ http::Response limits(const Service& service, const http::Request& /*unused*/) {
                         {"tracks_per_client", service.tracks.limits().tracks_per_client},
                         {"track_idle_s", std::chrono::duration<double>(service.tracks.limits().idle).count()},
                         {"frames", service.limits.frames},
-                        {"body_time_ms", service.http.body_time.count()},
+                        {"body_time_ms", service.http.connection.body.count()},
                         {"request_time_ms", service.http.request_time.count()},
                         {"turn_time_ms", service.http.turn_time.count()},
                         {"searches_at_once", service.http.heavy_running},

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace roadfix::http {
 namespace {
@@ -59,7 +60,8 @@ void numeric_address(sockaddr_storage address, socklen_t size, std::string& ip, 
 
 }  // namespace
 
-Connection::Connection(int socket, const ConnectionLimits& limits) : socket_(socket), limits_(limits) {}
+Connection::Connection(int socket, const ConnectionLimits& limits, std::function<bool()> others_wait)
+    : socket_(socket), limits_(limits), others_wait_(std::move(others_wait)) {}
 
 Connection::~Connection() {
   ::shutdown(socket_, SHUT_RDWR);
@@ -134,7 +136,7 @@ bool Connection::wait_for(short events, milliseconds time, Pace& pace,
   for (;;) {
     const bool slow = is_slow(pace, bytes());
     const auto now = Clock::now();
-    if (now >= until || (slow && limits_.others_wait())) return false;
+    if (now >= until || (slow && others_wait_())) return false;
     if (poll_for(socket_, events, std::min(kSlice, std::chrono::ceil<milliseconds>(until - now)))) return true;
   }
 }

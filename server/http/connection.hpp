@@ -11,28 +11,17 @@
 #include <string>
 
 #include "server/http/chunk_check.hpp"
+#include "server/http/connection_limits.hpp"
 
 namespace roadfix::http {
-
-/// See ConnectionLimits::grace.
-inline constexpr std::size_t kLeastBytesPerS = 4 << 10;
-
-struct ConnectionLimits {
-  std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its headers
-  std::chrono::milliseconds body{60'000};  ///< for the whole body
-  std::chrono::milliseconds write{30'000};
-  std::size_t head_bytes = 64 << 10;
-  /// While others wait for a thread, a peer that is slower than kLeastBytesPerS over the grace is let go of.
-  std::chrono::milliseconds grace{2'000};
-  std::function<bool()> others_wait = [] { return false; };
-};
 
 class Connection : public httplib::Stream {
  public:
   /// kLetGo: slow while others waited.
   enum class Failure { kNone, kTimeout, kLetGo, kHeadTooLarge, kCutOff, kBadChunks };
 
-  Connection(int socket, const ConnectionLimits& limits);
+  /// `others_wait`: for a thread.
+  Connection(int socket, const ConnectionLimits& limits, std::function<bool()> others_wait);
   ~Connection() override;
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -88,6 +77,7 @@ class Connection : public httplib::Stream {
 
   const int socket_;
   const ConnectionLimits limits_;
+  const std::function<bool()> others_wait_;
   std::array<char, 16384> buffer_{};
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

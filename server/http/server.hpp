@@ -8,6 +8,7 @@
 #include <string>
 
 #include "server/http/admission.hpp"
+#include "server/http/connection_limits.hpp"
 #include "server/http/message.hpp"
 #include "server/http/metrics.hpp"
 #include "server/http/origins.hpp"
@@ -22,15 +23,10 @@ struct ServerSettings {
   int threads = 64;                   ///< connections served at the same time
   int max_waiting_connections = 256;  ///< beyond them new ones are answered 503
   std::chrono::milliseconds idle_time{15'000};
-  std::chrono::milliseconds head_time{10'000};
-  std::chrono::milliseconds body_time{60'000};
-  std::chrono::milliseconds write_time{30'000};
-  /// While connections wait for a thread, a peer that has become slower than 4 KiB/s is let go of after this.
-  std::chrono::milliseconds crowded_time{2'000};
+  ConnectionLimits connection = {};
   /// From the end of the body to the answer, or for what waits its turn from its turn on: Request::deadline.
   std::chrono::milliseconds request_time{30'000};
-  std::chrono::milliseconds turn_time{30'000};  ///< that a heavy request waits for its turn
-  std::size_t head_bytes = 64 << 10;
+  std::chrono::milliseconds turn_time{30'000};            ///< that a heavy request waits for its turn
   std::size_t body_bytes = std::size_t{64} << 20;         ///< after unpacking
   std::size_t all_bodies_bytes = std::size_t{512} << 20;  ///< of all requests at once; at least body_bytes
   int heavy_running = 2;

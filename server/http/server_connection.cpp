@@ -25,10 +25,7 @@ constexpr std::string_view kUnavailable =
 
 bool Server::Impl::process_and_close_socket(socket_t socket) {
   const Counted open(metrics_.connections);
-  ConnectionLimits limits{settings_.head_time, settings_.body_time, settings_.write_time, settings_.head_bytes};
-  limits.grace = settings_.crowded_time;
-  limits.others_wait = [this] { return threads_are_wanted(); };
-  Connection connection(socket, limits);
+  Connection connection(socket, settings_.connection, [this] { return threads_are_wanted(); });
   try {
     serve_connection(connection);
   } catch (const std::exception& error) {  // it would end the process

@@ -156,7 +156,7 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
 void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, const httplib::ContentReader& reader) {
   Exchange& exchange = *t_exchange;
   try {
-    read_body(exchange, reader, {settings_.body_bytes, settings_.body_time, &body_memory_});
+    read_body(exchange, reader, {settings_.body_bytes, settings_.connection.body, &body_memory_});
   } catch (...) {
     exchange.must_close = true;
     reply(exchange, out, failed(exchange, std::current_exception()));
@@ -220,7 +220,7 @@ std::exception_ptr Server::Impl::refusal_of_head(const Exchange& exchange, int s
     case 416:
       return std::make_exception_ptr(bad_range());
     default:
-      return failure_of_head(exchange, settings_.head_bytes);
+      return failure_of_head(exchange, settings_.connection.head_bytes);
   }
 }
 

@@ -65,7 +65,7 @@ TEST_F(HttpServerFraming, TakesTrailersAndTheRequestBehindThem) {
 }
 
 TEST_F(HttpServerFraming, RefusesTrailersAsLongAsNoHeadMayBe) {
-  settings_.head_bytes = 1000;
+  settings_.connection.head_bytes = 1000;
   const auto server = started();
   const std::string body = "POST /length HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n";
   EXPECT_THAT(raw(body + "X: " + std::string(2000, 'y') + "\r\n\r\n"), HasSubstr("bad-body-encoding"));

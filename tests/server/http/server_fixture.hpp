@@ -80,7 +80,7 @@ class HttpServerTest : public ::testing::Test {
                    return response;
                  }});
     settings_.port = 0;
-    settings_.crowded_time = std::chrono::minutes(10);  // however slow the machine is
+    settings_.connection.grace = std::chrono::minutes(10);  // however slow the machine is
     settings_.threads = 8;
   }
 

@@ -27,20 +27,20 @@ class HttpServerTimes : public testing::HttpServerTest {
 };
 
 TEST_F(HttpServerTimes, EndsAHeadThatComesTooSlowly) {
-  settings_.head_time = 100ms;
+  settings_.connection.head = 100ms;
   const auto server = started();
   EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHo"), ::testing::HasSubstr("request-timeout"));
 }
 
 TEST_F(HttpServerTimes, EndsABodyThatComesTooSlowly) {
-  settings_.body_time = 100ms;
+  settings_.connection.body = 100ms;
   const auto server = started();
   EXPECT_THAT(raw("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10\r\n\r\nabc"),
               ::testing::HasSubstr("request-timeout"));
 }
 
 TEST_F(HttpServerTimes, SaysHowLongABodyMayTakeSoThatNobodyRepeatsItForEver) {
-  settings_.body_time = 50ms;
+  settings_.connection.body = 50ms;
   Server server(
       settings_, router_,
       [](std::exception_ptr thrown, const Request&) {
@@ -59,8 +59,8 @@ TEST_F(HttpServerTimes, SaysHowLongABodyMayTakeSoThatNobodyRepeatsItForEver) {
 
 TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
   settings_.threads = 1;
-  settings_.body_time = 10min;
-  settings_.crowded_time = 10ms;
+  settings_.connection.body = 10min;
+  settings_.connection.grace = 10ms;
   const auto server = started();
   const auto slow = stalled();
   httplib::Client other = client();
@@ -73,8 +73,8 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhileOthersWaitForItsThread) {
 
 TEST_F(HttpServerTimes, LetsGoOfASenderThatStandsStillHoweverMuchItSentBefore) {
   settings_.threads = 1;
-  settings_.body_time = 10min;
-  settings_.crowded_time = 10ms;
+  settings_.connection.body = 10min;
+  settings_.connection.grace = 10ms;
   const auto server = started();
   testing::RawConnection slow(port_);
   slow.send("POST /length HTTP/1.1\r\nHost: x\r\nContent-Length: 10000000\r\n\r\n" + std::string(1'000'000, 'x'));
@@ -88,8 +88,8 @@ TEST_F(HttpServerTimes, LetsGoOfASenderThatStandsStillHoweverMuchItSentBefore) {
 TEST_F(HttpServerTimes, LetsGoOfAReaderThatStandsStillWhileOthersWaitForItsThread) {
   add_large_answer();
   settings_.threads = 1;
-  settings_.write_time = 10min;
-  settings_.crowded_time = 10ms;
+  settings_.connection.write = 10min;
+  settings_.connection.grace = 10ms;
   const auto server = started();
   testing::RawConnection deaf(port_);
   deaf.send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -103,7 +103,7 @@ TEST_F(HttpServerTimes, LetsGoOfAReaderThatStandsStillWhileOthersWaitForItsThrea
 TEST_F(HttpServerTimes, WaitsForAReaderThatIsSlowButReads) {
   add_large_answer();
   settings_.threads = 1;
-  settings_.crowded_time = 1s;
+  settings_.connection.grace = 1s;
   const auto server = started();
   httplib::Client slow = client();
   std::size_t read = 0;
@@ -119,8 +119,8 @@ TEST_F(HttpServerTimes, WaitsForAReaderThatIsSlowButReads) {
 }
 
 TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhenItIsStopped) {
-  settings_.body_time = 10min;
-  settings_.crowded_time = 10ms;
+  settings_.connection.body = 10min;
+  settings_.connection.grace = 10ms;
   const auto server = started();
   const auto slow = stalled();
   const auto start = std::chrono::steady_clock::now();
@@ -132,7 +132,7 @@ TEST_F(HttpServerTimes, LetsGoOfASlowSenderWhenItIsStopped) {
 TEST_F(HttpServerTimes, SendsABodyAwayForWhichOthersLeaveNoMemoryAndTakesItLater) {
   settings_.body_bytes = 50'000;
   settings_.all_bodies_bytes = 60'000;
-  settings_.body_time = 10min;
+  settings_.connection.body = 10min;
   const auto server = started();
   const std::string body(40'000, 'x');
   // The slow one needs a moment to send what it holds, and its end one to be noticed.
@@ -168,7 +168,7 @@ TEST_F(HttpServerTimes, ListensToARefusedBodySoThatItsSlowSenderLearnsWhy) {
 
 TEST_F(HttpServerTimes, ListensToARefusedBodyOnlyWhileNobodyElseWaits) {
   settings_.threads = 1;
-  settings_.body_time = 10min;
+  settings_.connection.body = 10min;
   const auto server = started();
   testing::RawConnection refused(port_);
   refused.send("POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\n");
@@ -182,7 +182,7 @@ TEST_F(HttpServerTimes, ListensToARefusedBodyOnlyWhileNobodyElseWaits) {
 
 TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
   settings_.threads = 1;
-  settings_.crowded_time = 1ms;
+  settings_.connection.grace = 1ms;
   const auto server = started();
   testing::RawConnection slow(port_);
   slow.send("POST /length HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 5\r\n\r\nab");
@@ -194,7 +194,7 @@ TEST_F(HttpServerTimes, WaitsForASlowSenderWhileNobodyElseDoes) {
 
 TEST_F(HttpServerTimes, CountsNoTimeOfItsOwnAgainstTheSenderOfTheNextRequest) {
   settings_.threads = 1;
-  settings_.crowded_time = 1ms;
+  settings_.connection.grace = 1ms;
   const auto server = started();
   testing::RawConnection patient(port_);
   patient.send("POST /wait HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n");

@@ -64,14 +64,14 @@ std::vector<RefineFamily> families_of(const Level& level, const CandidatesOf& as
 }
 
 /// A cell to look at around a candidate of a task.
-struct Look {
+struct Neighbour {
   std::size_t member;
   LatticeIndex cell;
 };
 
 /// Looks around what was found best, at cells that are farther than `seen` from where its candidate was.
-std::vector<Look> looks_beyond(int seen, const RefineTask& task, const std::vector<LatticePose>& poses) {
-  std::vector<Look> looks;
+std::vector<Neighbour> looks_beyond(int seen, const RefineTask& task, const std::vector<LatticePose>& poses) {
+  std::vector<Neighbour> looks;
   for (std::size_t member = 0; member < task.best.size(); ++member) {
     const LatticeIndex begin = poses[task.candidates[member]].cell;
     const LatticeIndex best = task.best[member].cell;
@@ -85,11 +85,11 @@ std::vector<Look> looks_beyond(int seen, const RefineTask& task, const std::vect
   return looks;
 }
 
-void look(std::span<const Look> looks, const GroundAround& ground, const PackedFootprint& footprint,
+void look(std::span<const Neighbour> looks, const GroundAround& ground, const PackedFootprint& footprint,
           const FootprintCells& full, RefineTask& task) {
   std::vector<std::size_t> poses;
   std::vector<LatticeIndex> cells;
-  for (const Look& each : looks) {
+  for (const Neighbour& each : looks) {
     poses.push_back(task.candidates[each.member]);
     cells.push_back(each.cell);
   }

@@ -62,7 +62,7 @@ void run_export(const ExportArguments& options) {
   const std::stop_token stop = stop_on_signals();
   require_file(options.target);
   const MapReader map(options.map);
-  note_waiting_tiles(options.map, map.info());
+  note_unfinished(options.map, map.info());
   require_apart({options.target}, {options.map});
   ExportOptions what{.format = format_of(options), .cell_m = options.cell_m};
   if (options.bbox) what.box = grid_box_around(map.info().settings.zone, *options.bbox, map.info().extent);

@@ -9,8 +9,8 @@
 
 namespace roadfix::cli {
 
-/// On standard error, where tiles of the map do not yet follow from its sources.
-void note_waiting_tiles(const std::filesystem::path& file, const MapInfo& info);
+/// On standard error, where the map lacks blocks of a source, or tiles of it do not yet follow from its sources.
+void note_unfinished(const std::filesystem::path& file, const MapInfo& info);
 
 /// view_of_file(), with that note.
 MapView view_with_notes(const std::filesystem::path& file, std::size_t search_cache_bytes = 0);

@@ -14,7 +14,7 @@ using nlohmann::json;
 const char* status_of(const MapInfo& info) {
   if (std::ranges::any_of(info.sources, &SourceStatus::is_damaged)) return "damaged";
   if (info.extent.empty()) return "empty";
-  return info.pending > 0 ? "incomplete" : "ready";
+  return info.pending > 0 || !missing_of(info).empty() ? "incomplete" : "ready";
 }
 
 }  // namespace

@@ -135,6 +135,8 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
     const auto reader = std::make_shared<const MapReader>(path, cache_bytes_, kLockPatience);
     auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, search_cache_bytes_)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
+    const std::string missing = missing_of(reader->info());
+    if (!missing.empty()) spdlog::warn("map {} lacks what an ingest has not brought yet ({})", name, missing);
     return {stamp, std::move(map), {}};
   } catch (const InUse&) {
     throw;

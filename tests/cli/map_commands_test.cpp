@@ -56,6 +56,19 @@ TEST_F(MapCommands, InfoTellsWhatTheMapHolds) {
   }
 }
 
+TEST_F(MapCommands, AMapOfAnIngestThatWasKilledBetweenBlocksIsIncompleteAndSaysSo) {
+  {
+    MapWriter writer(path, settings_37n());
+    const testing::TestSource post{"post", 2, some_blocks(2)};
+    const auto blocks = writer.begin_source(post.record(), post.blocks, false);
+    testing::put_block(writer, "post", blocks.front(), testing::random_cells(2, blocks.front()));
+  }
+  EXPECT_EQ(nlohmann::json::parse(roadfix("info --json " + path.string()).out)["status"], "incomplete");
+  const ProgramResult result = roadfix("export " + path.string() + " " + (folder / "out.tif").string());
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("(source 'post': 1 of 4 blocks)"));
+}
+
 TEST_F(MapCommands, AnswersInJsonOfFilesWhoseNamesAreNoUtf8) {
   const std::string source = folder / "m\xfc.tif";
   ASSERT_EQ(roadfix("export " + path.string() + " '" + source + "'").code, 0);

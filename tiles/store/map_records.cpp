@@ -1,8 +1,11 @@
 #include "tiles/store/map_records.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/units/floor_div.hpp"
@@ -40,6 +43,16 @@ std::vector<Provenance> parts_of(const MapInfo& info) {
 }
 
 }  // namespace
+
+std::string missing_of(const MapInfo& info) {
+  std::string text;
+  for (const SourceStatus& source : info.sources) {
+    if (source.complete) continue;
+    text += fmt::format("{}source '{}': {} of {} blocks", text.empty() ? "" : "; ", source.record.name,
+                        source.blocks_done, source.blocks_total);
+  }
+  return text;
+}
 
 Provenance provenance_of(const MapInfo& info) { return combined(parts_of(info)); }
 

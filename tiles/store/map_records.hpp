@@ -99,6 +99,10 @@ struct MapInfo {
   std::vector<SourceStatus> sources = {};
 };
 
+/// What of the sources is missing, since an ingest was interrupted or goes on: "source 'post': 9 of 16 blocks", and so
+/// on of others; empty where nothing is.
+std::string missing_of(const MapInfo& info);
+
 /// Of the complete sources together.
 Provenance provenance_of(const MapInfo& info);
 

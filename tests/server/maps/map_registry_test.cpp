@@ -33,6 +33,24 @@ void make_map(const fs::path& path, std::uint64_t seed, bool replace = false) {
   roadfix::testing::ingest(writer, {"imagery", seed, roadfix::testing::some_blocks(1)}, replace);
 }
 
+/// What is logged while it lives.
+class CapturedLog {
+ public:
+  CapturedLog() { spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", lines_)); }
+  ~CapturedLog() { spdlog::set_default_logger(usual_); }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
+
+  std::ptrdiff_t count(const std::string& what) const {
+    return std::ranges::count_if(lines_->last_formatted(),
+                                 [&](const std::string& line) { return line.find(what) != std::string::npos; });
+  }
+
+ private:
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> lines_ = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
+  std::shared_ptr<spdlog::logger> usual_ = spdlog::default_logger();
+};
+
 TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
   const TemporaryFolder folder;
   MapRegistry registry(folder.path(), kCache);
@@ -115,6 +133,22 @@ TEST(MapRegistry, AsksToComeBackForAMapThatIsLockedWhenItAppears) {
   writer.execute("ROLLBACK");
   registry.refresh();
   EXPECT_EQ(registry.find("city")->name, "city");
+}
+
+TEST(MapRegistry, LogsWhichMapsLackBlocksOfAnIngestThatWasInterrupted) {
+  const TemporaryFolder folder;
+  make_map(folder / "whole.gpkg", 1);
+  make_map(folder / "half.gpkg", 1);
+  {
+    MapWriter writer(folder / "half.gpkg", roadfix::testing::settings_37n());
+    const roadfix::testing::TestSource post{"post", 2, roadfix::testing::some_blocks(2)};
+    const auto blocks = writer.begin_source(post.record(), post.blocks, false);
+    roadfix::testing::put_block(writer, "post", blocks.front(), roadfix::testing::random_cells(2, blocks.front()));
+  }
+  const CapturedLog log;
+  const MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(log.count("lacks what an ingest"), 1);
+  EXPECT_EQ(log.count("map half lacks what an ingest has not brought yet (source 'post': 1 of 4 blocks)"), 1);
 }
 
 TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame) {
@@ -236,25 +270,18 @@ TEST(MapRegistry, ComplainsOnceWhileItsFolderCannotBeRead) {
   using std::chrono::milliseconds;
   const TemporaryFolder folder;
   fs::create_directory(folder / "maps");
-  const auto lines = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
-  const auto usual = spdlog::default_logger();
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", lines));
-  const auto said = [&](const std::string& what) {
-    return std::ranges::count_if(lines->last_formatted(),
-                                 [&](const std::string& line) { return line.find(what) != std::string::npos; });
-  };
+  const CapturedLog log;
   {
     MapRegistry registry(folder / "maps", kCache);
     registry.watch(milliseconds(2));
     fs::rename(folder / "maps", folder / "away");
-    EXPECT_TRUE(testing::eventually([&] { return said("cannot be read") > 0; }));
+    EXPECT_TRUE(testing::eventually([&] { return log.count("cannot be read") > 0; }));
     std::this_thread::sleep_for(milliseconds(50));
     fs::rename(folder / "away", folder / "maps");
-    EXPECT_TRUE(testing::eventually([&] { return said("can be read again") > 0; }));
+    EXPECT_TRUE(testing::eventually([&] { return log.count("can be read again") > 0; }));
   }
-  spdlog::set_default_logger(usual);
-  EXPECT_EQ(said("cannot be read"), 1) << "a folder that stays away for a night is no night of messages";
-  EXPECT_EQ(said("can be read again"), 1);
+  EXPECT_EQ(log.count("cannot be read"), 1) << "a folder that stays away for a night is no night of messages";
+  EXPECT_EQ(log.count("can be read again"), 1);
 }
 
 TEST(MapRegistry, SaysWhyItsFolderCannotBeReadAndServesWhatItHas) {

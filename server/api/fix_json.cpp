@@ -36,6 +36,8 @@ json pose_json(const GeoPose& pose) {
       {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
 }
 
+json made_by() { return {{"roadfix", ROADFIX_VERSION}}; }
+
 json bbox_json(const GeoBox& box) {
   return {box.south_west.lon_deg, box.south_west.lat_deg, box.north_east.lon_deg, box.north_east.lat_deg};
 }
@@ -69,6 +71,7 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
                                    {"scales", fix.proof->scales}};
   }
   answer["map"] = {{"name", fix.map_name}, {"version", fix.map_version}};
+  answer["made_by"] = made_by();
   answer["time_ms"] = {{"search", fix.search_time.count()}};
   if (detect_time) answer["time_ms"]["detect"] = detect_time->count();
   return answer;

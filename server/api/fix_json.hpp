@@ -23,6 +23,9 @@ nlohmann::json pose_json(const GeoPose& pose);
 /// An object of `pose` and `geometry`, for more to be added.
 nlohmann::json placed_json(const GeoPose& pose);
 
+/// What made an answer: the version of the program.
+nlohmann::json made_by();
+
 /// West, south, east and north, as GeoJSON has a bbox.
 nlohmann::json bbox_json(const GeoBox& box);
 

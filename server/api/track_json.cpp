@@ -26,6 +26,16 @@ json cluster_json(const TrackCluster& cluster) {
   return answer;
 }
 
+/// What a point of a history has of the answer to its step.
+json told_of(const json& answer) {
+  json properties = json::object();
+  for (const char* name : {"sequence", "time_us", "status", "sigma_m", "ellipse_heading_deg", "heading_sigma_deg",
+                           "radius95_m", "measurement", "doubt", "drifts", "resets", "made_by"}) {
+    if (answer.contains(name)) properties[name] = answer.at(name);
+  }
+  return properties;
+}
+
 }  // namespace
 
 json to_json(const TrackEstimate& estimate) {
@@ -68,12 +78,9 @@ json history_json(std::span<const std::string> answers) {
   std::vector<LatLon> line;
   for (const std::string& text : answers) {
     const json answer = stored_json(text);
-    json properties{
-        {"sequence", answer.at("sequence")}, {"time_us", answer.at("time_us")}, {"status", answer.at("status")}};
+    json properties = told_of(answer);
     const bool placed = answer.contains("geometry");
     if (placed) {
-      for (const char* name : {"sigma_m", "ellipse_heading_deg", "heading_sigma_deg"})
-        properties[name] = answer.at(name);
       properties["heading_deg"] = answer.at("pose").at("heading_deg");
       const json& place = answer.at("geometry").at("coordinates");
       line.push_back({place.at(1).get<double>(), place.at(0).get<double>()});

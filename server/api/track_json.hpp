@@ -14,8 +14,8 @@ nlohmann::json to_json(const TrackEstimate& estimate);
 /// [lon, lat, heading_deg] of each.
 nlohmann::json particles_json(std::span<const GeoPose> particles);
 
-/// Answers to steps as a GeoJSON FeatureCollection: a point for each, with its sequence and time; those that had not
-/// converged have no geometry. Then the flight as a line where two points had.
+/// Answers to steps as a GeoJSON FeatureCollection: a point for each, with when, how well and by what it was told;
+/// those that had not converged have no geometry. Then the flight as a line where two points had.
 /// Throws CorruptData ("track-store-corrupt").
 nlohmann::json history_json(std::span<const std::string> answers);
 

@@ -41,12 +41,14 @@ std::int64_t digest_of(const api::Content& content) {
   return static_cast<std::int64_t>(hash.value());
 }
 
+json map_json(const StoredTrack& track) { return {{"name", track.map}, {"version", track.map_version}}; }
+
 json track_json(const Service& service, const StoredTrack& track) {
   const double silent_s = std::chrono::duration<double>(service.tracks.times().silent(track)).count();
   const auto left =
       std::max(service.tracks.limits().idle - service.tracks.times().idle(track.id), std::chrono::milliseconds(0));
   return {{"id", track.id},
-          {"map", {{"name", track.map}, {"version", track.map_version}}},
+          {"map", map_json(track)},
           {"request", api::stored_json(track.request)},
           {"created_us", track.created_us},
           {"touched_us", track.touched_us},
@@ -168,11 +170,15 @@ http::Response get_history(const Service& service, const http::Request& request)
   const api::Fields fields(request.query);
   const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
+  const StoredTrack track = service.tracks.find(id_of(request));
   std::vector<std::string> answers;
-  for (StoredStep& step : service.tracks.steps_after(id_of(request), after, limit)) {
+  for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
     answers.push_back(std::move(step.answer));
   }
-  http::Response response = json_response(api::history_json(answers));
+  json history = api::history_json(answers);
+  history["track"] = track.id;
+  history["map"] = map_json(track);
+  http::Response response = json_response(history);
   response.content_type = "application/geo+json";
   return response;
 }

@@ -7,6 +7,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/track_json.hpp"
 #include "server/http/errors.hpp"
@@ -57,6 +58,8 @@ StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   nlohmann::json answer = api::to_json(result.estimate);
   answer["track"] = id;
+  answer["map"] = {{"name", track->map().name}, {"version", track->map().view.version}};
+  answer["made_by"] = api::made_by();
   std::string text = json_text(answer);
   turn.doubt();
   tracks_.store_step(id, {input.sequence, digest, text}, result.state);

@@ -36,6 +36,7 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
 
   const json history = testing::json_of(client.Get(("/v1/tracks/" + id + "/history").c_str()));
   EXPECT_EQ(history["type"], "FeatureCollection");
+  EXPECT_EQ(history["map"], answer["map"]);
   EXPECT_EQ(history["features"].size(), 9U) << "eight points and the line";
   EXPECT_EQ(history["features"][8]["geometry"]["type"], "LineString");
   EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=5").c_str()))["features"].size(), 3U);

@@ -48,6 +48,7 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_EQ(answer["searched"]["proof"]["bound"], 0.8);
   EXPECT_EQ(answer["searched"]["proof"]["excluded_share"], 0.97);
   EXPECT_EQ(answer["map"]["name"], "adiyaman");
+  EXPECT_EQ(answer["made_by"], made_by());
   EXPECT_EQ(answer["time_ms"]["detect"], 140.0);
   EXPECT_FALSE(answer.contains("reason"));
 }

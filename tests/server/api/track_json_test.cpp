@@ -21,6 +21,17 @@ std::string answer_at(double lon_deg) {
       .dump();
 }
 
+TEST(TrackHistory, SaysOfEachStepHowItWasToldAndByWhat) {
+  const nlohmann::json properties{{"sequence", 7},         {"time_us", 8},
+                                  {"status", "searching"}, {"doubt", 0.2},
+                                  {"drifts", false},       {"measurement", "rejected"},
+                                  {"resets", 1},           {"made_by", {{"roadfix", "0.1.0"}}}};
+  nlohmann::json answer = properties;
+  answer["clusters"] = nlohmann::json::array();
+  const nlohmann::json history = history_json(std::vector<std::string>{answer.dump()});
+  EXPECT_EQ(history["features"][0]["properties"], properties);
+}
+
 TEST(TrackHistory, EndsWithTheFlightAsALineThatIsCutAt180Degrees) {
   const auto line_of = [](const std::vector<std::string>& answers) {
     return history_json(answers)["features"].back()["geometry"];

@@ -57,10 +57,17 @@ json coordinates(const Stretch& part) {
 }  // namespace
 
 json line_json(std::span<const LatLon> places) {
-  json lines = json::array();
-  for (const Stretch& part : cut(places)) lines.push_back(coordinates(part));
-  if (lines.size() == 1) return {{"type", "LineString"}, {"coordinates", std::move(lines.front())}};
-  return {{"type", "MultiLineString"}, {"coordinates", std::move(lines)}};
+  const Stretch line(places.begin(), places.end());
+  return line_json(std::span(&line, 1));
+}
+
+json line_json(std::span<const std::vector<LatLon>> lines) {
+  json parts = json::array();
+  for (const Stretch& line : lines) {
+    for (const Stretch& part : cut(line)) parts.push_back(coordinates(part));
+  }
+  if (parts.size() == 1) return {{"type", "LineString"}, {"coordinates", std::move(parts.front())}};
+  return {{"type", "MultiLineString"}, {"coordinates", std::move(parts)}};
 }
 
 json polygon_json(std::span<const LatLon> ring) {

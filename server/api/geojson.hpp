@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <vector>
 
 #include "core/geodesy/latlon.hpp"
 
@@ -13,6 +14,8 @@ namespace roadfix::api {
 /// A LineString, or a MultiLineString of the parts. Of neighbours the shorter way is meant, as of all flights. There
 /// are two places at least, in [-180, 180].
 nlohmann::json line_json(std::span<const LatLon> places);
+/// The same of several lines in one geometry, of at least one.
+nlohmann::json line_json(std::span<const std::vector<LatLon>> lines);
 
 /// A Polygon, or a MultiPolygon of the parts. The ring is convex and ends where it begins.
 nlohmann::json polygon_json(std::span<const LatLon> ring);

@@ -75,7 +75,7 @@ json stored_json(const std::string& text) {
 
 json history_json(std::span<const std::string> answers) {
   json features = json::array();
-  std::vector<LatLon> line;
+  std::vector<std::vector<LatLon>> stretches(1);  // where a place was claimed at every step
   for (const std::string& text : answers) {
     const json answer = stored_json(text);
     json properties = told_of(answer);
@@ -83,14 +83,17 @@ json history_json(std::span<const std::string> answers) {
     if (placed) {
       properties["heading_deg"] = answer.at("pose").at("heading_deg");
       const json& place = answer.at("geometry").at("coordinates");
-      line.push_back({place.at(1).get<double>(), place.at(0).get<double>()});
+      stretches.back().push_back({place.at(1).get<double>(), place.at(0).get<double>()});
+    } else if (!stretches.back().empty()) {
+      stretches.emplace_back();
     }
     features.push_back({{"type", "Feature"},
                         {"geometry", placed ? answer.at("geometry") : json()},
                         {"properties", std::move(properties)}});
   }
-  if (line.size() > 1) {
-    features.push_back({{"type", "Feature"}, {"geometry", line_json(line)}, {"properties", json::object()}});
+  std::erase_if(stretches, [](const auto& stretch) { return stretch.size() < 2; });
+  if (!stretches.empty()) {
+    features.push_back({{"type", "Feature"}, {"geometry", line_json(stretches)}, {"properties", json::object()}});
   }
   return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
 }

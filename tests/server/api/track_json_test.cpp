@@ -21,6 +21,10 @@ std::string answer_at(double lon_deg) {
       .dump();
 }
 
+nlohmann::json line_of(const std::vector<std::string>& answers) {
+  return history_json(answers)["features"].back()["geometry"];
+}
+
 TEST(TrackHistory, SaysOfEachStepHowItWasToldAndByWhat) {
   const nlohmann::json properties{{"sequence", 7},         {"time_us", 8},
                                   {"status", "searching"}, {"doubt", 0.2},
@@ -32,10 +36,16 @@ TEST(TrackHistory, SaysOfEachStepHowItWasToldAndByWhat) {
   EXPECT_EQ(history["features"][0]["properties"], properties);
 }
 
+TEST(TrackHistory, DrawsNoLineThroughStepsAtWhichNothingWasClaimed) {
+  const std::string lost = R"({"sequence": 2, "time_us": 2, "status": "searching"})";
+  EXPECT_EQ(line_of({answer_at(10), answer_at(11), lost, lost, answer_at(14), answer_at(15), lost, answer_at(17)}),
+            nlohmann::json::parse(R"({"type": "MultiLineString",
+                "coordinates": [[[10.0, -17.0], [11.0, -17.0]], [[14.0, -17.0], [15.0, -17.0]]]})"));
+  EXPECT_EQ(line_of({lost, answer_at(10), lost, answer_at(11), answer_at(12)})["type"], "LineString");
+  EXPECT_EQ(line_of({answer_at(10), lost, answer_at(11)})["type"], "Point") << "no two in a row";
+}
+
 TEST(TrackHistory, EndsWithTheFlightAsALineThatIsCutAt180Degrees) {
-  const auto line_of = [](const std::vector<std::string>& answers) {
-    return history_json(answers)["features"].back()["geometry"];
-  };
   EXPECT_EQ(line_of({answer_at(178.5), answer_at(179.5)}),
             nlohmann::json::parse(R"({"type": "LineString", "coordinates": [[178.5, -17.0], [179.5, -17.0]]})"));
   EXPECT_EQ(line_of({answer_at(179.5), answer_at(-179.5)}), nlohmann::json::parse(R"({"type": "MultiLineString",

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -54,6 +55,21 @@ std::optional<std::string> note_on_nothing_replaced(const std::string& map, cons
       source, fmt::join(names.begin(), last, "', '"), last == names.end() ? "" : " and others");
 }
 
+/// New imagery of the worst quarter of a town is no newer version of the imagery of the town.
+std::optional<std::string> note_on_ground_lost(const CellSource& newer, const std::string& map,
+                                               const std::string& source, double cell_m) {
+  constexpr std::ptrdiff_t kParts = 10;  // one of them may go: the edges of two pictures differ
+  const std::set<TileIndex> blocks = MapWriter::blocks_of(map, source);
+  const auto lost = std::ranges::count_if(
+      blocks, [&](TileIndex block) { return !newer.touches(tile_geometry(block, cell_m).box()); });
+  if (lost * kParts <= std::ssize(blocks)) return std::nullopt;
+  const double block_km2 = std::pow(kTileCells * cell_m / 1e3, 2);
+  return fmt::format(
+      "--replace takes {:.1f} of {:.1f} km2 of the old '{}' out of the map, which this one does not cover. If it shows "
+      "a part only, ingest it with another --name instead",
+      static_cast<double>(lost) * block_km2, static_cast<double>(blocks.size()) * block_km2, source);
+}
+
 /// Of the source, and of those beside it, for which it may be the other side.
 void note_shifts(const std::string& map, const std::string& source, const ShiftReport& shifts) {
   std::vector<std::string> names;
@@ -91,6 +107,8 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
                     std::back_inserter(summary.notes));
   if (arguments.options.replace) {
     if (auto note = note_on_nothing_replaced(arguments.map, record.name)) summary.notes.push_back(std::move(*note));
+    if (auto note = note_on_ground_lost(source, arguments.map, record.name, settings.cell_m))
+      summary.notes.push_back(std::move(*note));
   }
   print_notes(request.files, summary);
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);

@@ -317,6 +317,27 @@ TEST_F(MapCommands, IngestSaysThatNothingIsReplacedWhereTheNewerVersionHasAnothe
   EXPECT_THAT(roadfix("ingest " + newer + " --name roads" + into).err, Not(HasSubstr("replaces nothing")));
 }
 
+TEST_F(MapCommands, IngestSaysHowMuchGroundAReplacementTakesOutOfTheMap) {
+  const auto tif = [&](const std::string& name, const std::string& region) {
+    EXPECT_EQ(roadfix("export " + path.string() + " " + (folder / name).string() + region).code, 0);
+    return (folder / name).string();
+  };
+  const std::string town = tif("town.tif", "");
+  const GridBox block = tile_geometry(some_blocks(2).front(), 2.0).box();
+  const LatLon sw = settings_37n().zone.unproject({block.min.east_m + 100.0, block.min.north_m + 100.0});
+  const LatLon ne = settings_37n().zone.unproject({block.max.east_m - 100.0, block.max.north_m - 100.0});
+  std::string bbox = " --bbox";
+  for (const double degrees : {sw.lon_deg, sw.lat_deg, ne.lon_deg, ne.lat_deg}) bbox += " " + std::to_string(degrees);
+  const std::string part = tif("part.tif", bbox);
+  const std::string into = " --name town --as roads --map " + (folder / "n.gpkg").string();
+  ASSERT_EQ(roadfix("ingest " + town + into).code, 0);
+  for (const char* run : {" --dry-run", ""}) {
+    EXPECT_THAT(roadfix("ingest " + part + into + " --replace" + run).err,
+                HasSubstr("--replace takes 0.8 of 1.0 km2 of the old 'town' out of the map"));
+  }
+  EXPECT_THAT(roadfix("ingest " + town + into + " --replace").err, Not(HasSubstr("out of the map")));
+}
+
 TEST_F(MapCommands, IngestOfAFolderOfDistantPlacesProposesASourceForEach) {
   const auto write_roads = [&](const std::string& name, double lat) {
     std::ofstream(folder / name) << nlohmann::json{{"type", "LineString"},

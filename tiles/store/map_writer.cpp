@@ -133,6 +133,14 @@ std::vector<SourceRecord> MapWriter::records_of(const std::filesystem::path& pat
   return records;
 }
 
+std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, const std::string& source) {
+  if (!is_there(path)) return {};
+  Connection map = open_map(path, Access::kRead);
+  SourceTable sources(map, zoom_of(read_info(map).settings.cell_m));
+  const auto entry = sources.find(source, true);
+  return entry ? sources.done_blocks(entry->id) : std::set<TileIndex>();
+}
+
 void MapWriter::require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
                                    const SourceRecord& record, bool replace) {
   if (!is_there(path)) return;

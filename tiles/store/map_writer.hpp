@@ -42,6 +42,9 @@ class MapWriter {
   /// What the map tells of the sources of this name, complete or not, the one in force first; nothing where no file is.
   static std::vector<SourceRecord> records_of(const std::filesystem::path& path, const std::string& source);
 
+  /// What the map holds of the source of this name in force; nothing where no file or no such source is.
+  static std::set<TileIndex> blocks_of(const std::filesystem::path& path, const std::string& source);
+
   /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
   /// writes nothing: for a plan.
   static void require_acceptable(const std::filesystem::path& path, const MapSettings& settings,

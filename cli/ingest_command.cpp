@@ -114,7 +114,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
-    print_plan(json, planned.blocks, arguments.json);
+    print_plan(json, planned.blocks, arguments.map, arguments.json);
     return;
   }
   if (!writer) writer.emplace(arguments.map, settings);

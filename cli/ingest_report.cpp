@@ -6,13 +6,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <system_error>
 
 #include "cli/shift_text.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/source_json.hpp"
 
 namespace roadfix::cli {
+namespace {
+
+/// More that the file of the map will take, as measured on maps of towns.
+std::int64_t expected_bytes(std::int64_t blocks, const std::filesystem::path& map) {
+  constexpr std::int64_t kBytesPerBlock = 50'000;  // evidence and fused tile with overviews
+  constexpr std::int64_t kBytesOfTables = 150'000;
+  return kBytesPerBlock * blocks + (std::filesystem::exists(map) ? 0 : kBytesOfTables);
+}
+
+/// Of the disk of the map; nullopt where its folder cannot be asked.
+std::optional<std::int64_t> free_bytes(const std::filesystem::path& map) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(map.has_parent_path() ? map.parent_path() : ".", unknown);
+  if (unknown) return std::nullopt;
+  return static_cast<std::int64_t>(space.available);
+}
+
+}  // namespace
 
 nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& summary, std::int64_t blocks,
                             const MapSettings& settings) {
@@ -36,15 +56,25 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
   return json;
 }
 
-void print_plan(nlohmann::json json, std::int64_t blocks, bool as_json) {
-  constexpr std::int64_t kBytesPerBlock = 30'000;  // evidence and fused tile with overviews, of a city
-  json["expected_bytes"] = kBytesPerBlock * blocks;
+void print_plan(nlohmann::json json, std::int64_t blocks, const std::filesystem::path& map, bool as_json) {
+  constexpr double kBytesPerMb = 1e6;
+  const std::int64_t expected = expected_bytes(blocks, map);
+  const std::optional<std::int64_t> room = free_bytes(map);
+  json["expected_bytes"] = expected;
+  if (room) json["free_bytes"] = *room;
+  if (room && expected > *room) {
+    fmt::print(stderr, "note: the map will take some {:.1f} MB, and its disk has {:.0f} MB free\n",
+               static_cast<double>(expected) / kBytesPerMb, static_cast<double>(*room) / kBytesPerMb);
+  }
   if (as_json) {
     fmt::print("{}\n", json_text(json));
     return;
   }
   for (const auto& [key, value] : json.items()) {
-    fmt::print("{:14} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value));
+    const std::string text = value.is_string()         ? value.get<std::string>()
+                             : key.ends_with("_bytes") ? fmt::format("{:.1f} MB", value.get<double>() / kBytesPerMb)
+                                                       : json_text(value);
+    fmt::print("{:14} {}\n", key, text);
   }
 }
 

@@ -303,6 +303,17 @@ TEST_F(MapCommands, ADryRunRefusesWhatTheIngestWouldRefuse) {
   EXPECT_THAT(roadfix(ingest + " --cell 4 --dry-run").err, HasSubstr("[map-settings-differ]"));
 }
 
+TEST_F(MapCommands, ADryRunSaysWhatRoomTheMapWillTakeAndHas) {
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.201, 37.701]]})";
+  const std::string plan = "ingest " + lines + " --dry-run --map ";
+  const auto json = nlohmann::json::parse(roadfix(plan + (folder / "n.gpkg").string() + " --json").out);
+  EXPECT_EQ(json["expected_bytes"], 150'000 + 50'000 * json["blocks"].get<int>());
+  EXPECT_GT(json["free_bytes"], json["expected_bytes"]);
+  EXPECT_THAT(roadfix(plan + (folder / "n.gpkg").string()).out, ::testing::ContainsRegex("expected_bytes 0[.]. MB"));
+  EXPECT_THAT(roadfix(plan + "/proc/n.gpkg").err, HasSubstr("its disk has 0 MB free"));
+}
+
 TEST_F(MapCommands, IngestSaysThatNothingIsReplacedWhereTheNewerVersionHasAnotherName) {
   const std::string lines = folder / "roads.geojson";
   std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";

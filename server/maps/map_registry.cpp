@@ -75,6 +75,7 @@ MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t s
                    fmt::format("--maps {} is not a folder; name the folder with the maps", folder_.string()));
   }
   refresh();
+  if (entries_.empty()) spdlog::warn("no map (*{}) is in {} yet", kExtension, folder_.string());
 }
 
 MapRegistry::~MapRegistry() { stop(); }

@@ -151,6 +151,14 @@ TEST(MapRegistry, LogsWhichMapsLackBlocksOfAnIngestThatWasInterrupted) {
   EXPECT_EQ(log.count("map half lacks what an ingest has not brought yet (source 'post': 1 of 4 blocks)"), 1);
 }
 
+TEST(MapRegistry, LogsThatItsFolderHoldsNoMapYet) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "imagery.tif");
+  const CapturedLog log;
+  const MapRegistry registry(folder.path(), kCache);
+  EXPECT_EQ(log.count("no map (*.gpkg) is in " + folder.path().string() + " yet"), 1);
+}
+
 TEST(MapRegistry, NoticesThatASourceIsDescribedOtherwiseThoughItsCellsAreTheSame) {
   const TemporaryFolder folder;
   make_map(folder / "city.gpkg", 1);

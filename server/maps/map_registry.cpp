@@ -36,7 +36,12 @@ bool is_file(const fs::directory_entry& entry) {
   return entry.is_regular_file(gone) || (entry.is_symlink(gone) && !fs::exists(entry.status(gone)));
 }
 
-std::map<std::string, fs::path> map_files(const fs::path& folder) {
+struct MapFiles {
+  std::map<std::string, fs::path> of_name;
+  std::set<fs::path> left_out;  ///< another one is called the same but for the case of its extension
+};
+
+MapFiles map_files(const fs::path& folder) {
   std::error_code refused;
   const fs::directory_iterator entries(folder, refused);
   if (refused) {
@@ -44,11 +49,14 @@ std::map<std::string, fs::path> map_files(const fs::path& folder) {
                     fmt::format("--maps {}: {}; the service must be able to list and enter this folder",
                                 folder.string(), refused.message()));
   }
-  std::map<std::string, fs::path> files;
+  MapFiles files;
   for (const auto& entry : entries) {
     if (!is_called_a_map(entry.path().filename()) || !is_file(entry)) continue;
-    fs::path& path = files[entry.path().stem()];
-    path = std::max(path, entry.path());  // of city.GPKG and city.gpkg the latter, as small letters come last
+    const auto [known, is_new] = files.of_name.emplace(entry.path().stem(), entry.path());
+    if (is_new) continue;
+    fs::path other = entry.path();
+    if (known->second < other) known->second.swap(other);  // small letters, the usual ones, come last
+    files.left_out.insert(std::move(other));
   }
   return files;
 }
@@ -187,8 +195,14 @@ void MapRegistry::refresh() {
 }
 
 void MapRegistry::look() {
-  const auto files = map_files(folder_);
-  for (const auto& [name, path] : files) {
+  const MapFiles files = map_files(folder_);
+  for (const fs::path& path : files.left_out) {
+    if (left_out_.contains(path)) continue;
+    spdlog::warn("{} is not served: another file of the folder is called so but for the case of {}; rename it",
+                 path.string(), kExtension);
+  }
+  left_out_ = files.left_out;
+  for (const auto& [name, path] : files.of_name) {
     const Stamp stamp = stamp_of(path);
     Entry known;  // outlives the lock in which another takes its place: to free a map may take long
     {
@@ -203,7 +217,7 @@ void MapRegistry::look() {
     const std::lock_guard lock(mutex_);
     entries_[name] = std::move(current);
   }
-  forget_missing(files);
+  forget_missing(files.of_name);
 }
 
 std::optional<std::string> MapRegistry::problem() const {

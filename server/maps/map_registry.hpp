@@ -1,5 +1,5 @@
-// The maps being served: every *.gpkg of a folder, in any case, that is not hidden (.city.gpkg). Files that appear,
-// change or leave are noticed without a restart.
+// The maps being served: every *.gpkg of a folder, in any case, that is not hidden (.city.gpkg). Of city.gpkg and
+// city.GPKG the former is served. Files that appear, change or leave are noticed without a restart.
 #pragma once
 
 #include <chrono>
@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -91,6 +92,7 @@ class MapRegistry {
   const std::size_t cache_bytes_;
   const std::size_t search_cache_bytes_;
   std::mutex refresh_mutex_;
+  std::set<std::filesystem::path> left_out_;  ///< files of which it was said; changed holding `refresh_mutex_`
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::map<std::string, Entry> entries_;

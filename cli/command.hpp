@@ -16,6 +16,7 @@ void add_fly_command(CLI::App& app);
 void add_frames_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
+void add_localizability_command(CLI::App& app);
 void add_match_command(CLI::App& app);
 void add_remove_command(CLI::App& app);
 void add_serve_command(CLI::App& app);

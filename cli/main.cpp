@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_bench_command(app);
   roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);
+  roadfix::cli::add_localizability_command(app);
   roadfix::cli::add_match_command(app);
   roadfix::cli::add_fix_command(app);
   roadfix::cli::add_fly_command(app);

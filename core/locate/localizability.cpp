@@ -11,8 +11,6 @@
 namespace roadfix {
 namespace {
 
-constexpr double kSmallestM = 20.0;
-constexpr double kLargestM = 5000.0;
 constexpr double kMaxFootprintCells = 4096.0;  // in finer cells large footprints would take gigabytes
 
 /// The cells of the map, or where a footprint has too many of them, those of an overview.
@@ -35,9 +33,10 @@ bool is_at(const FixMode& mode, GridPoint place, const UtmZone& zone, double cel
 }  // namespace
 
 Localizability localizability(const MapView& map, const LocalizabilityQuery& query) {
-  if (!(query.footprint_m >= kSmallestM && query.footprint_m <= kLargestM)) {
+  if (!(query.footprint_m >= kSmallestFootprintM && query.footprint_m <= kLargestFootprintM)) {
     throw InvalidInput("footprint-out-of-range",
-                       fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestM, kLargestM));
+                       fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestFootprintM,
+                                   kLargestFootprintM));
   }
   const GridPoint place = map.zone.project(query.position);
   if (!map.extent.empty() && !contains({place, query.radius_m}, nearest(map.extent, place))) {

@@ -6,6 +6,13 @@
 
 namespace roadfix {
 
+/// Of the side of a footprint.
+inline constexpr double kSmallestFootprintM = 20.0;
+inline constexpr double kLargestFootprintM = 5000.0;
+
+/// Less of a footprint on the map says nothing about the place.
+inline constexpr double kMinObservedShare = 0.5;
+
 struct LocalizabilityQuery {
   LatLon position;
   double footprint_m = 400.0;  ///< side of the square of ground that a frame shows

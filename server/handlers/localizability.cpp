@@ -22,10 +22,8 @@
 namespace roadfix::server {
 namespace {
 
-constexpr api::Range kFootprint{20.0, 5000.0};
+constexpr api::Range kFootprint{kSmallestFootprintM, kLargestFootprintM};
 constexpr double kUsualFootprintM = 400.0;
-/// Less of a footprint on the map says nothing about the place.
-constexpr double kMinObservedShare = 0.5;
 constexpr int kTilesDrawn = 1;            ///< at a time
 constexpr std::size_t kPlaceBytes = 160;  // that one takes beside its key and a copy of it
 constexpr std::size_t kPlacesBytes = std::size_t{16} << 20;

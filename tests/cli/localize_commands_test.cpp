@@ -69,6 +69,21 @@ TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
   EXPECT_EQ(answer["map"]["name"], "town");
 }
 
+TEST_F(LocalizeCommands, LocalizabilitySaysHowMuchOfTheGroundGivesAFix) {
+  const std::string ask = "localizability " + map.string() + " --footprint-m 400";
+  const ProgramResult result = roadfix(ask + " --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto answer = nlohmann::json::parse(result.out);
+  EXPECT_EQ(answer["map"]["name"], "town");
+  EXPECT_EQ(answer["places"], 6);
+  EXPECT_NEAR(answer["ground_km2"].get<double>(), 0.96, 1e-9);
+  EXPECT_GT(answer["distinct"], 0.5);
+  EXPECT_NEAR(answer["distinct"].get<double>() + answer["sparse"].get<double>() + answer["bare"].get<double>(), 1.0,
+              1e-9);
+  EXPECT_THAT(roadfix(ask + " --places 2").out, HasSubstr("0.6 km2 of ground, asked every 800 m for frames"));
+  EXPECT_EQ(roadfix("localizability " + map.string()).code, 2) << "of which footprint?";
+}
+
 TEST_F(LocalizeCommands, FixIsAsAccurateAsTheNadirIsKnown) {
   const ProgramResult told = roadfix("fix --json " + input + "--nadir-sigma 30");
   ASSERT_EQ(told.code, 0) << told.err;

@@ -1,0 +1,33 @@
+// Before the flight: over how much of the ground of a map does a frame tell its place?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/locate/localizability.hpp"
+
+namespace roadfix {
+
+struct SurveyOptions {
+  /// Of each place; its position is not read.
+  LocalizabilityQuery query;
+  std::int64_t max_places = 1000;  ///< each takes about a second of one core
+  int threads = 1;
+  std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< from any thread, one call at a time
+};
+
+/// Places of which the map has observed half of the footprint or more; of others it cannot say.
+struct MapSurvey {
+  double every_m = 0.0;       ///< from one place to the next: each speaks for a square of that side
+  std::int64_t distinct = 0;  ///< a frame would give a fix
+  std::int64_t sparse = 0;    ///< it shows roads, but they fit elsewhere, too, or are too few to be sure
+  std::int64_t bare = 0;      ///< it shows less road than a single one across it
+
+  std::int64_t places() const { return distinct + sparse + bare; }
+};
+
+/// Asks localizability() at the places of a square lattice over the map's extent, a footprint from each other or, where
+/// those are more than `max_places`, that distance doubled until they are not. Throws what localizability() throws.
+MapSurvey survey(const MapView& map, const SurveyOptions& options);
+
+}  // namespace roadfix

@@ -1,0 +1,82 @@
+#include "core/locate/map_survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stop_token>
+
+#include "core/grid/resample.hpp"
+#include "tests/support/code_of.hpp"
+#include "tests/support/map_view.hpp"
+#include "tests/support/street_map.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::view_of;
+
+/// Winding streets, a third of fields, and a third that nobody has looked at; the thirds are 400 m wide.
+MapView town_fields_and_unknown_ground() {
+  RoadGrid ground = testing::street_map(22, {2.0, {300'000, -3'200'000}, 600, 400});
+  paste(CellArray(200, 400, kNoRoad), ground.cells, 200, 0);
+  paste(CellArray(200, 400), ground.cells, 400, 0);
+  return view_of(ground);
+}
+
+SurveyOptions options() {
+  SurveyOptions options;
+  options.query.footprint_m = 400.0;
+  options.query.radius_m = 500.0;
+  return options;
+}
+
+TEST(MapSurvey, TellsGroundThatGivesAFixFromBareAndUnknownGround) {
+  const MapView map = town_fields_and_unknown_ground();
+  SurveyOptions all = options();
+  all.threads = 2;
+  std::int64_t told = 0;
+  all.progress = [&](std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(done, ++told);
+    EXPECT_EQ(total, 6);
+  };
+  const MapSurvey found = survey(map, all);
+  EXPECT_EQ(found.every_m, 400.0);
+  EXPECT_EQ(told, 6);
+  EXPECT_EQ(found.distinct, 2);
+  EXPECT_EQ(found.sparse, 0);
+  EXPECT_EQ(found.bare, 2);
+  EXPECT_EQ(found.places(), 4);
+}
+
+TEST(MapSurvey, CallsGroundSparseWhoseRoadsFitElsewhere) {
+  SurveyOptions of_city = options();
+  of_city.query.footprint_m = 300.0;
+  const MapSurvey found = survey(view_of(testing::grid_city({2.0, {300'000, -3'200'000}, 600, 600}, 90.0)), of_city);
+  EXPECT_EQ(found.distinct, 0);
+  EXPECT_GT(found.sparse, 0);
+  EXPECT_EQ(found.bare, 0);
+}
+
+TEST(MapSurvey, AsksFewerPlacesFartherApartWhereThoseWouldBeTooMany) {
+  SurveyOptions few = options();
+  few.max_places = 4;
+  const MapSurvey found = survey(town_fields_and_unknown_ground(), few);
+  EXPECT_EQ(found.every_m, 800.0);
+  EXPECT_LE(found.places(), 2);
+}
+
+TEST(MapSurvey, OfAnEmptyMapAsksNothing) {
+  MapView map = town_fields_and_unknown_ground();
+  map.extent = {{1.0, 1.0}, {0.0, 0.0}};
+  EXPECT_EQ(survey(map, options()).places(), 0);
+}
+
+TEST(MapSurvey, StopsWhereItIsAskedTo) {
+  std::stop_source stop;
+  stop.request_stop();
+  SurveyOptions stopped = options();
+  stopped.query.fix.stop = stop.get_token();
+  EXPECT_EQ(testing::code_of([&] { survey(town_fields_and_unknown_ground(), stopped); }), "search-stopped");
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -170,7 +170,7 @@ http::Response get_history(const Service& service, const http::Request& request)
   const api::Fields fields(request.query);
   const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
-  const StoredTrack track = service.tracks.find(id_of(request));
+  const StoredTrack track = service.tracks.recorded(id_of(request));
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
     answers.push_back(std::move(step.answer));

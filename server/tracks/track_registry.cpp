@@ -124,6 +124,12 @@ StoredTrack TrackRegistry::find(const std::string& id) const {
   return *track;
 }
 
+StoredTrack TrackRegistry::recorded(const std::string& id) const {
+  const auto track = store().find(id);
+  if (track && ended(*track) == TrackEnd::kExpired && store().last_step(id)) return *track;
+  return find(id);
+}
+
 std::optional<TrackEnd> TrackRegistry::ended(const StoredTrack& track) const {
   if (!track.ended && times_.idle(track.id) > limits_.idle) return TrackEnd::kExpired;
   return track.ended;
@@ -138,7 +144,7 @@ std::optional<StoredStep> TrackRegistry::last_step(const std::string& id) const 
 }
 
 std::vector<StoredStep> TrackRegistry::steps_after(const std::string& id, std::int64_t sequence, int count) const {
-  return store().steps_after(find(id).id, sequence, count);
+  return store().steps_after(recorded(id).id, sequence, count);
 }
 
 std::shared_ptr<TrackEvents::Subscription> TrackRegistry::stream(const std::string& id, std::int64_t after) {
@@ -201,7 +207,7 @@ void TrackRegistry::end(const std::string& id, TrackEnd how) {
 
 void TrackRegistry::finish(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  end(find(id).id, TrackEnd::kFinished);
+  end(recorded(id).id, TrackEnd::kFinished);
 }
 
 void TrackRegistry::tidy() {

@@ -59,10 +59,14 @@ class TrackRegistry {
   std::vector<StoredTrack> of_client(const std::string& client) const;
   /// Throws NotFound ("track-not-found", "track-ended").
   StoredTrack find(const std::string& id) const;
+  /// As find(), and one that has expired for as long as steps of it are kept.
+  StoredTrack recorded(const std::string& id) const;
   const TrackTimes& times() const { return times_; }
   std::optional<StoredStep> step(const std::string& id, std::int64_t sequence) const;
   std::optional<StoredStep> last_step(const std::string& id) const;
+  /// Throws as recorded().
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
+  /// And deletes its steps, also those of a track that has expired. Throws as recorded().
   void finish(const std::string& id);
 
   /// The track with its tracker. Throws as find(), and InvalidInput ("map-replaced").

@@ -104,6 +104,43 @@ StoredTrack track_of(const sqlite::Statement& row) {
           row.text(4), row.integer(5), row.integer(6), end_of(row.text(7))};
 }
 
+/// How far the file is filled, 0 to 1, as `connection` sees it.
+double filled(sqlite::Connection& connection) {
+  const auto pages = [&](const char* name) {
+    return static_cast<double>(sqlite::number(connection, fmt::format("PRAGMA {}", name)));
+  };
+  return (pages("page_count") - pages("freelist_count")) / pages("max_page_count");
+}
+
+void delete_steps(sqlite::Connection& connection, const std::string& id) {
+  sqlite::Statement(connection, "DELETE FROM steps WHERE track = ?1").with(id).run();
+}
+
+/// Flights that are over, the oldest first, give way to those that come: these have half of the file at least.
+void make_room(sqlite::Connection& connection) {
+  constexpr double kMostFilled = 0.5;
+  while (filled(connection) > kMostFilled) {
+    sqlite::Statement oldest(connection,
+                             "SELECT id FROM tracks WHERE ended <> '' AND EXISTS (SELECT 1 FROM steps WHERE track = "
+                             "id) ORDER BY touched_us, id LIMIT 1");
+    if (!oldest.step()) return;
+    const std::string id = oldest.text(0);
+    oldest.reset();
+    delete_steps(connection, id);
+  }
+}
+
+/// All but the last kEndedKept.
+void forget_ended(sqlite::Connection& connection) {
+  sqlite::Statement forgotten(connection,
+                              "DELETE FROM tracks WHERE ended <> '' AND id NOT IN (SELECT id FROM tracks WHERE ended "
+                              "<> '' ORDER BY touched_us DESC, id LIMIT ?1) RETURNING id");
+  std::vector<std::string> ids;
+  forgotten.with(kEndedKept);
+  while (forgotten.step()) ids.push_back(forgotten.text(0));
+  for (const std::string& id : ids) delete_steps(connection, id);
+}
+
 StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.integer(1), row.text(2)}; }
 
 }  // namespace
@@ -198,10 +235,13 @@ std::optional<std::string> TrackStore::problem() const { return impl_->problem()
 void TrackStore::add(const StoredTrack& t) {
   impl_->with([&] {
     impl_->require_file();
+    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
+    make_room(impl_->connection());
     sqlite::Statement(impl_->connection(),
                       fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
         .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
         .run();
+    transaction.commit();
   });
 }
 
@@ -295,12 +335,9 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
     sqlite::Statement(impl_->connection(), "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1 AND ended = ''")
         .with(id, end_column(how))
         .run();
-    sqlite::Statement(impl_->connection(), "DELETE FROM steps WHERE track = ?1").with(id).run();
-    sqlite::Statement(impl_->connection(),
-                      "DELETE FROM tracks WHERE ended <> '' AND id NOT IN (SELECT id FROM tracks WHERE ended <> '' "
-                      "ORDER BY touched_us DESC, id LIMIT ?1)")
-        .with(kEndedKept)
-        .run();
+    if (how == TrackEnd::kFinished) delete_steps(impl_->connection(), id);
+    forget_ended(impl_->connection());
+    make_room(impl_->connection());
     transaction.commit();
     impl_->has_room();
     return last;

@@ -66,9 +66,10 @@ class TrackStore {
   /// Up to `count` steps above the sequence number, in order.
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
 
-  /// Takes the state and steps away and keeps that there was such a track, for as long as it is among the last
-  /// 100 that ended; how it ended first stays. Returns the steps above the sequence number, in order: the last 10,000
-  /// of them at most, none without one.
+  /// Takes the state away, and of a track that is finished the steps; keeps that there was such a track and how it
+  /// ended first for as long as it is among the last 100 that ended. The steps of one that expired stay as long, unless
+  /// the file is half full and they are the oldest. Returns the steps above the sequence number, in order: the last
+  /// 10,000 of them at most, none without one.
   std::vector<StoredStep> end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence = {});
 
  private:

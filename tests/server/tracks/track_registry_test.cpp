@@ -120,6 +120,27 @@ TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
   EXPECT_TRUE(tracks->of_client("::1").empty());
 }
 
+TEST_F(TrackRegistryTest, ShowsWhatAnExpiredTrackFlewUntilItIsDeleted) {
+  const std::string id = [&] {
+    const auto tracks = registry();
+    std::string flown = begin(*tracks);
+    take(*tracks, flown, 0);
+    return flown;
+  }();
+  TrackLimits limits;
+  limits.idle = std::chrono::milliseconds(-1);  // at once
+  const auto tracks = registry(limits);
+  for (const bool tidied : {false, true}) {
+    if (tidied) tracks->tidy();
+    EXPECT_EQ(code_of([&] { tracks->find(id); }), "track-ended");
+    EXPECT_EQ(tracks->recorded(id).map, "town");
+    EXPECT_EQ(tracks->steps_after(id, -1, 10).size(), 1U);
+  }
+  tracks->finish(id);
+  EXPECT_EQ(code_of([&] { tracks->steps_after(id, -1, 10); }), "track-ended");
+  EXPECT_EQ(code_of([&] { tracks->finish(id); }), "track-ended");
+}
+
 TEST_F(TrackRegistryTest, EndsNoTrackThatHasJustBegunInAnOldService) {
   TrackLimits limits;
   limits.idle = std::chrono::seconds(2);

@@ -85,6 +85,39 @@ TEST(TrackStore, KeepsHowATrackEndedFirst) {
   EXPECT_EQ(store.find("a")->ended, TrackEnd::kFinished);
 }
 
+TEST(TrackStore, KeepsTheStepsOfATrackThatExpiredUntilItIsForgotten) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  store.add(track("flown"));
+  ASSERT_TRUE(store.add_step("flown", 2, state(100), {0, 0, "answer"}));
+  store.end("flown", TrackEnd::kExpired);
+  EXPECT_EQ(store.steps_after("flown", -1, 10).size(), 1U);
+  EXPECT_TRUE(store.state("flown").empty());
+  for (int i = 0; i < 100; ++i) {
+    StoredTrack later = track("t" + std::to_string(i));
+    later.touched_us = 3 + i;
+    store.add(later);
+    store.end(later.id, TrackEnd::kFinished);
+  }
+  EXPECT_FALSE(store.find("flown"));
+  EXPECT_TRUE(store.steps_after("flown", -1, 10).empty());
+}
+
+TEST(TrackStore, GivesTheRoomOfTheOldestFlightsToThoseThatCome) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", 1 << 20);
+  for (int i = 0; i < 20; ++i) {
+    const std::string id = "t" + std::to_string(i);
+    store.add(track(id));
+    ASSERT_TRUE(store.add_step(id, 2 + i, state(100), {0, 0, std::string(100'000, 'a')}));
+    store.end(id, TrackEnd::kExpired);
+  }
+  EXPECT_FALSE(store.last_step("t0"));
+  EXPECT_TRUE(store.find("t0")) << "that it has ended is still known";
+  EXPECT_TRUE(store.last_step("t18"));
+  EXPECT_TRUE(store.last_step("t19"));
+}
+
 TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);

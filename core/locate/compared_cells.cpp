@@ -66,6 +66,13 @@ GridReader compared_cells(const MapView& map, double finest_cell_m) {
   };
 }
 
+MapView compared_map(const MapView& map) {
+  MapView result = map;
+  result.searches = nullptr;
+  result.read = [&map](const GridGeometry& geometry) { return RoadGrid{geometry, compared(map, geometry)}; };
+  return result;
+}
+
 FeatureMap compared_cells(FeatureMap features) {
   half_the_log_odds().apply(features.cells);
   return features;

@@ -1,10 +1,9 @@
-// What `locate` lets the search compare: not probabilities but half their log odds (core/match/soft_cells.hpp). A
+// What searches and tracks compare: not probabilities but half their log odds (core/match/soft_cells.hpp). A
 // detector is less sure of roads in a picture of another day, and those that it doubts tell places apart too:
 // docs/experiments.md has the measurement. Coarser cells are averaged after the log odds are halved, not before:
 // otherwise every road would become wider.
 //
-// Equation (5) of a fix and the weights of a track's particles use the cells as they are: equation (7) is the paper's,
-// and measurement_model.hpp expects the correlation of plain cells.
+// Equations (5) and (7) are the paper's and use the cells as they are.
 #pragma once
 
 #include "core/grid/feature_map.hpp"
@@ -17,6 +16,8 @@ namespace roadfix {
 /// reader. Coarser cells are kept in MapView::searches, so every search that shares it has to read through such a
 /// reader.
 GridReader compared_cells(const MapView& map, double finest_cell_m);
+/// `map` as half its log odds, without what searches build. `map` must outlive it.
+MapView compared_map(const MapView& map);
 /// The feature map as half its log odds.
 FeatureMap compared_cells(FeatureMap features);
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/locate/compared_cells.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/particle_likelihoods.hpp"
-#include "core/locate/particle_matches.hpp"
 #include "core/locate/prepare.hpp"
 
 namespace roadfix {
@@ -103,13 +103,21 @@ void Tracker::Step::see() {
   if (view == View::kStandsStill) state_.claim.reject();  // nobody knows whether the camera has stopped or the vehicle
 }
 
+/// The correlation is that of what a search compares; the other models speak of probabilities.
+ParticleMatches Tracker::Step::matches() const {
+  const auto match = [&](const MapView& map, const FeatureMap& features) {
+    return match_particles(map, features, filter_.particles(), settings_.vehicle.scale_range, limits_.threads,
+                           limits_.stop);
+  };
+  const bool correlates = settings_.measurement_model.kind == LikelihoodKind::kCorrelation;
+  return correlates ? match(compared_map(map_), compared_cells(*features_)) : match(map_, *features_);
+}
+
 void Tracker::Step::measure() {
   ++state_.measured;
   if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
-  const ParticleMatches matches = match_particles(map_, *features_, filter_.particles(), settings_.vehicle.scale_range,
-                                                  limits_.threads, limits_.stop);
   const auto log_likelihoods =
-      log_likelihoods_of(filter_.particles(), matches, *features_, settings_.measurement_model);
+      log_likelihoods_of(filter_.particles(), matches(), *features_, settings_.measurement_model);
   if (log_likelihoods) {
     weigh(*log_likelihoods);
   } else {

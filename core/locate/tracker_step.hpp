@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "core/locate/particle_matches.hpp"
 #include "core/locate/step_estimate.hpp"
 #include "core/locate/track_look.hpp"
 #include "core/locate/track_motion.hpp"
@@ -27,6 +28,7 @@ class Tracker::Step {
   void begin_or_move();
   void move();
   void see();
+  ParticleMatches matches() const;
   void measure();
   void weigh(std::span<const double> log_likelihoods);
   bool saw_nothing() const;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -37,8 +38,8 @@ std::string first_line(int pipe) {
 
 ServiceProcess::ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options, int port) {
   std::vector<std::string> arguments{ROADFIX_PROGRAM,      "serve",   "--maps", maps.string(), "--port",
-                                     std::to_string(port), "--watch", "0.05",   "--log-level", "warn",
-                                     "--detector",         "tree"};
+                                     std::to_string(port), "--watch", "0.05",   "--log-level", "warn"};
+  if (!std::ranges::count(options, "--detector")) arguments.insert(arguments.end(), {"--detector", "tree"});
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");

@@ -13,7 +13,8 @@ namespace roadfix::testing {
 class ServiceProcess {
  public:
   /// Starts it and waits until it has printed its address. `options` come after --maps and --port; 0 = any free one.
-  /// However the thread that calls this ends, the service ends with it.
+  /// The detector is the tree, if they name no other. However the thread that calls this ends, the service ends with
+  /// it.
   explicit ServiceProcess(const std::filesystem::path& maps, const std::vector<std::string>& options = {},
                           int port = 0);
   /// Kills it if it still runs.

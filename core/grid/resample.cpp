@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "core/grid/feature_rotator.hpp"
+#include "core/grid/halving_kernel.hpp"
 #include "core/grid/sampling.hpp"
 
 namespace roadfix {
@@ -76,18 +79,10 @@ void turn_square(const CellArray& cells, CellArray& turned, int col, int row) {
 
 CellArray halved(const CellArray& cells) {
   CellArray result((cells.cols() + 1) / 2, (cells.rows() + 1) / 2);
+  const std::vector<Cell> beyond(static_cast<std::size_t>(cells.cols()), kUnobserved);
   for (int row = 0; row < result.rows(); ++row) {
-    for (int col = 0; col < result.cols(); ++col) {
-      int sum = 0;
-      int count = 0;
-      for (const Cell cell : {cells.get(2 * col, 2 * row), cells.get(2 * col + 1, 2 * row),
-                              cells.get(2 * col, 2 * row + 1), cells.get(2 * col + 1, 2 * row + 1)}) {
-        if (!is_observed(cell)) continue;
-        sum += cell;
-        ++count;
-      }
-      if (count > 0) result.at(col, row) = static_cast<Cell>((sum + count / 2) / count);
-    }
+    const bool has_lower = 2 * row + 1 < cells.rows();
+    halve_rows(cells.row(2 * row), has_lower ? cells.row(2 * row + 1) : std::span<const Cell>(beyond), result.row(row));
   }
   return result;
 }

@@ -32,13 +32,14 @@ Driver driver_of(ExportFormat format, const MapInfo& info) {
   CPLStringList options;
   switch (format) {
     case ExportFormat::kCog:
-      for (const char* option : {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"}) {
+      for (const char* option :
+           {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"}) {
         options.AddString(option);
       }
       return {"COG", PixelKind::kProbability, options};
     case ExportFormat::kGeoTiff:
-      for (const char* option :
-           {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256", "BIGTIFF=IF_SAFER"}) {
+      for (const char* option : {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256",
+                                 "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"}) {
         options.AddString(option);
       }
       return {"GTiff", PixelKind::kProbability, options};

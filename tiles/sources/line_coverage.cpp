@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +9,7 @@ namespace roadfix {
 namespace {
 
 constexpr int kSubcells = 8;  // a side
+static_assert(kSubcells * kSubcells == LineCoverage::kSamples);
 using Position = GridGeometry::CellPosition;
 
 /// Part of a horizontal line; grows to hold what is added.
@@ -34,21 +34,33 @@ void add_edge(Interval& interval, Position a, Position b, double y) {
   interval.add(a.col + (y - a.row) / (b.row - a.row) * (b.col - a.col));
 }
 
-/// Where the line y crosses all that lies within `radius` of the segment: a convex shape, hence one interval.
-Interval across(Position a, Position b, double radius, double y) {
-  Interval interval;
-  add_disc(interval, a, radius, y);
-  add_disc(interval, b, radius, y);
-  const double length = std::hypot(b.col - a.col, b.row - a.row);
-  if (length > 0.0) {
+/// All that lies within `radius` of the segment: a convex shape.
+class Capsule {
+ public:
+  Capsule(Position a, Position b, double radius) : a_(a), b_(b), radius_(radius) {
+    const double length = std::hypot(b.col - a.col, b.row - a.row);
+    if (length <= 0.0) return;
     const Position side{-(b.row - a.row) / length * radius, (b.col - a.col) / length * radius};
-    const std::array<Position, 4> corners{
-        Position{a.col + side.col, a.row + side.row}, Position{b.col + side.col, b.row + side.row},
-        Position{b.col - side.col, b.row - side.row}, Position{a.col - side.col, a.row - side.row}};
-    for (std::size_t i = 0; i < corners.size(); ++i) add_edge(interval, corners[i], corners[(i + 1) % 4], y);
+    corners_ = {Position{a.col + side.col, a.row + side.row}, Position{b.col + side.col, b.row + side.row},
+                Position{b.col - side.col, b.row - side.row}, Position{a.col - side.col, a.row - side.row}};
   }
-  return interval;
-}
+
+  /// Where the line y crosses it: one interval.
+  Interval across(double y) const {
+    Interval interval;
+    add_disc(interval, a_, radius_, y);
+    add_disc(interval, b_, radius_, y);
+    for (std::size_t i = 0; i < corners_.size(); ++i) add_edge(interval, corners_[i], corners_[(i + 1) % 4], y);
+    return interval;
+  }
+
+ private:
+  Position a_;
+  Position b_;
+  double radius_;
+  /// Of the rectangle between the discs. Those of a point are all alike: no line crosses its edges.
+  std::array<Position, 4> corners_{};
+};
 
 }  // namespace
 
@@ -64,8 +76,9 @@ void LineCoverage::add(GridPoint from, GridPoint to, double half_width_m) {
   if (!(top <= bottom)) return;
   const int first = std::max(0, static_cast<int>(std::floor(top * kSubcells)));
   const int last = std::min(block_.rows * kSubcells - 1, static_cast<int>(std::ceil(bottom * kSubcells)));
+  const Capsule capsule(a, b, radius);
   for (int sample_row = first; sample_row <= last; ++sample_row) {
-    const Interval interval = across(a, b, radius, (sample_row + 0.5) / kSubcells);
+    const Interval interval = capsule.across((sample_row + 0.5) / kSubcells);
     add_row(sample_row, interval.first, interval.last);
   }
 }
@@ -76,20 +89,13 @@ void LineCoverage::add_row(int sample_row, double first, double last) {
   if (!(from <= to)) return;
   const auto begin = static_cast<int>(from);
   const auto end = static_cast<int>(to);
-  const auto base = static_cast<std::size_t>(sample_row / kSubcells) * static_cast<std::size_t>(block_.cols);
   const int shift = sample_row % kSubcells * kSubcells;
   for (int col = begin / kSubcells; col <= end / kSubcells; ++col) {
     const int low = std::max(begin - col * kSubcells, 0);
     const int high = std::min(end - col * kSubcells, kSubcells - 1);
     const std::uint64_t bits = (0xFFULL >> (kSubcells - 1 - high)) & (0xFFULL << low);
-    samples_[base + static_cast<std::size_t>(col)] |= (bits & 0xFFULL) << shift;
+    samples_[index(col, sample_row / kSubcells)] |= (bits & 0xFFULL) << shift;
   }
-}
-
-double LineCoverage::share(int col, int row) const {
-  const auto index =
-      static_cast<std::size_t>(row) * static_cast<std::size_t>(block_.cols) + static_cast<std::size_t>(col);
-  return std::popcount(samples_[index]) / static_cast<double>(kSubcells * kSubcells);
 }
 
 }  // namespace roadfix

@@ -2,6 +2,8 @@
 // cell. Where roads overlap, the ground is counted once.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,14 +13,19 @@ namespace roadfix {
 
 class LineCoverage {
  public:
+  static constexpr int kSamples = 64;  ///< of a cell
+
   explicit LineCoverage(const GridGeometry& block);
 
   /// Adds all ground within `half_width_m` of the segment.
   void add(GridPoint from, GridPoint to, double half_width_m);
-  /// Share of the cell that is covered, in [0, 1].
-  double share(int col, int row) const;
+  /// How many of the kSamples of the cell are covered.
+  int covered(int col, int row) const { return std::popcount(samples_[index(col, row)]); }
 
  private:
+  std::size_t index(int col, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(block_.cols) + static_cast<std::size_t>(col);
+  }
   void add_row(int sample_row, double first, double last);
 
   GridGeometry block_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -115,6 +116,16 @@ RoadNetwork network_on_ground(const std::vector<std::string>& paths, const Vecto
   return network;
 }
 
+/// Of a cell, by how many of its samples a road covers.
+std::array<Cell, LineCoverage::kSamples + 1> cells_by_coverage() {
+  const Certainty certainty;
+  std::array<Cell, LineCoverage::kSamples + 1> cells{};
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    cells[n] = cell_from_probability(certainty.probability(static_cast<double>(n) / LineCoverage::kSamples));
+  }
+  return cells;
+}
+
 class RoadVectors final : public CellSource {
  public:
   RoadVectors(const std::vector<std::string>& paths, const VectorOptions& options, const RoadRules& rules, UtmZone zone,
@@ -144,12 +155,12 @@ class RoadVectors final : public CellSource {
     }
     LineCoverage coverage(block);
     index_.visit(box, [&](const Segment& s) { coverage.add(s.from, s.to, s.half_width_m); });
-    const Certainty certainty;
+    const auto cells = cells_by_coverage();
     CellArray result(block.cols, block.rows);
     std::size_t i = 0;
     for (int row = 0; row < block.rows; ++row) {
       for (int col = 0; col < block.cols; ++col) {
-        if (inside[i++]) result.at(col, row) = cell_from_probability(certainty.probability(coverage.share(col, row)));
+        if (inside[i++]) result.at(col, row) = cells[static_cast<std::size_t>(coverage.covered(col, row))];
       }
     }
     return result;

@@ -42,6 +42,20 @@ CellArray sampled(const CellArray& source, const Placement& placement, int cols,
   return result;
 }
 
+/// Whether the corner of a cell lies there, and not so far away that its number does not fit.
+bool lies_on_cells(CellPosition position) {
+  constexpr double kFarthest = 1e9;
+  const auto is_whole = [](double at) { return std::abs(at) < kFarthest && at == std::floor(at); };
+  return is_whole(position.col) && is_whole(position.row);
+}
+
+/// What sampled() gives of cells that lie on those of the source.
+CellArray copied(const CellArray& source, CellPosition origin, int cols, int rows) {
+  CellArray result(cols, rows);
+  paste(source, result, -static_cast<int>(origin.col), -static_cast<int>(origin.row));
+  return result;
+}
+
 /// Whether less than a quarter of each cell of `step` source cells a side lies on the source, so that the result is
 /// unobserved; taking the step^2 samples of such a cell would be without end.
 bool covers_no_cell(const CellArray& source, double step) {
@@ -135,7 +149,9 @@ FeatureMap cut_out(const RoadGrid& grid, const GridPose& pose, int cols, int row
   const CellPosition centre{cols / 2.0, rows / 2.0};
   const Placement placement{
       {at.col - c * centre.col + s * centre.row, at.row - s * centre.col - c * centre.row}, {c, s}, {-s, c}};
-  return {sampled(grid.cells, placement, cols, rows), cell_m, centre};
+  const bool is_copy = placement.right == CellPosition{1.0, 0.0} && lies_on_cells(placement.origin);
+  return {is_copy ? copied(grid.cells, placement.origin, cols, rows) : sampled(grid.cells, placement, cols, rows),
+          cell_m, centre};
 }
 
 }  // namespace roadfix

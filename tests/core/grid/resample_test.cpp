@@ -72,6 +72,27 @@ TEST(CutOut, ReturnsTheGridItselfAtItsCentre) {
   EXPECT_EQ(cut_out(grid, {box.centre(), Angle::degrees(0)}, 4, 4, 2.0).cells, grid.cells);
 }
 
+TEST(CutOut, OfCellsNorthUpIsACopyWhereverItLies) {
+  std::mt19937_64 random(9);
+  const RoadGrid grid{{2.0, {-40, 70}, 30, 20}, testing::random_cells(random, 30, 20, 0.3)};
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  for (int round = 0; round < 200; ++round) {
+    const int cols = 1 + below(50);
+    const int rows = 1 + below(40);
+    const int first_col = below(100) - 60;
+    const int first_row = below(80) - 50;
+    const auto centre_beside = [&](double cells) {
+      return grid.geometry.point_at({first_col + cols / 2.0 + cells, first_row + rows / 2.0 + cells});
+    };
+    CellArray expected(cols, rows);
+    for (int row = 0; row < rows; ++row) {
+      for (int col = 0; col < cols; ++col) expected.at(col, row) = grid.cells.get(first_col + col, first_row + row);
+    }
+    ASSERT_EQ(cut_out(grid, {centre_beside(0.0), Angle()}, cols, rows, 2.0).cells, expected) << round;
+    ASSERT_EQ(cut_out(grid, {centre_beside(1e-9), Angle()}, cols, rows, 2.0).cells, expected) << "sampled, " << round;
+  }
+}
+
 TEST(CutOut, UndoesARotation) {
   const FeatureMap map = FeatureMap::centred(from_ascii("##... "
                                                         ".#... "
@@ -89,7 +110,9 @@ TEST(CutOut, UndoesARotation) {
 
 TEST(CutOut, BeyondTheGridNothingWasObserved) {
   const RoadGrid grid{{1.0, {0, 0}, 4, 4}, CellArray(4, 4, kNoRoad)};
-  EXPECT_EQ(cut_out(grid, {{100, 100}, Angle()}, 3, 3, 1.0).cells.observed_count(), 0u);
+  for (const double far : {100.0, -3e9, 1e300}) {
+    EXPECT_EQ(cut_out(grid, {{far, far}, Angle()}, 3, 3, 1.0).cells.observed_count(), 0u) << far;
+  }
 }
 
 TEST(Resampled, CoarserCellsAverageTheArea) {

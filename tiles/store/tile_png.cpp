@@ -53,9 +53,11 @@ void read_pixels(std::span<const std::byte> png, TileDepth depth, std::span<std:
 }
 
 std::vector<std::byte> encoded(std::span<const std::uint8_t> pixels, TileDepth depth) {
-  // Detections (noise) need less room as they are, drawn roads with differences between rows: try both.
-  auto plain = encode_grey_png(pixels, shape_of(depth), PngFilter::kNone);
   auto differences = encode_grey_png(pixels, shape_of(depth), PngFilter::kDifferenceToRowAbove);
+  // Runs are of bytes: 16 bits as they are have none to speak of, and take four times as long to pack.
+  if (depth == TileDepth::kFused) return differences;
+  // Detections (noise) need less room as they are, others with differences between rows: try both.
+  auto plain = encode_grey_png(pixels, shape_of(depth), PngFilter::kNone);
   return plain.size() <= differences.size() ? plain : differences;
 }
 

@@ -27,8 +27,8 @@ double Calibration::probability(const SearchFigures& figures) const {
   }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
-  const bool one_road = !(figures.roads_across >= kMinRoadsAcross);
-  const double not_by_chance = one_road ? 0.0 : std::exp(-std::exp(-figures.surprise));
+  const bool alike = !(figures.other_roads_across >= kMinOtherRoadsAcross);
+  const double not_by_chance = alike ? 0.0 : std::exp(-std::exp(-figures.surprise));
   return std::min(learned, std::max(kSureByExamples, not_by_chance));
 }
 

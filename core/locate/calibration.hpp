@@ -2,7 +2,7 @@
 // known truth (docs/calibration.md). Monotone in every figure, and never surer than the examples it was learned from:
 // beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`. Above 0.5
 // it is no surer than the search itself that no other place fits as well by chance, whatever the examples say; at most
-// 0.5 where the place rests on less than kMinRoadsAcross.
+// 0.5 where the place rests on less than kMinOtherRoadsAcross.
 #pragma once
 
 #include <array>

@@ -92,12 +92,12 @@ void call_ambiguous(Decision& decision, const std::vector<double>& ratios, const
   }
 }
 
-std::string shares_one_road(const SearchFigures& figures) {
+std::string shares_too_few_roads(const SearchFigures& figures) {
   const double across_m = std::exp(0.5 * figures.ground);
   return fmt::format(
-      "at the best place frame and map share {:.0f} m of road, and a single straight road across the frame has up to "
-      "{:.0f} m: use a larger footprint, or fly on to where roads are; the UAV may not be over this map",
-      figures.roads_across * across_m, kMinRoadsAcross * across_m);
+      "at the best place frame and map share {:.0f} m of road beside two straight ones, and {:.0f} m are needed, since "
+      "junctions look alike: use a larger footprint, or fly on to where roads are; the UAV may not be over this map",
+      figures.other_roads_across * across_m, kMinOtherRoadsAcross * across_m);
 }
 
 /// Share of the best mode beside the places around the region, as if those lay in it.
@@ -149,16 +149,16 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   const double share = share_beside_outside(found);
   decision.probability = share * within;
   decision.weights = weights_of(ratios, decision.probability);
-  const bool one_road = figures.roads_across < kMinRoadsAcross;
-  const bool sure_within = !one_road && within >= confidence;
+  const bool few_roads = figures.other_roads_across < kMinOtherRoadsAcross;
+  const bool sure_within = !few_roads && within >= confidence;
   if (!found.complete()) {
     explain_time_limit(decision, found);
-  } else if (!one_road && decision.probability >= confidence) {
+  } else if (!few_roads && decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
   } else if (sure_within || (share < 0.5 && (within > kLikely || is_known_outside(found)))) {
     explain(decision, "better-outside-prior", fits_outside(found));
-  } else if (one_road) {
-    explain(decision, kNotAboveChanceReason, shares_one_road(figures));
+  } else if (few_roads) {
+    explain(decision, kNotAboveChanceReason, shares_too_few_roads(figures));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, ratios, calibration, confidence);
   } else if (decision.probability > kLikely) {

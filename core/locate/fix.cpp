@@ -73,6 +73,7 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   result.scale_range = options.scale_range;
   result.cache = map.searches;
   if (options.looks_beyond_prior) result.surroundings = map.extent;
+  result.straight_roads = options.straight_roads;
   result.threads = options.threads;
   result.progress = options.progress;
   result.stop = options.stop;

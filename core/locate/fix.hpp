@@ -32,6 +32,9 @@ struct FixOptions {
   std::chrono::milliseconds proof_time{0};
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
+  /// So many straight roads tell no place: two, since junctions look alike; one where a place is known and has to be
+  /// borne out.
+  int straight_roads = 2;
   /// Where several frames were laid together: the one whose nadir is asked for. It alone has to bear a likely place
   /// out.
   std::optional<FeatureMap> own_frame{};

@@ -9,6 +9,7 @@
 #include "core/grid/observed_range.hpp"
 #include "core/locate/search_figures.hpp"
 #include "core/match/score.hpp"
+#include "core/search/shared_road.hpp"
 
 namespace roadfix {
 namespace {

@@ -49,8 +49,7 @@ SearchFigures figures_of(const SearchResult& found) {
   SearchFigures figures;
   figures.surprise = kUnknown;
   figures.agreement = found.modes.front().pearson * std::sqrt(ground / kSampleM2);
-  const double road_width_m = std::max(kRoadWidthM, found.cell_m);
-  if (ground > 0.0) figures.roads_across = found.modes.front().shared_road_m2 / (road_width_m * std::sqrt(ground));
+  if (ground > 0.0) figures.other_roads_across = found.modes.front().other_roads_m / std::sqrt(ground);
   figures.ground = std::log(std::max(ground, 1.0));
   if (background.sd > 0.0) figures.lead = std::clamp(ahead / background.sd, 0.0, kLargestFigure);
   if (background.rivals.size() < kFewestRivals) return figures;

@@ -2,8 +2,6 @@
 // distances between scores in units of the spread that the scores of this very search have.
 #pragma once
 
-#include <numbers>
-
 #include "core/search/search.hpp"
 
 namespace roadfix {
@@ -13,13 +11,11 @@ namespace roadfix {
 /// make it sure too early, and counts more ground as one (MeasurementModel::independent_m2).
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
-/// Assumed of streets; in larger cells a road is as wide as a cell.
-inline constexpr double kRoadWidthM = 6.0;
-
-/// A single straight road places a frame nowhere, since it looks like every other, and across a square it is at most as
-/// long as the diagonal. A place that rests on no more is explained by chance, however far it is ahead: where few cells
-/// are road, the scores of other places say nothing of how often those few fit.
-inline constexpr double kMinRoadsAcross = std::numbers::sqrt2;
+/// One straight road looks like every other, and so does a junction of straight roads: beside its two longest lines,
+/// all that T, X and L have, nothing is left, and of a third arm as in a Y no more than half a diagonal of a square,
+/// 0.71. A place needs more. Else it is explained by chance, however far it is ahead: where few cells are road, the
+/// scores of other places say nothing of how often those few fit.
+inline constexpr double kMinOtherRoadsAcross = 0.75;
 
 struct SearchFigures {
   /// -ln of how many places of the region would fit as well as the best one by chance, if the scores of the distinct
@@ -37,9 +33,9 @@ struct SearchFigures {
   /// ln of the ground in m2 that took part at the best place. The fewer the samples, the more by chance fits well and
   /// the less the tail of the others says of it.
   double ground = 0.0;
-  /// Road in both that the best place rests on: its length at kRoadWidthM over the side of a square as large as the
-  /// ground that took part.
-  double roads_across = 0.0;
+  /// Road in both that the best place rests on beside the longest straight lines among it: its length over the side
+  /// of a square as large as the ground that took part.
+  double other_roads_across = 0.0;
 };
 
 /// `found` holds a mode.

@@ -45,6 +45,8 @@ struct SearchOptions {
   /// at least, and headings a little beside, to tell what chance gives and whether another place fits better. nullopt =
   /// no farther than it takes to tell anything of chance.
   std::optional<GridBox> surroundings;
+  /// So many of the longest straight lines do not count in SearchMode::other_roads_m.
+  int straight_roads = 2;
   std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
   std::stop_token stop;
   std::optional<std::chrono::steady_clock::time_point> deadline;
@@ -74,8 +76,9 @@ struct SearchMode {
   double pearson = 0.0;  ///< equation (5) about the separate means, at the nearest cell
   std::int64_t observed_cells = 0;
   PoseCovariance covariance{};  ///< from the shape of the peak, and the cell size
-  /// Road in both that the score rests on (shared_road.hpp); of the best mode alone, of others 0.
-  double shared_road_m2 = 0.0;
+  /// Length of the roads in both that the score rests on beside the longest straight lines among them
+  /// (SearchOptions::straight_roads, shared_road.hpp); of the best mode alone, of others 0.
+  double other_roads_m = 0.0;
 };
 
 /// What scores look like by chance over the searched region.

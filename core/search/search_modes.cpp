@@ -36,14 +36,21 @@ std::optional<SearchMode> nearby_mode(const SearchLevels& levels, double apart_m
   return another ? std::optional(mode) : std::nullopt;
 }
 
-double shared_road_m2(const Level& finest, const SearchMode& mode) {
+double other_roads_m(const Level& finest, const SearchMode& mode, int straight_roads) {
+  // What a straight road may bend, and be as wide.
+  constexpr double kLeastLineM = 20.0;
+  constexpr double kLineShare = 0.05;
   const double cell_m = finest.cell_m();
   const FeatureMap north_up = rotated(resampled(finest.source, cell_m, mode.scale), mode.pose.heading);
   const LatticeIndex nadir = lattice_index(mode.pose.position, cell_m);
   const LatticeIndex first{nadir.col - static_cast<int>(std::floor(north_up.nadir.col)),
                            nadir.row - static_cast<int>(std::floor(north_up.nadir.row))};
   const RoadGrid ground = finest.read({cell_m, first, north_up.cells.cols(), north_up.cells.rows()});
-  return shared_road_cells(ground.cells, north_up.cells) * cell_m * cell_m;
+  const double side_m = cell_m * std::sqrt(static_cast<double>(mode.observed_cells));
+  const double line_m = std::max({kLeastLineM, kLineShare * side_m, 2.0 * cell_m});
+  const double narrowest_m = std::max(kRoadWidthM, cell_m);
+  return cell_m *
+         road_beside_lines(ground.cells, north_up.cells, straight_roads, narrowest_m / cell_m, line_m / cell_m);
 }
 
 double poses_of(const PoseRegion& region) {
@@ -122,7 +129,7 @@ FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const 
   const bool looks_nearby = !deadline.over();
   if (looks_nearby) found.nearby = nearby_mode(levels, scan.separation_m(), best, finder);
   if (found.nearby && found.nearby->score > best.score) std::swap(*found.nearby, best);
-  best.shared_road_m2 = shared_road_m2(levels.finest(), best);
+  best.other_roads_m = other_roads_m(levels.finest(), best, options.straight_roads);
   if (options.surroundings) {
     std::vector<SearchMode> others = finder.first_of(worth_a_look(levels, poses.around, best, background), kOutside);
     found.outside = modes_outside(levels, scan.scanned(), finder, std::move(others), best);

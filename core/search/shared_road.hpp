@@ -1,13 +1,19 @@
-// How much of the ground an agreement rests on.
+// How much road an agreement rests on.
 #pragma once
 
 #include "core/grid/cell_array.hpp"
 
 namespace roadfix {
 
-/// Cells that make map and features correlate, counted by what they contribute: (sum of w)^2 / sum of w^2 over the
-/// cells observed in both, w the product of what they lie above their means, 0 unless both do. Of roads that are alike
-/// sure their common cells, whatever probability a detector gives to roads. Both of the same size.
-double shared_road_cells(const CellArray& map, const CellArray& features);
+/// Assumed of streets; in larger cells a road is as wide as a cell.
+inline constexpr double kRoadWidthM = 6.0;
+
+/// Of the roads that make map and features correlate, the length in cells that lies beside so many of the longest
+/// straight lines among them. A cell counts as its side over the width of the road there, but at least `narrowest`
+/// cells: wide roads are no longer than narrow ones, and what is left of one that is seen beside itself is no longer
+/// than all of it. How sure a detector is does not matter. A line takes in what lies within a stripe of `line_width`
+/// cells. Map and features are of the same size.
+double road_beside_lines(const CellArray& map, const CellArray& features, int lines, double narrowest,
+                         double line_width);
 
 }  // namespace roadfix

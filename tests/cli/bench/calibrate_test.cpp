@@ -53,7 +53,7 @@ TEST(LearnCalibration, WidensEllipsesThatAreTooSmall) {
 TEST(LearnCalibration, ClaimsNoMoreThanTheExamplesVouchFor) {
   const CalibrationReport report = learn_calibration(drawn(400, 3), default_calibration());
   EXPECT_LT(report.calibration.highest, 1.0 - 1.0 / 402.0);
-  const SearchFigures surest{.surprise = 100.0, .lead = 100.0, .gap = 100.0, .roads_across = 2.0};
+  const SearchFigures surest{.surprise = 100.0, .lead = 100.0, .gap = 100.0, .other_roads_across = 2.0};
   EXPECT_GT(report.calibration.probability(surest), 0.9);
   EXPECT_LE(report.calibration.probability(surest), report.calibration.highest);
 }
@@ -78,7 +78,7 @@ TEST(LearnCalibration, WritesWhatTheServiceReads) {
   const CalibrationReport report = learn_calibration(drawn(1000, 5), default_calibration());
   const Calibration read = parse_calibration(calibration_json(report, {{"seed", 5}}).dump());
   for (const double surprise : {-3.0, 0.0, 4.0}) {
-    const SearchFigures figures{.surprise = surprise, .lead = 1.0, .gap = 1.0, .roads_across = 2.0};
+    const SearchFigures figures{.surprise = surprise, .lead = 1.0, .gap = 1.0, .other_roads_across = 2.0};
     EXPECT_EQ(read.probability(figures), report.calibration.probability(figures));
   }
   EXPECT_EQ(read.highest, report.calibration.highest);

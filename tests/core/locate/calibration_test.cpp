@@ -18,7 +18,7 @@ constexpr const char* kText = R"({"format": "roadfix-calibration-2", "bias": -3.
   "highest": 0.995, "sigma_scale": {"position": 1.1, "heading": 0.6}, "origin": {"maps": ["town"]}})";
 
 SearchFigures figures(double surprise, double lead, double gap, double ground = 100.0) {
-  return {.surprise = surprise, .lead = lead, .gap = gap, .ground = ground, .roads_across = 2.0};
+  return {.surprise = surprise, .lead = lead, .gap = gap, .ground = ground, .other_roads_across = 2.0};
 }
 
 TEST(Calibration, IsALogisticFunctionOfTheFigures) {
@@ -44,9 +44,9 @@ TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
 
 TEST(Calibration, IsNotSureOfAPlaceThatRestsOnNoMoreThanOneStraightRoad) {
   SearchFigures far_ahead = figures(100.0, 100.0, 100.0);
-  far_ahead.roads_across = 1.41;
+  far_ahead.other_roads_across = 0.74;
   EXPECT_EQ(default_calibration().probability(far_ahead), 0.5);
-  far_ahead.roads_across = 1.42;
+  far_ahead.other_roads_across = 0.76;
   EXPECT_GE(default_calibration().probability(far_ahead), 0.99);
 }
 
@@ -57,7 +57,7 @@ TEST(Calibration, TrustsNoFigureThatIsNoNumber) {
     EXPECT_EQ(default_calibration().probability(broken), 0.0) << figure.name;
   }
   SearchFigures broken = figures(100.0, 100.0, 100.0);
-  broken.roads_across = std::nan("");
+  broken.other_roads_across = std::nan("");
   EXPECT_LE(default_calibration().probability(broken), 0.5);
 }
 

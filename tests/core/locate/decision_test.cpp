@@ -25,8 +25,8 @@ SearchResult found(double score, double second, double lowest) {
   result.background.rivals_within = result.background.rivals;
   SearchMode best;
   best.score = best.pearson = score;
-  best.observed_cells = 40'000;       // 400 x 400 m
-  best.shared_road_m2 = 3 * 400 * 6;  // three roads across
+  best.observed_cells = 40'000;  // 400 x 400 m
+  best.other_roads_m = 2 * 400;  // two roads across beside the two longest
   SearchMode next = best;
   next.score = next.pearson = second;
   result.modes = {best, next};
@@ -79,19 +79,18 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   EXPECT_EQ(decision.weights.size(), 1U);
 }
 
-TEST(Decision, APlaceThatRestsOnNoMoreThanOneStraightRoadIsExplainedByChanceHoweverFarItIsAhead) {
+TEST(Decision, APlaceThatRestsOnLittleBesideTwoStraightRoadsIsExplainedByChanceHoweverFarItIsAhead) {
   SearchResult result = found(0.8, 0.35, 0.2);
-  result.modes[0].shared_road_m2 = 560 * 6;
+  result.modes[0].other_roads_m = 290;
   const Decision decision = decide(result, default_calibration(), 0.4);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
-  EXPECT_NE(
-      decision.explanation.find("share 560 m of road, and a single straight road across the frame has up to 566 m"),
-      std::string::npos)
+  EXPECT_NE(decision.explanation.find("share 290 m of road beside two straight ones, and 300 m are needed"),
+            std::string::npos)
       << decision.explanation;
   EXPECT_LE(decision.probability, 0.5);
   EXPECT_EQ(decision.weights.size(), 2U);
-  result.modes[0].shared_road_m2 = 570 * 6;
+  result.modes[0].other_roads_m = 310;
   EXPECT_EQ(decide(result, default_calibration(), 0.99).status, FixStatus::kFix);
 }
 

@@ -47,6 +47,22 @@ TEST(Localizability, IsLowInACityOfEqualBlocksAndNamesPlacesAlike) {
   EXPECT_FALSE(place.alike.empty());
 }
 
+TEST(Localizability, IsNoneAtACrossingAlone) {
+  constexpr int kCells = 800;
+  RoadGrid country{square(kCells), CellArray(kCells, kCells, kNoRoad)};
+  for (int i = 0; i < kCells; ++i) {
+    for (int width = 0; width < 4; ++width) {
+      country.cells.at(398 + width, i) = kRoad;
+      country.cells.at(i, std::clamp(248 + 3 * i / 8 + width, 0, kCells - 1)) = kRoad;
+    }
+  }
+  const MapView view = view_of(country);
+  const Localizability place = localizability(view, centre_of(view, 400.0));
+  EXPECT_EQ(place.status, FixStatus::kNoFix);
+  EXPECT_EQ(place.reason, "not-above-chance") << "another crossing looks like it";
+  EXPECT_LE(place.probability, 0.5);
+}
+
 TEST(Localizability, SaysInWordsThatAFrameFitsBetterElsewhere) {
   const MapView view = view_of(testing::grid_city(square(800), 90.0));
   int elsewhere = 0;

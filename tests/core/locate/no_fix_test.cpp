@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/grid/combine.hpp"
 #include "core/grid/resample.hpp"
@@ -48,6 +49,42 @@ TEST_F(NoFix, ALonePieceOfRoadIsNoFixThoughItFitsOnePlaceFarBetterThanAllOthers)
   EXPECT_GT(fix.modes[0].rho, 0.95);
   for (const FixMode& mode : fix.modes) EXPECT_TRUE(mode.rho < 0.85 || error_m(mode.pose, place) < 2.0) << mode.rho;
   EXPECT_GT(fix.figures->surprise, 4.6);
+}
+
+/// Roads of 8 m from a junction on through 2.4 x 1.8 km of empty ground, towards these headings.
+RoadGrid country_with_a_junction(const std::vector<double>& headings_deg) {
+  const GridGeometry geometry = town(2400, 1800);
+  RoadGrid map{geometry, CellArray(geometry.cols, geometry.rows, kNoRoad)};
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int col = 0; col < geometry.cols; ++col) {
+      const double east_m = geometry.cell_m * (col - 0.5 * geometry.cols);
+      const double north_m = geometry.cell_m * (0.5 * geometry.rows - row);
+      for (const double heading_deg : headings_deg) {
+        const double heading = Angle::degrees(heading_deg).radians();
+        const double along_m = east_m * std::sin(heading) + north_m * std::cos(heading);
+        const double beside_m = std::abs(east_m * std::cos(heading) - north_m * std::sin(heading));
+        if (along_m >= 0.0 && beside_m <= 4.0) map.cells.at(col, row) = kRoad;
+      }
+    }
+  }
+  return map;
+}
+
+TEST_F(NoFix, TakesNoJunctionForAnother) {
+  const std::vector<std::vector<double>> junctions{
+      {10.0, 190.0, 95.0}, {10.0, 95.0, 190.0, 275.0}, {10.0, 130.0, 250.0}};  // T, X, Y
+  for (const std::vector<double>& headings : junctions) {
+    const RoadGrid country = country_with_a_junction(headings);
+    std::vector<double> others = headings;
+    others.back() += 3.0;
+    const RoadGrid elsewhere = country_with_a_junction(others);
+    const MapView view = view_of(country);
+    const GridPose pose{view.extent.centre(), Angle::degrees(40.0)};
+    const Fix fix = locate(view, observed_at(elsewhere, pose, 200, 200, 2.0, {0.1, 0.1}, random_), {}, {});
+    EXPECT_EQ(fix.status, FixStatus::kNoFix) << headings.size();
+    EXPECT_EQ(fix.reason, "not-above-chance") << headings.size();
+    EXPECT_LE(fix.probability, 0.5) << headings.size();
+  }
 }
 
 TEST_F(NoFix, SaysNoFixOverAnotherTown) {

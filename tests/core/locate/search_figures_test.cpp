@@ -63,21 +63,12 @@ TEST(SearchFigures, CountsTheAgreementInDeviationsOfSamplesOfFifteenMetres) {
   EXPECT_NEAR(figures_of(result).ground, std::log(20.0 * 20.0 * 15.0 * 15.0), 1e-9);
 }
 
-TEST(SearchFigures, CountsSharedRoadInRoadsAcrossTheGroundThatTookPart) {
+TEST(SearchFigures, CountsOtherRoadsInRoadsAcrossTheGroundThatTookPart) {
   SearchResult result = found_among(0.6, 0.2, 0.02);
   result.cell_m = 2.0;
   result.modes[0].observed_cells = 22'500;  // 300 x 300 m
-  result.modes[0].shared_road_m2 = 2 * 300 * kRoadWidthM;
-  EXPECT_NEAR(figures_of(result).roads_across, 2.0, 1e-9);
-}
-
-TEST(SearchFigures, CountsARoadAsWideAsTheCellsThatShowIt) {
-  SearchResult result = found_among(0.6, 0.2, 0.02);
-  result.cell_m = 2.0 * kRoadWidthM;
-  result.modes[0].observed_cells = 900;
-  const double side_m = 30 * result.cell_m;
-  result.modes[0].shared_road_m2 = side_m * result.cell_m;  // one row of cells
-  EXPECT_NEAR(figures_of(result).roads_across, 1.0, 1e-9);
+  result.modes[0].other_roads_m = 2 * 300;
+  EXPECT_NEAR(figures_of(result).other_roads_across, 2.0, 1e-9);
 }
 
 TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {

@@ -20,6 +20,7 @@ using testing::Track;
 
 TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
   Flight flight(map_, start_, 1);
+  flight.side_cells = 160;
   fly(Tracker(view_, settings()), flight, 25, [&](int i, const TrackEstimate& estimate) {
     if (i < 5) return;
     ASSERT_TRUE(estimate.converged) << "step " << i;
@@ -161,7 +162,7 @@ TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
       pose = moved(pose, {20.0, 0.0, turn});
       input.odometry = Odometry{20.0 * uniform(random, 0.98, 1.02), 0.0, turn};
     }
-    input.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random);
+    input.features = testing::observed_at(map_, pose, 160, 160, 2.0, {0.1, 0.1}, random);
     return advance(tracker, input);
   };
   const Tracker tracker(part, settings());

@@ -10,8 +10,8 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/limits.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
-#include "core/detect/detectors.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 
@@ -96,7 +96,7 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
 
 api::Features read_feature_input(const FeatureInputOptions& options, const MapView& map) {
   require_frame_for(options.frame);
-  const auto detector = options.frame.given() ? Detectors(options.detector).for_map(map.imagery_reader) : nullptr;
+  const auto detector = options.frame.given() ? detector_for(map, options.detector) : nullptr;
   const auto read = [&](const std::string& path) { return features_in(path, options, detector.get(), map.cell_m); };
   api::Features first = read(options.path);
   if (options.also.empty()) return first;

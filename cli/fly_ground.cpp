@@ -11,7 +11,6 @@
 #include "cli/fly/pilot.hpp"
 #include "cli/map_notes.hpp"
 #include "cli/terminal.hpp"
-#include "core/detect/detectors.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
@@ -169,7 +168,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
     look_at_map(options, map, ground);
     return ground;
   }
-  if (!sends_frames) ground.detector = Detectors(options.detector).for_map(map.imagery_reader);
+  if (!sends_frames) ground.detector = detector_for(map, options.detector);
   if (kind == ".csv") {
     look_at_recordings(options, map, ground);
   } else {

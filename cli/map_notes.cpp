@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "core/detect/detectors.hpp"
 #include "tiles/store/map_reader.hpp"
 #include "tiles/view/map_file_view.hpp"
 
@@ -28,6 +29,18 @@ MapView view_with_notes(const std::filesystem::path& file, std::size_t search_ca
   const auto reader = std::make_shared<const MapReader>(file);
   note_unfinished(file, reader->info());
   return view_of(reader, file.stem().string(), search_cache_bytes);
+}
+
+std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice) {
+  const Detectors detectors(choice);
+  auto detector = detectors.for_map(map.imagery_reader);
+  if (!detectors.include_reader(map.imagery_reader)) {
+    fmt::print(stderr,
+               "note: {} was read by {}, and frames are by {}: they find other roads, and fixes are fewer. Name the "
+               "map's network with --model, or ingest its imagery anew\n",
+               map.name, map.imagery_reader, detector->describe());
+  }
+  return detector;
 }
 
 }  // namespace roadfix::cli

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 
+#include "core/detect/make_detector.hpp"
 #include "core/locate/map_view.hpp"
 #include "tiles/store/map_records.hpp"
 
@@ -14,5 +16,8 @@ void note_unfinished(const std::filesystem::path& file, const MapInfo& info);
 
 /// view_of_file(), with that note.
 MapView view_with_notes(const std::filesystem::path& file, std::size_t search_cache_bytes = 0);
+
+/// For frames over the map; with a note on standard error where another one read the map.
+std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice);
 
 }  // namespace roadfix::cli

@@ -93,6 +93,11 @@ int Application::start() {
   parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detectors.describe());
+  for (const auto& map : parts_->maps.maps()) {
+    if (parts_->detectors.include_reader(map->view.imagery_reader)) continue;
+    spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer",
+                 map->view.name, map->view.imagery_reader);
+  }
   return port;
 }
 

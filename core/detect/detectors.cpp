@@ -28,6 +28,10 @@ std::shared_ptr<const RoadDetector> Detectors::for_map(std::string_view imagery_
   return imagery_reader.empty() || by_the_other ? for_roads_ : for_imagery_;
 }
 
+bool Detectors::include_reader(std::string_view imagery_reader) const {
+  return imagery_reader.empty() || network_in(imagery_reader) == network_in(for_map(imagery_reader)->describe());
+}
+
 std::string Detectors::describe() const {
   const std::string imagery = for_imagery_->describe();
   const std::string roads = for_roads_->describe();

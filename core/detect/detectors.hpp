@@ -22,6 +22,9 @@ class Detectors {
   /// for imagery.
   std::shared_ptr<const RoadDetector> for_map(std::string_view imagery_reader) const;
 
+  /// Whether one of them read the map's imagery, if it has any.
+  bool include_reader(std::string_view imagery_reader) const;
+
   /// One line that names them.
   std::string describe() const;
 

@@ -133,6 +133,24 @@ TEST_F(LocalizeCommands, FixSaysWhichCameraItReadFromAPhoto) {
   EXPECT_EQ(roadfix(of_photo + " --cell 2 --black-unseen").code, 2) << "says something of a frame, and there is none";
 }
 
+TEST_F(LocalizeCommands, FixNotesThatAFrameIsReadByAnotherDetectorThanTheMap) {
+  const auto photo = testing::drone_jpeg(cv::Mat(90, 120, CV_8UC3, cv::Scalar(90, 120, 100)), "");
+  save(photo, folder / "frame.jpg");
+  const std::string frame = " " + (folder / "frame.jpg").string() + " --gsd 2 --detector tree";
+  EXPECT_EQ(roadfix("fix " + map.string() + frame).err.find("was read by"), std::string::npos) << "it is of road data";
+  SourceRecord imagery{
+      .name = "imagery", .kind = "imagery", .fingerprint = "1", .method = "neural x fnv1a64=1 gsd_m=1; 1"};
+  {
+    MapWriter writer(map, {zone, 2.0});
+    const auto blocks = tiles_covering(town.geometry);
+    for (const TileIndex block : writer.begin_source(imagery, blocks, false)) {
+      testing::put_block(writer, imagery.name, block, CellArray(kTileCells, kTileCells, kNoRoad));
+    }
+    writer.finish_source(imagery.name);
+  }
+  EXPECT_THAT(roadfix("fix " + map.string() + frame).err, HasSubstr("note: town was read by neural x fnv1a64=1"));
+}
+
 TEST_F(LocalizeCommands, FixTakesAPrior) {
   const ProgramResult near = roadfix("fix " + input + at(place) + " --radius 100 --heading 217 --heading-range 20");
   EXPECT_EQ(near.code, 0) << near.err;

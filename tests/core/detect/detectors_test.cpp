@@ -45,6 +45,14 @@ TEST_F(TwoNetworks, FramesOverImageryThatSomebodyElseReadAreReadByTheNetworkForI
   EXPECT_EQ(reads_frames_of("neural roadnet-6 fnv1a64=0 gsd_m=1 orientations=1"), reader(ComparedWith::kImagery));
 }
 
+TEST_F(TwoNetworks, KnowWhetherTheyReadTheMap) {
+  EXPECT_TRUE(detectors_->include_reader(""));
+  EXPECT_TRUE(detectors_->include_reader(reader(ComparedWith::kImagery)));
+  EXPECT_TRUE(detectors_->include_reader(reader(ComparedWith::kRoads)));
+  EXPECT_FALSE(detectors_->include_reader("neural roadnet-6 fnv1a64=0 gsd_m=1 orientations=1"));
+  EXPECT_FALSE(detectors_->include_reader("tree map=probabilistic gsd_m=0.5"));
+}
+
 TEST_F(TwoNetworks, AreBothDescribed) {
   EXPECT_EQ(detectors_->describe(),
             reader(ComparedWith::kImagery) + "; over road data " + reader(ComparedWith::kRoads));

@@ -12,10 +12,11 @@ namespace roadfix {
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
 /// One straight road looks like every other, and so does a junction of straight roads: beside its two longest lines,
-/// all that T, X and L have, nothing is left, and of a third arm as in a Y no more than half a diagonal of a square,
-/// 0.71. A place needs more. Else it is explained by chance, however far it is ahead: where few cells are road, the
-/// scores of other places say nothing of how often those few fit.
-inline constexpr double kMinOtherRoadsAcross = 0.75;
+/// all that T, X and L have, nothing is left, and of a small roundabout less than 0.3. A place needs more. Else it is
+/// explained by chance, however far it is ahead: where few cells are road, the scores of other places say nothing of
+/// how often those few fit. The third arm of a Y is up to 0.6; but two of those agree in their angles, too, and no
+/// wrong place that was drawn kept more than 0.26 (docs/calibration-history.md).
+inline constexpr double kMinOtherRoadsAcross = 0.4;
 
 struct SearchFigures {
   /// -ln of how many places of the region would fit as well as the best one by chance, if the scores of the distinct

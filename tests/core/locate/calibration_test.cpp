@@ -44,9 +44,9 @@ TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
 
 TEST(Calibration, IsNotSureOfAPlaceThatRestsOnNoMoreThanOneStraightRoad) {
   SearchFigures far_ahead = figures(100.0, 100.0, 100.0);
-  far_ahead.other_roads_across = 0.74;
+  far_ahead.other_roads_across = 0.39;
   EXPECT_EQ(default_calibration().probability(far_ahead), 0.5);
-  far_ahead.other_roads_across = 0.76;
+  far_ahead.other_roads_across = 0.41;
   EXPECT_GE(default_calibration().probability(far_ahead), 0.99);
 }
 

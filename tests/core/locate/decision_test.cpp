@@ -81,16 +81,16 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
 
 TEST(Decision, APlaceThatRestsOnLittleBesideTwoStraightRoadsIsExplainedByChanceHoweverFarItIsAhead) {
   SearchResult result = found(0.8, 0.35, 0.2);
-  result.modes[0].other_roads_m = 290;
+  result.modes[0].other_roads_m = 150;
   const Decision decision = decide(result, default_calibration(), 0.4);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
-  EXPECT_NE(decision.explanation.find("share 290 m of road beside two straight ones, and 300 m are needed"),
+  EXPECT_NE(decision.explanation.find("share 150 m of road beside two straight ones, and 160 m are needed"),
             std::string::npos)
       << decision.explanation;
   EXPECT_LE(decision.probability, 0.5);
   EXPECT_EQ(decision.weights.size(), 2U);
-  result.modes[0].other_roads_m = 310;
+  result.modes[0].other_roads_m = 170;
   EXPECT_EQ(decide(result, default_calibration(), 0.99).status, FixStatus::kFix);
 }
 

@@ -28,6 +28,7 @@ class TrackOfAVehicleThatDrifts : public Track {
   Outcome flown(const TrackSettings& s, GridPoint unfelt_m, std::uint64_t seed, int steps = 40) {
     const Tracker tracker(view_, s);
     Flight flight(map_, start_, seed);
+    flight.side_cells = 160;
     state_ = {};
     Outcome outcome;
     for (int i = 0; i < steps; ++i) {
@@ -71,6 +72,7 @@ TEST_F(Track, FollowsAVehicleWhoseOdometryTellsAThirdTooLittleOrTooMuch) {
   const Tracker tracker(view_, settings());
   for (const double factor : {0.67, 1.33}) {
     Flight flight(map_, start_, 3);
+    flight.side_cells = 160;
     state_ = {};
     int claims = 0;
     for (int i = 0; i < 30; ++i) {

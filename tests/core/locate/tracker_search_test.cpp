@@ -76,6 +76,7 @@ TEST_F(Track, ClaimsNoPlaceWhoseStreetsLookThatWayFromAWrongAltitudeOnly) {
 
 TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
   Flight flight(map_, start_, 1);
+  flight.side_cells = 160;
   const StepInput first = flight.step();
   const auto accepted = [&](double highest) {
     TrackSettings s = settings();

@@ -102,11 +102,11 @@ struct RoadPiece {
 std::vector<RoadPiece> pieces_of(const CellArray& road, double narrowest) {
   const std::vector<double> widths = widths_of(road);
   std::vector<RoadPiece> pieces;
-  for (std::size_t i = 0; i < widths.size(); ++i) {
-    if (!is_road(road.cells()[i])) continue;
-    const auto cols = static_cast<std::size_t>(road.cols());
-    pieces.push_back(
-        {static_cast<double>(i % cols), static_cast<double>(i / cols), 1.0 / std::max(widths[i], narrowest)});
+  std::size_t i = 0;
+  for (int row = 0; row < road.rows(); ++row) {
+    for (int col = 0; col < road.cols(); ++col, ++i) {
+      if (is_road(road.at(col, row))) pieces.push_back({1.0 * col, 1.0 * row, 1.0 / std::max(widths[i], narrowest)});
+    }
   }
   return pieces;
 }

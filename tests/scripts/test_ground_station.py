@@ -1,29 +1,21 @@
 #!/usr/bin/python3
-"""The client of ground stations: its patience, the lines that it reads, the positions that it sends, and the program."""
-import contextlib
-import datetime
+"""The client of ground stations: its patience, and the lines that it reads."""
 import io
 import json
 import os
 import socket
-import subprocess
-import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
 from unittest import mock
 
-from fake_service import PROGRAM, ROOT, FakeService
+from fake_service import ROOT, FakeService
 from words import said
 
-from positions import told_age_s
 from service import Service, Silent
 from steps import PICTURE_FIELDS, POSITION_FIELDS, NewestLine, all_lines, read_step
 from track import Track
-
-
-BEFORE = r"\S+Z the map 'm' has version 7f3a\n"  # what is said before the flight
 
 
 class Patience(unittest.TestCase):
@@ -162,256 +154,6 @@ class Lines(unittest.TestCase):
         with mock.patch("threading.excepthook") as told:
             self.assertEqual([line.number for line in NewestLine(broken())], [1])
         told.assert_called_once()
-
-
-class BeforeTheFlight(unittest.TestCase):
-    def checked(self, fake, *options):
-        """The exit status, and what was said, of a program that would wait for a first step."""
-        program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", *options],
-                                 stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
-        self.assertEqual([path for path, _, _ in fake.requests], [])
-        return program.returncode, program.stderr
-
-    def test_the_map_is_looked_for(self):
-        with FakeService() as fake:
-            for check in ([], ["--check"]):
-                status, words = self.checked(fake, "--track", "lat=37.7", "lon=38.3", "radius_m=10", *check)
-                self.assertEqual(status, 0)
-                self.assertRegex(words, f"^{BEFORE}$")
-            fake.map = (404, {"code": "map-not-found", "detail": "there is town"})
-            status, words = self.checked(fake)
-            self.assertEqual(status, 1)
-            self.assertIn("ground_station: 404 map-not-found: there is town", words)
-            fake.map = (200, {"name": "m", "status": "empty", "version": "0", "bbox": None})
-            self.assertEqual(self.checked(fake)[0], 1)
-            fake.map = (200, {"id": "of something else"})
-            self.assertIn("something other than Roadfix answered", self.checked(fake)[1])
-
-    def test_a_place_beside_the_map_is_refused(self):
-        with FakeService() as fake:
-            for place, km in ((("lat=38.25", "lon=37.75", "radius_m=2000"), "47.7"),
-                              (("lat=37.75", "lon=38.32", "radius_m=2000"), None),
-                              (("lat=37.75", "lon=38.32", "radius_m=1000"), "0.7"),
-                              (("lat=37.75", "lon=-321.75", "radius_m=1"), None),
-                              (("bbox=[38.4,37.7,38.5,37.8]",), "5.2"), (("bbox=[38.29,37.7,38.5,37.8]",), None),
-                              (("lat=37.75",), None), (("radius_m=5",), None),
-                              (("lat=north", "lon=1", "radius_m=5"), None)):
-                status, words = self.checked(fake, "--track", *place)
-                self.assertEqual(status, 0 if km is None else 1, place)
-                if km:
-                    self.assertIn(f"the track would begin at least {km} km beside the map, which shows lat 37.7000", words)
-
-    def test_fields_of_frames_that_no_step_has_are_refused(self):
-        with FakeService() as fake:
-            status, words = self.checked(fake, "--frame", "fov_deg=78", "satelites=10")
-            self.assertEqual(status, 1)
-            self.assertIn("--frame satelites: no such field of a step", words)
-            self.assertEqual(self.checked(fake, "--frame", "fov_deg=78", "satellites=10", "exif=true")[0], 0)
-
-    def test_a_service_that_is_away_is_told_and_no_error(self):
-        with FakeService() as fake:
-            pass
-        for check, expected in (([], 0), (["--check"], 1)):
-            status, words = self.checked(fake, *check)
-            self.assertEqual(status, expected)
-            self.assertIn("nothing is checked before the flight: no answer of 127.0.0.1 within 3 s", words)
-
-    def test_tracks_that_cannot_be_kept_are_told(self):
-        with FakeService() as fake:
-            fake.readiness = {"status": "ready", "tracks": "unavailable", "tracks_problem": "the disk is full"}
-            self.assertIn("no track can be flown now: the disk is full", self.checked(fake)[1])
-
-
-class Positions(unittest.TestCase):
-    """What reaches an autopilot of a step that was captured some time ago."""
-
-    PATIENT = ("--max-age", "4")  # for a busy machine
-
-    def setUp(self):
-        self.autopilot = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.addCleanup(self.autopilot.close)
-        self.autopilot.bind(("127.0.0.1", 0))
-        self.autopilot.setblocking(False)
-
-    def run_program(self, fake, packet_format, lines, *options, stdout=subprocess.PIPE, stderr=subprocess.PIPE):
-        return subprocess.run(
-            [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", packet_format,
-             "--send", "127.0.0.1:%d" % self.autopilot.getsockname()[1], *options], input=lines, stdout=stdout,
-            stderr=stderr, text=True, timeout=60)
-
-    def sent(self, packet_format, script=(), captured_s_ago=0.0, delay_s=0.0, told_s=None, options=()):
-        steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": (time.time() - captured_s_ago) * 1e6})
-        with FakeService(script, delay_s, told_s) as fake:
-            program = self.run_program(fake, packet_format, steps + "\n", *options)
-        self.assertEqual(program.returncode, 0, program.stderr)
-        try:
-            return bool(self.autopilot.recv(2048))
-        except BlockingIOError:
-            self.assertIn("is not sent: it is", program.stderr)
-            return False
-
-    def test_without_a_height_is_said_once_to_be_of_no_use_to_ardupilot(self):
-        place = {"north_m": 0, "east_m": 0, "yaw_deg": 0}
-        for packet_format, alt_m, warnings in (("gps_input", {}, 1), ("mavproxy", {}, 1), ("mavproxy", {"alt_m": 7}, 0),
-                                               ("nmea", {}, 0), ("command_int", {}, 0)):
-            with FakeService() as fake:
-                program = self.run_program(fake, packet_format, 3 * (json.dumps({**place, **alt_m}) + "\n"))
-            self.assertEqual(program.stderr.count("says no alt_m"), warnings, packet_format)
-
-    def positions(self):
-        count = 0
-        with contextlib.suppress(BlockingIOError):
-            while self.autopilot.recv(2048):
-                count += 1
-        return count
-
-    def test_come_where_answers_and_messages_find_no_room_or_nobody_reads_them(self):
-        lines = 3 * '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
-        reader, closed = os.pipe()
-        os.close(reader)
-        with open("/dev/full", "w") as full, open(closed, "w") as nobody:
-            for stream, why in ((full, "No space left on device"), (nobody, "Broken pipe")):
-                with FakeService() as fake:
-                    program = self.run_program(fake, "nmea", lines, *self.PATIENT, stdout=stream)
-                self.assertEqual((program.returncode, self.positions()), (1, 3), program.stderr)
-                self.assertEqual(program.stderr.count("no answers are printed from here, the flight goes on"), 1)
-                self.assertIn(why, program.stderr)
-                with FakeService() as fake:
-                    program = self.run_program(fake, "nmea", lines, *self.PATIENT, stderr=stream)
-                self.assertEqual((program.returncode, self.positions()), (0, 3))
-                self.assertEqual(program.stdout.count("\n"), 3)
-
-    def test_come_where_there_is_no_standard_error(self):
-        with FakeService() as fake:
-            place = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}'
-            command = [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--format", "nmea", "--send",
-                       "127.0.0.1:%d" % self.autopilot.getsockname()[1], *self.PATIENT]
-            program = subprocess.run(["sh", "-c", '"$@" 2>&-', "sh", *command], input=place + "\n", text=True,
-                                     stdout=subprocess.PIPE, timeout=60)
-        self.assertEqual((program.returncode, self.positions(), program.stdout.count("\n")), (0, 1, 1))
-
-    def test_is_fresh(self):
-        for packet_format in ("gps_input", "global_position_sensor"):
-            self.assertTrue(self.sent(packet_format, options=self.PATIENT))
-
-    def test_is_not_what_was_captured_or_waited_for_long_ago(self):
-        for packet_format in ("gps_input", "global_position_sensor"):
-            self.assertFalse(self.sent(packet_format, captured_s_ago=3.0))
-            self.assertFalse(self.sent(packet_format, script=[503]), "a second until it was sent again")
-
-    def test_is_what_the_service_took_long_for_only_if_the_message_says_so(self):
-        for packet_format, took_s, says_so in (("global_position_sensor", 8.0, True), ("command_int", 3.0, True),
-                                               ("command_int", 8.0, False), ("nmea", 8.0, False)):
-            sent = self.sent(packet_format, captured_s_ago=took_s, told_s=took_s, options=self.PATIENT)
-            self.assertEqual(sent, says_so, packet_format)
-
-    def test_is_not_what_took_long_on_the_way_to_the_service_and_back(self):
-        for packet_format in ("global_position_sensor", "command_int"):
-            self.assertFalse(self.sent(packet_format, delay_s=0.8, told_s=0.1))
-
-    def test_is_as_old_as_the_bytes_of_another_implementation_say(self):
-        vectors = json.loads((ROOT / "tests/server/autopilot/node_mavlink_vectors.json").read_text())
-        for name, age_s in (("global_position_sensor", 0.25), ("command_int", 0.25), ("gps_input_3d", 0.0),
-                            ("global_position_sensor_unknown", 0.0), ("command_int_unknown", 0.0)):
-            packet_format = name.removesuffix("_unknown").removesuffix("_3d")
-            self.assertAlmostEqual(told_age_s(packet_format, bytes.fromhex(vectors[name])), age_s, msg=name)
-
-    def test_is_that_of_a_recording_whatever_its_clock(self):
-        self.assertTrue(self.sent("gps_input", captured_s_ago=1e6))
-
-
-class Program(unittest.TestCase):
-    def lines_and_a_picture(self, folder):
-        """10 m to the north each, the third with a picture that cannot be read."""
-        Path(folder, "3.jpg").write_bytes(b"\xff\xd8")
-        place = {"east_m": 0, "yaw_deg": 0, "covariance": [1.0, 0, 0, 0, 1.0, 0, 0, 0, 0]}
-        pictures = ({}, {}, {"image": "missing.jpg"}, {"image": f"{folder}/3.jpg"})
-        return [json.dumps({"north_m": 10 * i, "time_us": i, **place, **more}) for i, more in enumerate(pictures)]
-
-    def check_covariances(self, steps):
-        for step in steps:
-            variance = float(str(step["covariance"]).strip("[").split(",")[0])
-            self.assertEqual(variance, float(step["forward_m"]) / 10.0)
-
-    def test_sends_the_covariance_of_all_lines_that_a_movement_spans(self):
-        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
-                                     input="\n".join(self.lines_and_a_picture(folder)), capture_output=True, text=True,
-                                     timeout=60)
-            self.assertIn("line 3 (missing.jpg): ", program.stderr)
-            self.assertEqual([float(step["forward_m"]) for step in fake.steps()[1:]], [10.0, 20.0])
-            self.check_covariances(fake.steps()[1:])
-
-    def test_sends_the_covariance_of_all_lines_that_it_passes_by_in_flight(self):
-        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
-            lines = self.lines_and_a_picture(folder)
-            program = subprocess.Popen(
-                [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--live"],
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            program.stdin.write(lines[0] + "\n")
-            program.stdin.flush()
-            program.stdout.readline()
-            program.communicate("\n".join(lines[1:]) + "\n", timeout=60)
-            sent = fake.steps()[1:]  # one or two, by how fast the lines were read
-        self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
-        self.check_covariances(sent)
-
-    def test_says_where_the_file_of_steps_stands(self):
-        for option in ("--frame", "--track"):
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", option, "a=1", "flight.jsonl"],
-                                     capture_output=True, text=True, timeout=60)
-            self.assertEqual(program.returncode, 2)
-            self.assertIn("usage: ground_station [steps] --map MAP", program.stderr)
-            self.assertIn("'flight.jsonl': write NAME=VALUE, and the file of steps before all options", program.stderr)
-
-    def test_says_when_and_of_which_picture_something_is_wrong(self):
-        refused = (422, {"code": "image-damaged", "detail": "no picture"})
-        with FakeService([200, 200, refused]) as fake, tempfile.TemporaryDirectory() as folder:
-            *good, _, bad = self.lines_and_a_picture(folder)
-            began_s = time.time()
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
-                                     input="\n".join([*good, bad]), capture_output=True, text=True, timeout=60)
-        date, words = program.stderr.splitlines()[-1].split(" ", 1)
-        self.assertEqual(words, f"line 3 ({folder}/3.jpg): 422 image-damaged: no picture")
-        self.assertRegex(date, r"^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}\.[0-9]{3}Z$")
-        told_s = datetime.datetime.fromisoformat(date.replace("Z", "+00:00")).timestamp()
-        self.assertTrue(began_s - 0.01 <= told_s <= time.time() + 0.01)
-
-    def test_goes_on_after_lines_that_are_no_text(self):
-        good = b'{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
-        lines = good + b'{"note": "\xfc"}\n' + b"[" * 100_000 + b"\n" + good
-        for live in ([], ["--live"]):
-            with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
-                Path(folder, "lines").write_bytes(lines)
-                command = [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", *live]
-                for source in ([], [os.path.join(folder, "lines")]):
-                    program = subprocess.run(command + source, input=lines, capture_output=True, timeout=60)
-                    self.assertNotIn(b"Traceback", program.stderr)
-                    answers = program.stdout.splitlines()
-                    if not live:
-                        self.assertEqual(len(answers), 2, program.stderr)
-                        self.assertIn(b"line 3: a step is a JSON object", program.stderr)
-                    self.assertTrue(answers)
-
-    def test_ends_quietly_when_nobody_reads_its_answers(self):
-        lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
-        with FakeService() as fake:
-            reader, writer = os.pipe()
-            os.close(reader)
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
-                                     input=lines, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
-            os.close(writer)
-        self.assertEqual(program.returncode, 1)
-        self.assertRegex(program.stderr, rf"^{BEFORE}\S+Z a track begins: {fake.url}/#track=T\n$")
-
-    def test_says_once_where_its_track_is_to_be_seen_and_keeps_the_password(self):
-        lines = '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' * 3
-        with FakeService() as fake:
-            server = fake.url.replace("//", "//me:secret@") + "/"
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", server, "--map", "m"], input=lines,
-                                     capture_output=True, text=True, timeout=60)
-        self.assertEqual(program.returncode, 0)
-        self.assertRegex(program.stderr, rf"^{BEFORE}\S+Z a track begins: {fake.url}/#track=T\n$")
 
 
 if __name__ == "__main__":

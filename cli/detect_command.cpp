@@ -182,7 +182,8 @@ void add_detect_command(CLI::App& app) {
                    "What the map shows that the feature map is for: imagery (default) or roads, that is road data. "
                    "Each has its network")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ComparedWith>{{"imagery", ComparedWith::kImagery}, {"roads", ComparedWith::kRoads}}));
+          std::map<std::string, ComparedWith>{{std::string(kComparedWithNames[0]), ComparedWith::kImagery},
+                                              {std::string(kComparedWithNames[1]), ComparedWith::kRoads}}));
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });
 }

@@ -33,7 +33,7 @@ double share(const MapSurvey& survey, std::int64_t places) {
 }
 
 void print_json(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
-  const nlohmann::json answer{{"map", {{"name", map.name}, {"version", map.version}}},
+  const nlohmann::json answer{{"map", api::map_json(map.name, map.version)},
                               {"made_by", api::made_by()},
                               {"footprint_m", options.query.footprint_m},
                               {"every_m", found.every_m},

@@ -10,11 +10,17 @@ namespace {
 /// Kind, name and checksum of a network: frames are read in one orientation where the map was read in several.
 std::string_view network_in(std::string_view description) { return description.substr(0, description.find(" gsd_m=")); }
 
+bool is_one_for_both(const DetectorChoice& choice) {
+  return choice.name == "tree" || !choice.model.empty() ||
+         default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
+}
+
 }  // namespace
 
 Detectors::Detectors(const DetectorChoice& choice)
-    : for_imagery_(make_detector(choice, ComparedWith::kImagery)),
-      for_roads_(make_detector(choice, ComparedWith::kRoads)) {}
+    : for_imagery_(make_detector(choice, ComparedWith::kImagery)), for_roads_(for_imagery_) {
+  if (!is_one_for_both(choice)) for_roads_ = make_detector(choice, ComparedWith::kRoads);
+}
 
 Detectors::Detectors(std::shared_ptr<const RoadDetector> detector)
     : for_imagery_(detector), for_roads_(std::move(detector)) {}

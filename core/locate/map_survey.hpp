@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "core/locate/localizability.hpp"
+#include "core/units/progress.hpp"
 
 namespace roadfix {
 
@@ -13,7 +13,7 @@ struct SurveyOptions {
   LocalizabilityQuery query;
   std::int64_t max_places = 1000;  ///< each takes about a second of one core
   int threads = 1;
-  std::function<void(std::int64_t done, std::int64_t total)> progress{};  ///< from any thread, one call at a time
+  OnProgress progress{};  ///< in places; from any thread, one call at a time
 };
 
 /// Places of which the map has observed half of the footprint or more; of others it cannot say.

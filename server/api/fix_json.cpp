@@ -36,6 +36,8 @@ json pose_json(const GeoPose& pose) {
       {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
 }
 
+json map_json(const std::string& name, const std::string& version) { return {{"name", name}, {"version", version}}; }
+
 json made_by() { return {{"roadfix", ROADFIX_VERSION}}; }
 
 json bbox_json(const GeoBox& box) {
@@ -70,7 +72,7 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
                                    {"cell_m", fix.proof->cell_m},     {"headings", fix.proof->headings},
                                    {"scales", fix.proof->scales}};
   }
-  answer["map"] = {{"name", fix.map_name}, {"version", fix.map_version}};
+  answer["map"] = map_json(fix.map_name, fix.map_version);
   answer["made_by"] = made_by();
   answer["time_ms"] = {{"search", fix.search_time.count()}};
   if (detect_time) answer["time_ms"]["detect"] = detect_time->count();
@@ -99,7 +101,7 @@ json to_json(std::span<const MatchScore> scores, const MapView& map) {
     }
     list.push_back(std::move(entry));
   }
-  return {{"scores", std::move(list)}, {"map", {{"name", map.name}, {"version", map.version}}}};
+  return {{"scores", std::move(list)}, {"map", map_json(map.name, map.version)}};
 }
 
 }  // namespace roadfix::api

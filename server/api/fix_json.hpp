@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/locate/fix.hpp"
 #include "core/locate/localizability.hpp"
@@ -23,6 +24,8 @@ nlohmann::json pose_json(const GeoPose& pose);
 /// An object of `pose` and `geometry`, for more to be added.
 nlohmann::json placed_json(const GeoPose& pose);
 
+/// Which map an answer is about.
+nlohmann::json map_json(const std::string& name, const std::string& version);
 /// What made an answer: the version of the program.
 nlohmann::json made_by();
 

@@ -150,7 +150,7 @@ json to_json(const FeatureMap& features) {
 json to_json(const Window& window) {
   json answer = to_json(window.cells);
   answer["pose"] = pose_json(window.pose);
-  answer["map"] = {{"name", window.map_name}, {"version", window.map_version}};
+  answer["map"] = map_json(window.map_name, window.map_version);
   answer["footprint"] = footprint(window);
   answer["epsg"] = window.zone.epsg();
   answer["geotransform"] = geotransform(window);

@@ -49,7 +49,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   const api::HangUp hang_up(request.abandoned);
   query.fix.stop = hang_up.token();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
-  answer["map"] = {{"name", map->name}, {"version", map->view.version}};
+  answer["map"] = api::map_json(map->name, map->view.version);
   return json_response(answer);
 }
 

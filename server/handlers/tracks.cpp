@@ -8,6 +8,7 @@
 #include "core/units/fnv.hpp"
 #include "core/units/text.hpp"
 #include "server/api/feature_request.hpp"
+#include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/position_answer.hpp"
@@ -41,14 +42,12 @@ std::int64_t digest_of(const api::Content& content) {
   return static_cast<std::int64_t>(hash.value());
 }
 
-json map_json(const StoredTrack& track) { return {{"name", track.map}, {"version", track.map_version}}; }
-
 json track_json(const Service& service, const StoredTrack& track) {
   const double silent_s = std::chrono::duration<double>(service.tracks.times().silent(track)).count();
   const auto left =
       std::max(service.tracks.limits().idle - service.tracks.times().idle(track.id), std::chrono::milliseconds(0));
   return {{"id", track.id},
-          {"map", map_json(track)},
+          {"map", api::map_json(track.map, track.map_version)},
           {"request", api::stored_json(track.request)},
           {"created_us", track.created_us},
           {"touched_us", track.touched_us},
@@ -177,7 +176,7 @@ http::Response get_history(const Service& service, const http::Request& request)
   }
   json history = api::history_json(answers);
   history["track"] = track.id;
-  history["map"] = map_json(track);
+  history["map"] = api::map_json(track.map, track.map_version);
   http::Response response = json_response(history);
   response.content_type = "application/geo+json";
   return response;

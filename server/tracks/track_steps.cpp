@@ -58,7 +58,7 @@ StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::
   StepResult result = track->tracker().advance(turn.state(), input, limits);
   nlohmann::json answer = api::to_json(result.estimate);
   answer["track"] = id;
-  answer["map"] = {{"name", track->map().name}, {"version", track->map().view.version}};
+  answer["map"] = api::map_json(track->map().name, track->map().view.version);
   answer["made_by"] = api::made_by();
   std::string text = json_text(answer);
   turn.doubt();

@@ -136,7 +136,7 @@ std::vector<SourceRecord> MapWriter::records_of(const std::filesystem::path& pat
 std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, const std::string& source) {
   if (!is_there(path)) return {};
   Connection map = open_map(path, Access::kRead);
-  SourceTable sources(map, zoom_of(read_info(map).settings.cell_m));
+  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
   const auto entry = sources.find(source, true);
   return entry ? sources.done_blocks(entry->id) : std::set<TileIndex>();
 }

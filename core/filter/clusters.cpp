@@ -9,7 +9,7 @@ namespace roadfix {
 namespace {
 
 // Particles in bins that touch belong together.
-constexpr double kBinM = 20.0;
+constexpr double kClusterBinM = 20.0;
 constexpr std::int64_t kTurnBins = 24;
 
 using CoarseBin = std::array<std::int64_t, 3>;
@@ -40,8 +40,8 @@ Binning binned(const Particles& particles, const std::vector<std::size_t>& membe
   std::vector<CoarseBin> of_member;
   for (const std::size_t i : members) {
     const double turned = Angle::radians(particles.heading_rad[i]).compass_degrees() / 360.0;
-    of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / kBinM)),
-                         static_cast<std::int64_t>(std::floor(particles.north_m[i] / kBinM)),
+    of_member.push_back({static_cast<std::int64_t>(std::floor(particles.east_m[i] / kClusterBinM)),
+                         static_cast<std::int64_t>(std::floor(particles.north_m[i] / kClusterBinM)),
                          static_cast<std::int64_t>(turned * static_cast<double>(kTurnBins)) % kTurnBins});
   }
   Binning result{of_member, {}};

@@ -17,7 +17,10 @@ double mean_cells_on_map(const Particles& p, const ParticleMatches& matches) {
   return cells;
 }
 
-/// Of the belief, share whose ground has roads to compare a frame with.
+}  // namespace
+
+bool shows_roads(const FeatureMap& features) { return moments_of(features.cells).variance() >= kMinVariance; }
+
 double share_with_roads(const Particles& p, const ParticleMatches& matches) {
   double share = 0.0;
   for (std::size_t i = 0; i < matches.sums.size(); ++i) {
@@ -26,18 +29,14 @@ double share_with_roads(const Particles& p, const ParticleMatches& matches) {
   return share;
 }
 
-}  // namespace
-
 std::optional<std::vector<double>> log_likelihoods_of(const Particles& particles, const ParticleMatches& matches,
                                                       const FeatureMap& features, const MeasurementModel& model) {
   constexpr double kMinShareOnMap = 0.25;
-  constexpr double kMinShareWithRoads = 0.5;
   const auto frame_cells = static_cast<double>(features.cells.observed_count());
   if (frame_cells == 0.0) return std::nullopt;
-  if (model.kind != LikelihoodKind::kEquation7) {
-    if (mean_cells_on_map(particles, matches) < kMinShareOnMap * frame_cells) return std::nullopt;
-    const bool shows_roads = moments_of(features.cells).variance() >= kMinVariance;
-    if (!shows_roads && share_with_roads(particles, matches) < kMinShareWithRoads) return std::nullopt;
+  if (model.kind != LikelihoodKind::kEquation7 &&
+      mean_cells_on_map(particles, matches) < kMinShareOnMap * frame_cells) {
+    return std::nullopt;
   }
   std::vector<double> log_likelihoods(matches.sums.size());
   for (std::size_t i = 0; i < log_likelihoods.size(); ++i) {

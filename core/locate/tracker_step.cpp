@@ -103,23 +103,33 @@ void Tracker::Step::see() {
   if (view == View::kStandsStill) state_.claim.reject();  // nobody knows whether the camera has stopped or the vehicle
 }
 
+ParticleMatches Tracker::Step::matches(const MapView& map, const FeatureMap& features) const {
+  return match_particles(map, features, filter_.particles(), settings_.vehicle.scale_range, limits_.threads,
+                         limits_.stop);
+}
+
+/// Neither the frame nor the ground that it is believed to be of has roads (a lake).
+bool Tracker::Step::is_over_bare_ground() const {
+  constexpr double kMinShareWithRoads = 0.5;
+  return settings_.measurement_model.kind != LikelihoodKind::kEquation7 && !shows_roads(*features_) &&
+         share_with_roads(filter_.particles(), matches(map_, *features_)) < kMinShareWithRoads;
+}
+
 /// The correlation is that of what a search compares; the other models speak of probabilities.
-ParticleMatches Tracker::Step::matches() const {
-  const auto match = [&](const MapView& map, const FeatureMap& features) {
-    return match_particles(map, features, filter_.particles(), settings_.vehicle.scale_range, limits_.threads,
-                           limits_.stop);
-  };
-  const bool correlates = settings_.measurement_model.kind == LikelihoodKind::kCorrelation;
-  return correlates ? match(compared_map(map_), compared_cells(*features_)) : match(map_, *features_);
+std::optional<std::vector<double>> Tracker::Step::log_likelihoods() const {
+  if (is_over_bare_ground()) return std::nullopt;
+  const MeasurementModel& model = settings_.measurement_model;
+  const bool correlates = model.kind == LikelihoodKind::kCorrelation;
+  const ParticleMatches found =
+      correlates ? matches(compared_map(map_), compared_cells(*features_)) : matches(map_, *features_);
+  return log_likelihoods_of(filter_.particles(), found, *features_, model);
 }
 
 void Tracker::Step::measure() {
   ++state_.measured;
   if (settings_.start == TrackStart::kSearch && !state_.searched && start_by_search()) return;
-  const auto log_likelihoods =
-      log_likelihoods_of(filter_.particles(), matches(), *features_, settings_.measurement_model);
-  if (log_likelihoods) {
-    weigh(*log_likelihoods);
+  if (const auto said = log_likelihoods()) {
+    weigh(*said);
   } else {
     outcome_.measurement = Measurement::kUseless;
   }

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/locate/particle_matches.hpp"
 #include "core/locate/step_estimate.hpp"
@@ -28,7 +29,9 @@ class Tracker::Step {
   void begin_or_move();
   void move();
   void see();
-  ParticleMatches matches() const;
+  ParticleMatches matches(const MapView& map, const FeatureMap& features) const;
+  bool is_over_bare_ground() const;
+  std::optional<std::vector<double>> log_likelihoods() const;
   void measure();
   void weigh(std::span<const double> log_likelihoods);
   bool saw_nothing() const;

@@ -45,14 +45,17 @@ TEST_F(ParticleLikelihoods, AreNoneWhereTheFrameShowsNoGroundOrTheMapNextToNone)
   EXPECT_FALSE(log_likelihoods_of(particles_, on_map, blind, model_));
   const ParticleMatches beside = matches(49, {1.0, 1.0});
   EXPECT_FALSE(log_likelihoods_of(particles_, beside, frame_, model_));
-  const FeatureMap lake = FeatureMap::centred(CellArray(20, 10, kNoRoad), 2.0);
-  EXPECT_TRUE(log_likelihoods_of(particles_, on_map, lake, model_)) << "the map has roads there";
-  const MatchSums no_road{200, 0.0, 0.0, 0.0, 0.0, 0.0};
-  EXPECT_FALSE(log_likelihoods_of(particles_, {{no_road, no_road}, {1.0, 1.0}}, lake, model_));
-  EXPECT_TRUE(log_likelihoods_of(particles_, {{no_road, no_road}, {1.0, 1.0}}, frame_with_a_road(), model_));
   MeasurementModel paper;
   paper.kind = LikelihoodKind::kEquation7;
   EXPECT_TRUE(log_likelihoods_of(particles_, beside, frame_, paper)) << "equation (7) is as it stands";
+}
+
+TEST_F(ParticleLikelihoods, KnowAFrameAndGroundWithoutRoads) {
+  EXPECT_FALSE(shows_roads(FeatureMap::centred(CellArray(20, 10, kNoRoad), 2.0)));
+  EXPECT_TRUE(shows_roads(frame_with_a_road()));
+  const MatchSums no_road{200, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const ParticleMatches half{{no_road, matches(50, {1.0}).sums[0]}, {1.0, 1.0}};
+  EXPECT_EQ(share_with_roads(particles_, half), 0.5);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 using testing::code_of;
 using testing::Flight;
 using testing::Track;
+using testing::view_of;
 
 TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
   Flight flight(map_, start_, 1);
@@ -144,6 +145,27 @@ TEST_F(Track, TakesAFrameThatShowsNothingNeitherForNorAgainstItsPlace) {
   input.features = FeatureMap::centred(CellArray(128, 128), 2.0);
   EXPECT_EQ(advance(tracker, input).measurement, Measurement::kUseless);
   EXPECT_EQ(state_.claim, before);
+}
+
+/// What a detector makes of ground without roads: probabilities of at most two steps above none.
+CellArray bare_ground(int cols, int rows, std::mt19937_64& random) {
+  CellArray cells(cols, rows);
+  for (Cell& cell : cells.cells()) cell = static_cast<Cell>(kNoRoad + std::max(0.0, uniform(random, -4.0, 2.99)));
+  return cells;
+}
+
+TEST_F(Track, TakesALakeNeitherForNorAgainstItsPlaceThoughADetectorSeesAFewPerMilleOfRoadThere) {
+  Flight flight(map_, start_, 1);
+  flight.side_cells = 160;
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 6).converged);
+  std::mt19937_64 random(7);
+  const RoadGrid lake{map_.geometry, bare_ground(map_.geometry.cols, map_.geometry.rows, random)};
+  const MapView over_the_lake = view_of(lake);
+  StepInput input = flight.step();
+  input.features = FeatureMap::centred(bare_ground(128, 128, random), 2.0);
+  const TrackEstimate over_it = advance(Tracker(over_the_lake, settings()), input);
+  EXPECT_EQ(over_it.measurement, Measurement::kUseless);
+  EXPECT_TRUE(over_it.converged);
 }
 
 TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {

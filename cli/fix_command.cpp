@@ -134,7 +134,7 @@ void add_fix_command(CLI::App& app) {
   heading->needs("--heading-range");
   command
       ->add_option("--confidence", o->fix.confidence,
-                   "Minimum probability of a fix; the shipped calibration vouches for about 0.995 at most")
+                   "Minimum probability of a fix; the shipped calibration vouches for 0.9965 at most")
       ->capture_default_str()
       ->check(between(0.5, 0.999999));
   add_calibration_option(*command, o->calibration);

@@ -1,7 +1,7 @@
 // What searches and tracks compare: not probabilities but half their log odds (core/match/soft_cells.hpp). A
 // detector is less sure of roads in a picture of another day, and those that it doubts tell places apart too:
-// docs/experiments.md has the measurement. Coarser cells are averaged after the log odds are halved, not before:
-// otherwise every road would become wider.
+// docs/calibration-history.md has the measurement. Coarser cells are averaged after the log odds are halved, not
+// before: otherwise every road would become wider.
 //
 // Equations (5) and (7) are the paper's and use the cells as they are.
 #pragma once

@@ -40,6 +40,7 @@ double other_roads_m(const Level& finest, const SearchMode& mode, int straight_r
   // What a straight road may bend, and be as wide.
   constexpr double kLeastLineM = 20.0;
   constexpr double kLineShare = 0.05;
+  constexpr double kCarriagewaysM = 40.0;
   const double cell_m = finest.cell_m();
   const FeatureMap north_up = rotated(resampled(finest.source, cell_m, mode.scale), mode.pose.heading);
   const LatticeIndex nadir = lattice_index(mode.pose.position, cell_m);
@@ -48,9 +49,9 @@ double other_roads_m(const Level& finest, const SearchMode& mode, int straight_r
   const RoadGrid ground = finest.read({cell_m, first, north_up.cells.cols(), north_up.cells.rows()});
   const double side_m = cell_m * std::sqrt(static_cast<double>(mode.observed_cells));
   const double line_m = std::max({kLeastLineM, kLineShare * side_m, 2.0 * cell_m});
-  const double narrowest_m = std::max(kRoadWidthM, cell_m);
-  return cell_m *
-         road_beside_lines(ground.cells, north_up.cells, straight_roads, narrowest_m / cell_m, line_m / cell_m);
+  const StraightRoad straight{line_m / cell_m, kCarriagewaysM / cell_m};
+  const double narrowest = std::max(kRoadWidthM / cell_m, 1.0);
+  return cell_m * road_beside_straight_ones(ground.cells, north_up.cells, straight_roads, straight, narrowest);
 }
 
 double poses_of(const PoseRegion& region) {

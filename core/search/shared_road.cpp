@@ -125,42 +125,66 @@ struct Stripe {
   }
 };
 
-/// The one that holds most road, by Hough's transform. `reach`: no piece is farther from the origin.
-Stripe longest_line(const std::vector<RoadPiece>& pieces, double width, double reach) {
-  constexpr int kDirections = 180;
+/// A stripe and the length of road in it.
+struct Line {
+  Stripe stripe;
+  double length = 0.0;
+};
+
+/// Of the stripes like `first` that begin less than `reach` beyond it the one that holds most road.
+Line longest_of_direction(const std::vector<RoadPiece>& pieces, const Stripe& first, double reach) {
   constexpr int kBins = 4;  // of a stripe
-  const double bin = width / kBins;
-  const auto bins = static_cast<std::size_t>(2.0 * reach / bin) + 1;
-  Stripe longest{.width = width};
-  double most = 0.0;
-  std::vector<double> lengths;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = i * std::numbers::pi / kDirections;
-    const Stripe direction{std::cos(angle), std::sin(angle), -reach, width};
-    lengths.assign(bins + kBins, 0.0);
-    for (const RoadPiece& piece : pieces) {
-      lengths[static_cast<std::size_t>((direction.distance(piece) + reach) / bin)] += piece.length;
-    }
-    for (std::size_t first = 0; first < bins; ++first) {
-      const double length = std::accumulate(lengths.data() + first, lengths.data() + first + kBins, 0.0);
-      if (length <= most) continue;
-      most = length;
-      longest = direction;
-      longest.from += static_cast<double>(first) * bin;
-    }
+  const double bin = first.width / kBins;
+  std::vector<double> lengths(static_cast<std::size_t>(reach / bin) + 1 + kBins, 0.0);
+  for (const RoadPiece& piece : pieces) {
+    const double bins = (first.distance(piece) - first.from) / bin;
+    if (bins < 0.0 || bins >= static_cast<double>(lengths.size())) continue;
+    lengths[static_cast<std::size_t>(bins)] += piece.length;
+  }
+  Line longest{first};
+  for (std::size_t i = 0; i + kBins < lengths.size(); ++i) {
+    const double length = std::accumulate(lengths.data() + i, lengths.data() + i + kBins, 0.0);
+    if (length <= longest.length) continue;
+    longest = {first, length};
+    longest.stripe.from += static_cast<double>(i) * bin;
   }
   return longest;
 }
 
+/// The one that holds most road, by Hough's transform. `reach`: no piece is farther from the origin.
+Line longest_line(const std::vector<RoadPiece>& pieces, double width, double reach) {
+  constexpr int kDirections = 180;
+  Line longest{{.width = width}};
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = i * std::numbers::pi / kDirections;
+    const Line line = longest_of_direction(pieces, {std::cos(angle), std::sin(angle), -reach, width}, 2.0 * reach);
+    if (line.length > longest.length) longest = line;
+  }
+  return longest;
+}
+
+/// What lies beside the longest straight road, with its other carriageway if there is one.
+void take_longest_away(std::vector<RoadPiece>& pieces, const StraightRoad& straight, double reach) {
+  constexpr double kMinShareOfOther = 0.5;
+  const auto take_away = [&](const Stripe& stripe) {
+    std::erase_if(pieces, [&](const RoadPiece& piece) { return stripe.holds(piece); });
+  };
+  const Line longest = longest_line(pieces, straight.width, reach);
+  take_away(longest.stripe);
+  Stripe beside = longest.stripe;
+  beside.from -= straight.apart;
+  const Line other = longest_of_direction(pieces, beside, 2.0 * straight.apart);
+  if (other.length > kMinShareOfOther * longest.length) take_away(other.stripe);
+}
+
 }  // namespace
 
-double road_beside_lines(const CellArray& map, const CellArray& features, int lines, double narrowest,
-                         double line_width) {
+double road_beside_straight_ones(const CellArray& map, const CellArray& features, int straight_roads,
+                                 const StraightRoad& straight, double narrowest) {
   assert(map.cols() == features.cols() && map.rows() == features.rows());
   std::vector<RoadPiece> pieces = pieces_of(shared_road(map, features), narrowest);
-  for (int line = 0; line < lines; ++line) {
-    const Stripe stripe = longest_line(pieces, line_width, std::hypot(map.cols(), map.rows()));
-    std::erase_if(pieces, [&](const RoadPiece& piece) { return stripe.holds(piece); });
+  for (int road = 0; road < straight_roads; ++road) {
+    take_longest_away(pieces, straight, std::hypot(map.cols(), map.rows()));
   }
   double length = 0.0;
   for (const RoadPiece& piece : pieces) length += piece.length;

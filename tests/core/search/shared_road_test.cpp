@@ -15,10 +15,10 @@ namespace {
 
 using testing::from_ascii;
 
-constexpr double kLine = 1.0;
+constexpr StraightRoad kLine{.width = 1.0, .apart = 0.0};
 
 /// Of a map that is seen as it is.
-double beside_two_lines(const CellArray& map) { return road_beside_lines(map, map, 2, 1.0, kLine); }
+double beside_two_lines(const CellArray& map) { return road_beside_straight_ones(map, map, 2, kLine, 1.0); }
 
 TEST(SharedRoad, IsWhatMapAndFeaturesHaveInCommonBesideTwoStraightLines) {
   const CellArray map = from_ascii(R"(
@@ -42,7 +42,7 @@ TEST(SharedRoad, IsWhatMapAndFeaturesHaveInCommonBesideTwoStraightLines) {
     ...#..............
     ...#..............)");
   EXPECT_NEAR(beside_two_lines(map), 7.0, 1e-9) << "of the shortest, without its crossings";
-  EXPECT_NEAR(road_beside_lines(map, features, 2, 1.0, kLine), 3.0, 1e-9);
+  EXPECT_NEAR(road_beside_straight_ones(map, features, 2, kLine, 1.0), 3.0, 1e-9);
 }
 
 TEST(SharedRoad, DoesNotDependOnHowSureADetectorIs) {
@@ -62,13 +62,13 @@ TEST(SharedRoad, DoesNotDependOnHowSureADetectorIs) {
   CellArray faint = map;
   for (Cell& cell : faint.cells()) cell = cell_from_probability(is_road(cell) ? 0.3 : 0.1);
   EXPECT_NEAR(beside_two_lines(map), 6.0, 1e-9);
-  EXPECT_NEAR(road_beside_lines(map, faint, 2, 1.0, kLine), 6.0, 1e-9);
+  EXPECT_NEAR(road_beside_straight_ones(map, faint, 2, kLine, 1.0), 6.0, 1e-9);
 }
 
 TEST(SharedRoad, OfRoadsThatDoNotMeetIsNothing) {
-  EXPECT_EQ(road_beside_lines(from_ascii("#...."), from_ascii("...#."), 2, 1.0, kLine), 0.0);
-  EXPECT_EQ(road_beside_lines(from_ascii("....."), from_ascii("...#."), 2, 1.0, kLine), 0.0);
-  EXPECT_EQ(road_beside_lines(from_ascii("????"), from_ascii("##.."), 2, 1.0, kLine), 0.0);
+  EXPECT_EQ(road_beside_straight_ones(from_ascii("#...."), from_ascii("...#."), 2, kLine, 1.0), 0.0);
+  EXPECT_EQ(road_beside_straight_ones(from_ascii("....."), from_ascii("...#."), 2, kLine, 1.0), 0.0);
+  EXPECT_EQ(road_beside_straight_ones(from_ascii("????"), from_ascii("##.."), 2, kLine, 1.0), 0.0);
 }
 
 TEST(SharedRoad, LeavesOutWhatWasNotObservedInBoth) {
@@ -86,7 +86,7 @@ TEST(SharedRoad, LeavesOutWhatWasNotObservedInBoth) {
     .######...)");
   CellArray features = map;
   for (int col = 0; col < 3; ++col) features.at(col, 10) = kUnobserved;
-  EXPECT_NEAR(road_beside_lines(map, features, 2, 1.0, kLine), 4.0, 1e-9);
+  EXPECT_NEAR(road_beside_straight_ones(map, features, 2, kLine, 1.0), 4.0, 1e-9);
 }
 
 TEST(SharedRoad, IsNoLongerOfARoadThatIsSeenBesideItself) {
@@ -99,7 +99,7 @@ TEST(SharedRoad, IsNoLongerOfARoadThatIsSeenBesideItself) {
       features.at(col, 32 + width) = kRoad;
     }
   }
-  EXPECT_NEAR(road_beside_lines(map, features, 2, 3.0, 4.0), 40.0 / 3.0, 1e-9);
+  EXPECT_NEAR(road_beside_straight_ones(map, features, 2, {4.0, 0.0}, 3.0), 40.0 / 3.0, 1e-9);
 }
 
 struct Piece {
@@ -142,7 +142,7 @@ class SharedRoadOf : public ::testing::TestWithParam<double> {
                  piece.x * std::sin(angle) + piece.y * std::cos(angle), piece.deg + turn, piece.length};
       }
       const CellArray map = drawn(turned, GetParam());
-      const double left = road_beside_lines(map, map, 2, 3.0, 10.0) / kSide;
+      const double left = road_beside_straight_ones(map, map, 2, {10.0, 20.0}, 3.0) / kSide;
       least = std::min(least, left);
       most = std::max(most, left);
     }
@@ -155,7 +155,22 @@ TEST_P(SharedRoadOf, AJunctionOfStraightRoadsIsNoneOrAThirdArm) {
   EXPECT_LT(sides_left({{-kFar, 0, 0, 2 * kFar}}).second, 0.05) << "a straight road";
   EXPECT_LT(sides_left({{-kFar, 0, 0, 2 * kFar}, {0, 0, 90, kFar}}).second, 0.05) << "T";
   EXPECT_LT(sides_left({{-kFar, 0, 0, 2 * kFar}, {0, -kFar, 90, 2 * kFar}}).second, 0.05) << "X";
-  EXPECT_LT(sides_left({{0, 0, 0, kFar}, {0, 0, 120, kFar}, {0, 0, 240, kFar}}).second, 0.75) << "Y";
+  EXPECT_LT(sides_left({{0, 0, 0, kFar}, {0, 0, 120, kFar}, {0, 0, 240, kFar}}).second, 0.65) << "Y";
+}
+
+TEST_P(SharedRoadOf, ACrossingOfTwoCarriagewaysIsThatOfOneRoad) {
+  constexpr double kFar = 2.0 * kSide;
+  const Piece one{-kFar, 0, 0, 2 * kFar};
+  for (const double apart : {11.0, 15.0, 19.0}) {
+    const Piece other{-kFar, apart, 0, 2 * kFar};
+    EXPECT_LT(sides_left({one, other, {0, -kFar, 80, 2 * kFar}}).second, 0.05) << "an overpass, " << apart;
+    EXPECT_LT(sides_left({one, other, {0, -kFar, 80, 2 * kFar}, {apart, -kFar, 80, 2 * kFar}}).second, 0.2) << apart;
+  }
+}
+
+TEST_P(SharedRoadOf, AParallelStreetFartherAwayIsAnother) {
+  constexpr double kFar = 2.0 * kSide;
+  EXPECT_GT(sides_left({{-kFar, 0, 0, 2 * kFar}, {-kFar, 40, 0, 2 * kFar}, {0, -kFar, 80, 2 * kFar}}).first, 0.4);
 }
 
 TEST_P(SharedRoadOf, StreetsThatTellAPlaceIsMoreThanAnotherRoadAcross) {

@@ -30,13 +30,22 @@
 namespace roadfix::cli {
 namespace {
 
-/// Under another name, the same file would be taken for another witness.
-void note_twins(MapWriter& writer, const std::string& source, const std::string& map) {
-  for (const std::string& twin : writer.twins_of(source)) {
+/// What was made of another source tells nothing that this one does not.
+void note_copies(MapWriter& writer, const std::string& source, const std::string& map, const ShiftReport& shifts) {
+  const std::vector<std::string> twins = writer.twins_of(source);
+  std::set<std::string> copies(twins.begin(), twins.end());
+  if (const auto found = shifts.copies.find(source); found != shifts.copies.end()) {
+    copies.insert(found->second.begin(), found->second.end());
+  }
+  for (const std::string& copy : copies) {
+    const bool exact = std::ranges::find(twins, copy) != twins.end();
+    const std::string agrees = exact ? fmt::format("says exactly what the source '{}' says", copy)
+                                     : fmt::format("agrees with the source '{}' as only a copy does", copy);
     fmt::print(stderr,
-               "note: '{}' says exactly what the source '{}' says, and counts beside it where other sources differ. If "
-               "it is the same content, take it out: roadfix remove {} {}\n",
-               source, twin, shell_word(map), shell_word(source));
+               "note: '{}' {}, and counts with it as one where other sources differ. If {}: roadfix remove {} {}\n",
+               source, agrees,
+               exact ? "it is the same content, take it out" : "one was made of the other, take the worse one out",
+               shell_word(map), shell_word(source));
   }
 }
 
@@ -127,7 +136,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
                                   : "all its pixels are nodata, transparent, no numbers or in one colour");
   }
   if (report.blocks_before < report.blocks) {
-    note_twins(*writer, record.name, arguments.map);
+    note_copies(*writer, record.name, arguments.map, report.shifts);
   }
   note_shifts(arguments.map, record.name, report.shifts);
   print_report(json, summary, settings, report, arguments.json);

@@ -119,11 +119,13 @@ TEST_F(IngestReport, ACopyUnderAnotherNameIsNoticed) {
   EXPECT_THAT(again.err, HasSubstr("take it out: roadfix remove '" + target + R"(' 'the copy'\''s')"));
 }
 
-TEST_F(IngestReport, ASourceThatLiesBesideTheOthersIsNoticed) {
-  const auto streets = [&](const std::string& name, double east_deg) {
+/// Streets of unequal distances, which lie so far to the east.
+class StreetSources : public IngestReport {
+ protected:
+  std::string streets(const std::string& name, double east_deg, int count = 16) {
     std::string features;
     double at = 0.0;
-    for (int i = 0; i < 16; ++i) {
+    for (int i = 0; i < count; ++i) {
       at += 0.0008 + 0.0003 * (i * i % 5);
       const double lon = 38.25 + at + east_deg;
       const double lat = 37.75 + at;
@@ -135,7 +137,10 @@ TEST_F(IngestReport, ASourceThatLiesBesideTheOthersIsNoticed) {
     std::string path = folder / (name + ".geojson");
     std::ofstream(path) << R"({"type": "FeatureCollection", "features": [)" << features << "]}";
     return path;
-  };
+  }
+};
+
+TEST_F(StreetSources, OfWhichOneLiesBesideTheOthersAreNoticed) {
   EXPECT_EQ(ingest({streets("first", 0.0), "--map", map("m.gpkg")}).code, 0);
   EXPECT_THAT(ingest({streets("again", 0.00003), "--map", map("m.gpkg")}).err, ::testing::Not(HasSubstr("would fit")))
       << "2.6 m";
@@ -143,6 +148,19 @@ TEST_F(IngestReport, ASourceThatLiesBesideTheOthersIsNoticed) {
   EXPECT_EQ(beside.code, 0) << beside.err;
   EXPECT_THAT(beside.err, HasSubstr("'beside' would fit the other sources of the map better about"));
   EXPECT_THAT(beside.err, HasSubstr("m to the west"));
+}
+
+TEST_F(StreetSources, OfWhichOneIsNearlyACopyOfAnotherAreNoticedAndCountAsOne) {
+  EXPECT_EQ(ingest({streets("wrong", 0.0003), "--map", map("m.gpkg")}).code, 0);
+  const ChildResult older = ingest({streets("older", 0.0003, 15), "--map", map("m.gpkg")});
+  EXPECT_EQ(older.code, 0) << older.err;
+  EXPECT_THAT(older.err, HasSubstr("'older' agrees with the source 'wrong' as only a copy does"));
+  EXPECT_THAT(older.err, HasSubstr("roadfix remove " + map("m.gpkg") + " older"));
+  const ChildResult right = ingest({streets("right", 0.0), "--map", map("m.gpkg")});
+  EXPECT_THAT(right.err, ::testing::Not(HasSubstr("copy")));
+  for (const char* each : {"'wrong' would fit", "'older' would fit", "'right' would fit"}) {
+    EXPECT_THAT(right.err, HasSubstr(each));
+  }
 }
 
 TEST_F(IngestReport, ADryRunPrintsThePlanAndWritesNothing) {

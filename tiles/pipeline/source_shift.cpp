@@ -10,6 +10,7 @@
 
 #include "core/grid/cell.hpp"
 #include "core/units/error.hpp"
+#include "tiles/pipeline/witnesses.hpp"
 
 namespace roadfix {
 namespace {
@@ -153,11 +154,14 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
   std::map<std::string, std::optional<SourceShift>> measured;
   std::map<std::string, std::vector<std::string>> not_measured;  // by what is in the way
   ShiftReport result;
+  Witnesses witnesses(writer);
   for (const std::string& source : sources) {
     try {
-      const auto shift = shift_of(writer.shared_evidence(source, kTiles), writer.settings().cell_m);
+      const auto [copies, others] = witnesses.around(source);
+      const auto shift = shift_of(writer.shared_evidence(source, others, kTiles), writer.settings().cell_m);
       measured.emplace(source, shift);
       if (shift) result.beside.emplace(source, *shift);
+      if (!copies.empty()) result.copies.emplace(source, copies);
     } catch (const CorruptData& damage) {
       not_measured[damage.what()].push_back(source);
     }

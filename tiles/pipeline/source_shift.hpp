@@ -23,11 +23,12 @@ std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, doubl
 
 struct ShiftReport {
   std::map<std::string, SourceShift> beside;  ///< of the sources that lie beside the others
+  std::map<std::string, Witness> copies;      ///< of the sources that have any: see Witnesses::Around
   std::vector<std::string> notes;             ///< why others could not be measured
 };
 
-/// Measures these sources in force anew and tells the map. Of one that cannot be measured, since evidence is damaged,
-/// the map keeps what it knew.
+/// Measures these sources in force anew, each beside those that are no copies of it, and tells the map. Of one that
+/// cannot be measured, since evidence is damaged, the map keeps what it knew.
 ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources);
 
 }  // namespace roadfix

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "tiles/store/fusion.hpp"
@@ -67,37 +69,54 @@ std::vector<std::string> EvidenceTable::twins_of(const std::string& source) {
   return names;
 }
 
-SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::int64_t count) {
-  SharedEvidence result;
+std::vector<EvidencePlace> EvidenceTable::places_shared(const std::string& source, std::span<const Witness> witnesses) {
+  // By the ledger, which is sorted by source: evidence is sorted by tile, and a search through all of it takes long.
   Statement shared(map_,
-                   "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1), tiles AS (SELECT "
-                   "e.tile_row, e.tile_column, row_number() OVER (ORDER BY e.tile_row, e.tile_column) - 1 AS place, "
-                   "count(*) OVER () AS all_of_them FROM roadfix_evidence e WHERE e.source_id IN own AND EXISTS "
-                   "(SELECT 1 FROM roadfix_evidence o JOIN roadfix_sources s ON s.id = o.source_id WHERE o.tile_row = "
-                   "e.tile_row AND o.tile_column = e.tile_column AND s.in_force = 1 AND o.source_id NOT IN own)) "
-                   "SELECT tile_row, tile_column FROM tiles WHERE place * ?2 / all_of_them < (place + 1) * ?2 / "
-                   "all_of_them");
+                   "SELECT b.tile_row, b.tile_column FROM roadfix_sources s CROSS JOIN roadfix_sources t CROSS JOIN "
+                   "roadfix_blocks b ON b.source_id = s.id WHERE s.name = ?1 AND s.in_force = 1 AND t.name = ?2 AND "
+                   "t.in_force = 1 AND (SELECT count(*) FROM roadfix_evidence e WHERE e.tile_row = b.tile_row AND "
+                   "e.tile_column = b.tile_column AND e.source_id IN (s.id, t.id)) = 2");
+  std::set<std::pair<std::int64_t, std::int64_t>> places;
+  for (const Witness& witness : witnesses) {
+    for (const std::string& other : witness) {
+      for (shared.with(source, other); shared.step();) places.emplace(shared.integer(0), shared.integer(1));
+    }
+  }
+  std::vector<EvidencePlace> result;
+  for (const auto& [row, column] : places) result.push_back({source, column, row});
+  return result;
+}
+
+SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::span<const Witness> witnesses,
+                                              std::int64_t count) {
+  const std::vector<EvidencePlace> places = places_shared(source, witnesses);
   Statement evidence(
       map_,
-      "SELECT e.tile_data, s.name, s.registration_sigma_m FROM roadfix_evidence e JOIN roadfix_sources s "
-      "ON s.id = e.source_id WHERE s.in_force = 1 AND e.tile_row = ?1 AND e.tile_column = ?2");
-  for (shared.with(source, count); shared.step();) {
-    SharedEvidence::Tile tile;
-    std::vector<CellArray> others;
-    const std::int64_t row = shared.integer(0);
-    const std::int64_t column = shared.integer(1);
-    for (evidence.with(row, column); evidence.step();) {
-      CellArray cells = decoded_evidence(map_.path(), {evidence.text(1), column, row}, evidence.blob(0));
-      if (evidence.text(1) == source) {
-        tile.own = std::move(cells);
-        result.own_sigma_m = evidence.real(2);
-      } else {
-        others.push_back(std::move(cells));
-        result.others_sigma_m = std::max(result.others_sigma_m, evidence.real(2));
-      }
+      "SELECT e.tile_data, s.registration_sigma_m FROM roadfix_evidence e JOIN roadfix_sources s ON s.id = e.source_id "
+      "WHERE s.name = ?1 AND s.in_force = 1 AND e.tile_row = ?2 AND e.tile_column = ?3");
+  const auto said = [&](const std::string& name, const EvidencePlace& place, double& sigma_m) {
+    std::optional<CellArray> cells;
+    if (evidence.with(name, place.row, place.column).step()) {
+      cells = decoded_evidence(map_.path(), {name, place.column, place.row}, evidence.blob(0));
+      sigma_m = std::max(sigma_m, evidence.real(1));
     }
-    tile.others = fused(others);
-    result.tiles.push_back(std::move(tile));
+    evidence.reset();
+    return cells;
+  };
+  SharedEvidence result;
+  const std::int64_t all = std::ssize(places);
+  for (std::int64_t i = 0; i < all; ++i) {
+    if (i * count / all == (i + 1) * count / all) continue;
+    const EvidencePlace& place = places[static_cast<std::size_t>(i)];
+    std::vector<CellArray> others;
+    for (const Witness& witness : witnesses) {
+      std::vector<CellArray> one;
+      for (const std::string& name : witness) {
+        if (auto cells = said(name, place, result.others_sigma_m)) one.push_back(std::move(*cells));
+      }
+      if (!one.empty()) others.push_back(fused(one));
+    }
+    result.tiles.push_back({*said(source, place, result.own_sigma_m), fused(others)});
   }
   return result;
 }

@@ -34,13 +34,16 @@ class EvidenceTable {
   /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
   std::vector<std::string> twins_of(const std::string& source);
   /// These two: see MapWriter.
-  SharedEvidence shared_evidence(const std::string& source, std::int64_t count);
+  SharedEvidence shared_evidence(const std::string& source, std::span<const Witness> witnesses, std::int64_t count);
   std::vector<std::string> sources_beside(const std::string& source);
   /// Drops what cannot be read, or stands for no block that the ledger calls done. Returns the sources that lost some,
   /// each once. Their fingerprint is emptied: they are not what was ingested. Part of the caller's transaction.
   std::vector<std::string> drop_damaged();
 
  private:
+  /// Those of the source in force of which any of the witnesses says something, too, row by row.
+  std::vector<EvidencePlace> places_shared(const std::string& source, std::span<const Witness> witnesses);
+
   sqlite::Connection& map_;
   int zoom_;
   sqlite::Statement put_;

@@ -47,7 +47,10 @@ struct SourceRecord {
   friend bool operator==(const SourceRecord&, const SourceRecord&) = default;
 };
 
-/// What one source says of some tiles, and what the others in force say of them together.
+/// Names of sources in force that say the same, and so count as one where others differ.
+using Witness = std::vector<std::string>;
+
+/// What one source says of some tiles, and what others in force say of them together.
 struct SharedEvidence {
   struct Tile {
     CellArray own;

@@ -221,8 +221,9 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
 
 std::vector<std::string> MapWriter::twins_of(const std::string& source) { return state_->evidence.twins_of(source); }
 
-SharedEvidence MapWriter::shared_evidence(const std::string& source, std::int64_t count) {
-  return state_->evidence.shared_evidence(source, count);
+SharedEvidence MapWriter::shared_evidence(const std::string& source, std::span<const Witness> witnesses,
+                                          std::int64_t count) {
+  return state_->evidence.shared_evidence(source, witnesses, count);
 }
 
 std::vector<std::string> MapWriter::sources_beside(const std::string& source) {

@@ -67,9 +67,9 @@ class MapWriter {
   /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
   std::vector<std::string> twins_of(const std::string& source);
 
-  /// Of up to `count` tiles, spread evenly over those that the source shares with others in force. Throws CorruptData
-  /// naming the tile.
-  SharedEvidence shared_evidence(const std::string& source, std::int64_t count);
+  /// Of up to `count` tiles, spread evenly over those that the source shares with the witnesses, of which each counts
+  /// once, however many sources in force it is. Throws CorruptData naming the tile.
+  SharedEvidence shared_evidence(const std::string& source, std::span<const Witness> witnesses, std::int64_t count);
 
   /// Other sources in force that say something of a tile that this one in force does, too.
   std::vector<std::string> sources_beside(const std::string& source);

@@ -116,19 +116,19 @@ std::optional<CellArray> TileTable::derived(int zoom, TileIndex index) {
 }
 
 std::optional<CellArray> TileTable::fused_evidence(TileIndex index) {
-  struct Witness {
+  struct Said {
     std::vector<std::byte> png;
     std::string source;
   };
-  std::vector<Witness> witnesses;
+  std::vector<Said> evidence;
   {
     const std::lock_guard lock(mutex_);
     const sqlite::ResetAtEnd reset(evidence_);
     evidence_.with(index.col, tile_row(index, finest_));
-    while (evidence_.step()) witnesses.push_back({copy_of(evidence_.blob(0)), evidence_.text(1)});
+    while (evidence_.step()) evidence.push_back({copy_of(evidence_.blob(0)), evidence_.text(1)});
   }
   std::vector<CellArray> sources;
-  for (const auto& [png, source] : witnesses) {
+  for (const auto& [png, source] : evidence) {
     sources.push_back(decoded_evidence(map_.path(), {source, index.col, tile_row(index, finest_)}, png));
   }
   if (sources.empty()) return std::nullopt;

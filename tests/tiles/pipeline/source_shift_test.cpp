@@ -20,10 +20,12 @@
 namespace roadfix {
 namespace {
 
+using ::testing::_;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 
 constexpr double kCellM = 2.0;
 
@@ -210,11 +212,13 @@ class MeasuredShifts : public ::testing::Test {
                               .kind = "roads",
                               .fingerprint = name + std::to_string(east),
                               .provenance = {.registration_sigma_m = sigma_m}};
-    const std::vector<TileIndex> blocks{{847, -8165}, {848, -8165}, {847, -8164}, {848, -8164}};
+    put(record, {{847, -8165}, {848, -8165}, {847, -8164}, {848, -8164}}, town, east);
+  }
+  void put(const SourceRecord& record, const std::vector<TileIndex>& blocks, const CellArray& roads, int east) {
     for (const TileIndex block : writer.begin_source(record, blocks, true)) {
-      testing::put_block(writer, name, block, part_of(town, block, east));
+      testing::put_block(writer, record.name, block, part_of(roads, block, east));
     }
-    writer.finish_source(name);
+    writer.finish_source(record.name);
   }
   std::vector<SourceStatus> sources() const { return MapReader(folder / "m.gpkg").info().sources; }
 
@@ -240,10 +244,49 @@ TEST_F(MeasuredShifts, OfTwoThatDifferBothCountAsUncertain) {
 TEST_F(MeasuredShifts, OfThreeOnlyTheOneThatTwoContradictDoes) {
   put("a", 0);
   put("b", 10);
-  put("c", 0);
-  const auto shifts = measure_shifts(writer, {"a", "b", "c"}).beside;
-  ASSERT_EQ(shifts.size(), 1U);
-  EXPECT_EQ(shifts.count("b"), 1U);
+  put("c", 2);
+  const ShiftReport report = measure_shifts(writer, {"a", "b", "c"});
+  EXPECT_THAT(report.beside, ElementsAre(Pair("b", _)));
+  EXPECT_THAT(report.copies, IsEmpty()) << "4 m apart";
+}
+
+TEST_F(MeasuredShifts, OfAWrongSourceItsCopyAndARightOneAllThreeCountAsUncertain) {
+  put("wrong", 10);
+  put("copy", 10);
+  put("right", 0);
+  const ShiftReport report = measure_shifts(writer, {"wrong", "copy", "right"});
+  EXPECT_THAT(report.copies, ElementsAre(Pair("copy", ElementsAre("wrong")), Pair("wrong", ElementsAre("copy"))));
+  EXPECT_EQ(report.beside.size(), 3U);
+  for (const SourceStatus& source : sources()) EXPECT_EQ(source.registration_sigma_m(), 10.0) << source.record.name;
+}
+
+TEST_F(MeasuredShifts, OfACopyOfAPartOfTheGroundCountTheSame) {
+  const std::vector<TileIndex> west{{847, -8165}, {847, -8164}};
+  put("wrong", 10);
+  put({.name = "part", .kind = "roads", .fingerprint = "part", .provenance = {.registration_sigma_m = 2.5}}, west, town,
+      10);
+  put("right", 0);
+  EXPECT_EQ(measure_shifts(writer, {"wrong", "part", "right"}).beside.size(), 3U);
+}
+
+TEST_F(MeasuredShifts, OfTwoThatContradictAThirdAndItsCopiesTheseAloneCountAsUncertain) {
+  put("wrong", 10);
+  put("copy", 10);
+  put("another copy", 10);
+  put("right", 0);
+  put("right, too", 2);
+  EXPECT_THAT(measure_shifts(writer, writer.sources_in_force()).beside,
+              ElementsAre(Pair("another copy", _), Pair("copy", _), Pair("wrong", _)));
+}
+
+TEST_F(MeasuredShifts, OfCopiesThatOneStatesItsErrorExplainsWhatIsMeasuredOfTheOtherSide) {
+  put("a", 0);
+  put("b", 10);
+  put("c", 10);
+  ASSERT_EQ(measure_shifts(writer, writer.sources_in_force()).beside.size(), 3U);
+  put("b", 10, 10.0);
+  const auto shifts = measure_shifts(writer, writer.sources_in_force()).beside;
+  EXPECT_THAT(shifts, ElementsAre(Pair("c", _))) << "that of b explains what a is beside";
 }
 
 TEST_F(MeasuredShifts, AreForgottenWhenTheSourceIsReplacedByOneThatFitsOrStatesItsError) {

@@ -62,15 +62,16 @@ TEST(EvidenceTable, LooksForSourcesThatSayTheSameWithoutACopyOfAllThatOneSays) {
   EXPECT_LT(bytes_written() - before, 1'000'000);
 }
 
-TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
+TEST(EvidenceTable, ComparesASourceWithWitnessesInForceWhereBothSaySomething) {
   const TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", settings_37n());
+  const std::vector<Witness> witnesses{{"b"}, {"c"}, {"unfinished"}};
   ingest(writer, {"a", 1, some_blocks(3)});
-  EXPECT_TRUE(writer.shared_evidence("a", 9).tiles.empty()) << "there is no other";
+  EXPECT_TRUE(writer.shared_evidence("a", witnesses, 9).tiles.empty()) << "there is no other";
   ingest(writer, {"b", 2, some_blocks(3, 1)});
   ingest(writer, {"c", 3, some_blocks(1, 1)});
   writer.begin_source(TestSource{"unfinished", 4, some_blocks(1)}.record(), some_blocks(1), false);
-  const SharedEvidence all = writer.shared_evidence("a", 9);
+  const SharedEvidence all = writer.shared_evidence("a", witnesses, 9);
   const std::vector<TileIndex> shared = some_blocks(2, 1);
   ASSERT_EQ(all.tiles.size(), shared.size());
   EXPECT_EQ(all.own_sigma_m, 2.5);
@@ -84,8 +85,20 @@ TEST(EvidenceTable, ComparesASourceWithTheOthersInForceWhereBothSaySomething) {
                                     }))
         << block.col << ' ' << block.row;
   }
-  EXPECT_EQ(writer.shared_evidence("a", 2).tiles.size(), 2U);
-  EXPECT_TRUE(writer.shared_evidence("none", 2).tiles.empty());
+  EXPECT_EQ(writer.shared_evidence("a", witnesses, 2).tiles.size(), 2U);
+  EXPECT_TRUE(writer.shared_evidence("none", witnesses, 2).tiles.empty());
+}
+
+TEST(EvidenceTable, HasAWitnessOfSeveralSourcesSpeakOnce) {
+  const TemporaryFolder folder;
+  MapWriter writer(folder / "m.gpkg", settings_37n());
+  const std::vector<TileIndex> block = some_blocks(1);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) ingest(writer, {std::string(1, "_abcd"[seed]), seed, block});
+  const std::vector<Witness> witnesses{{"b"}, {"c", "d"}};
+  const SharedEvidence shared = writer.shared_evidence("a", witnesses, 9);
+  ASSERT_EQ(shared.tiles.size(), 1U);
+  const CellArray one = fused(std::vector{random_cells(3, block[0]), random_cells(4, block[0])});
+  EXPECT_EQ(shared.tiles[0].others, fused(std::vector{random_cells(2, block[0]), one}));
 }
 
 TEST(EvidenceTable, NamesTheOtherSourcesInForceOfTheSameTiles) {

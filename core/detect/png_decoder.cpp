@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/png/png_codec.hpp"
+#include "core/png/png_reader.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {

@@ -10,14 +10,13 @@
 #include <mutex>
 #include <utility>
 
-#include "core/png/png_codec.hpp"
+#include "core/png/grey_png.hpp"
+#include "core/png/png_reader.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_records.hpp"
 
 namespace roadfix {
 namespace {
-
-constexpr std::uint16_t kNull16 = 0xffff;
 
 PngShape shape_of(TileDepth depth) { return {kTileCells, kTileCells, 1, static_cast<int>(depth)}; }
 
@@ -31,16 +30,17 @@ std::vector<std::uint8_t> pack(std::span<const Cell> cells) {
 }
 
 void unpack(std::span<const std::uint8_t> pixels, std::span<Cell> cells) {
+  int wrong = 0;  // told after the loop, which the compiler then vectorises
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto value = static_cast<std::uint16_t>(pixels[2 * i] << 8 | pixels[2 * i + 1]);
-    if (value > kRoad && value != kNull16) {
-      throw CorruptData("tile-corrupt", fmt::format("value {} is neither 0..254 nor unobserved", value));
-    }
-    cells[i] = static_cast<Cell>(value == kNull16 ? kUnobserved : value);
+    const std::uint8_t high = pixels[2 * i];
+    cells[i] = pixels[2 * i + 1];
+    wrong |= high ^ (is_observed(cells[i]) ? 0 : 0xff);
   }
+  if (wrong != 0) throw CorruptData("tile-corrupt", "a value is neither 0..254 nor unobserved");
 }
 
 void read_pixels(std::span<const std::byte> png, TileDepth depth, std::span<std::uint8_t> pixels) {
+  if (read_grey_png(png, shape_of(depth), pixels)) return;
   try {
     PngReader reader(png, PngOrigin::kOwn);
     if (reader.shape() != shape_of(depth)) {
@@ -52,17 +52,9 @@ void read_pixels(std::span<const std::byte> png, TileDepth depth, std::span<std:
   }
 }
 
-std::vector<std::byte> encoded(std::span<const std::uint8_t> pixels, TileDepth depth) {
-  auto differences = encode_grey_png(pixels, shape_of(depth), PngFilter::kDifferenceToRowAbove);
-  // Runs are of bytes: 16 bits as they are have none to speak of, and take four times as long to pack.
-  if (depth == TileDepth::kFused) return differences;
-  // Detections (noise) need less room as they are, others with differences between rows: try both.
-  auto plain = encode_grey_png(pixels, shape_of(depth), PngFilter::kNone);
-  return plain.size() <= differences.size() ? plain : differences;
-}
-
 std::vector<std::byte> encoded(const CellArray& cells, TileDepth depth) {
-  return depth == TileDepth::kFused ? encoded(pack(cells.cells()), depth) : encoded(cells.cells(), depth);
+  if (depth == TileDepth::kEvidence) return encode_grey_png(cells.cells(), shape_of(depth));
+  return encode_grey_png(pack(cells.cells()), shape_of(depth));
 }
 
 /// Of cells that are all alike. Where a map is drawn from roads, up to half of its tiles show country without any.

@@ -1,7 +1,7 @@
 // The bytes of a stored tile: a grey PNG of 256 x 256 cells, 8 bits for evidence, 16 bits for the fused map (the
 // gridded coverage extension asks for 16: 0..254 = probability k / 254, 65535 = unobserved).
 //
-// Encoding is deterministic: equal cells give equal bytes (for one version of libpng and zlib). The size is checked
+// Encoding is deterministic: equal cells give equal bytes (for one version of libdeflate). The size is checked
 // before a pixel is decompressed: a PNG bomb costs nothing.
 #pragma once
 

@@ -2,9 +2,10 @@
 
 #include <gmock/gmock.h>
 
-#include "core/png/png_codec.hpp"
+#include "core/png/grey_png.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
+#include "tests/support/png_of_rows.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 
 namespace roadfix {
@@ -60,6 +61,23 @@ TEST_P(TilePng, TheOtherDepthIsRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Depths, TilePng, ::testing::Values(TileDepth::kEvidence, TileDepth::kFused));
 
+TEST(TilePngOfOthers, IsReadHoweverItsRowsAreStored) {
+  constexpr testing::PngHeader kHeader{kTileCells, kTileCells, 8, 0, 0};
+  constexpr char kDifferenceToLeft = 1;
+  const std::string row = kDifferenceToLeft + std::string(1, '\x11') + std::string(kTileCells - 1, '\0');
+  std::string rows;
+  for (int i = 0; i < kTileCells; ++i) rows += row;
+  EXPECT_EQ(decode_tile(testing::png_of_rows(kHeader, rows), TileDepth::kEvidence),
+            CellArray(kTileCells, kTileCells, 0x11));
+}
+
+TEST(TilePngOfOthers, OfMoreThanOneTileIsRefused) {
+  constexpr testing::PngHeader kHeader{kTileCells, kTileCells, 8, 0, 0};
+  const std::string rows(std::size_t{kTileCells + 1} * kTileCells, '\0');
+  const auto png = testing::png_of_rows(kHeader, rows + rows);
+  EXPECT_EQ(testing::code_of([&] { decode_tile(png, TileDepth::kEvidence); }), "tile-corrupt");
+}
+
 TEST(TilePngDamage, BytesAfterTheEndAreRefused) {
   auto png = encode_tile(random_cells(1, {}), TileDepth::kFused);
   png.push_back(std::byte{0});
@@ -71,7 +89,7 @@ TEST(TilePngDamage, ValuesOfAFusedTileThatAreNoProbabilityAreRefused) {
     std::vector<std::uint8_t> pixels(std::size_t{2} * kTileCells * kTileCells);
     pixels[0] = static_cast<std::uint8_t>(value >> 8U);
     pixels[1] = static_cast<std::uint8_t>(value & 0xffU);
-    const auto png = encode_grey_png(pixels, {kTileCells, kTileCells, 1, 16}, PngFilter::kNone);
+    const auto png = encode_grey_png(pixels, {kTileCells, kTileCells, 1, 16});
     return testing::code_of([&] { decode_tile(png, TileDepth::kFused); });
   };
   for (const unsigned value : {0U, 254U, 65535U}) EXPECT_EQ(code_of_value(value), "no error") << value;

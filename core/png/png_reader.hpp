@@ -1,5 +1,5 @@
-// PNG in memory by libpng itself: what the header says is known before a pixel is unpacked, equal pixels give equal
-// bytes, and nothing is printed. libpng leaves by longjmp where something is wrong; here that becomes an error.
+// PNG in memory, read by libpng itself: what the header says is known before a pixel is unpacked, and nothing is
+// printed. libpng leaves by longjmp where something is wrong; here that becomes an error.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,8 @@ struct PngShape {
 };
 
 enum class PngOrigin {
-  /// encode_grey_png(): whatever it cannot have written is refused. 16 bits are big-endian, as they are stored.
+  /// A plain grey image as encode_grey_png() writes them: anything else is refused. 16 bits are big-endian, as they are
+  /// stored.
   kOwn,
   /// Any program: pixels as OpenCV keeps them. Grey, BGR or BGR with alpha; palettes are looked up, and a colour that
   /// stands for nothing (tRNS) is transparent. 16 bits are in the processor's order.
@@ -48,12 +49,5 @@ class PngReader {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// What is stored of each row before it is packed.
-enum class PngFilter { kNone, kDifferenceToRowAbove };
-
-/// One channel, packed by its runs alone: a tenth of the time of zlib's default. `pixels` has shape.bytes(), 16 bits
-/// big-endian. Throws IoFailure "png-not-encoded".
-std::vector<std::byte> encode_grey_png(std::span<const std::uint8_t> pixels, const PngShape& shape, PngFilter filter);
 
 }  // namespace roadfix

@@ -1,9 +1,10 @@
-#include "core/png/png_codec.hpp"
+#include "core/png/png_reader.hpp"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
+#include "core/png/grey_png.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -32,32 +33,17 @@ std::vector<std::byte> as_bytes(std::initializer_list<int> values) {
   return bytes;
 }
 
-class PngCodec : public ::testing::TestWithParam<std::tuple<PngShape, PngFilter>> {};
-
-TEST_P(PngCodec, PixelsComeBackAsTheyWere) {
-  const auto& [shape, filter] = GetParam();
-  const auto pixels = noise(shape);
-  const auto png = encode_grey_png(pixels, shape, filter);
-  EXPECT_EQ(PngReader(png, PngOrigin::kOwn).shape(), shape);
-  EXPECT_EQ(decoded(png, PngOrigin::kOwn), pixels);
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, PngCodec,
-                         ::testing::Combine(::testing::Values(PngShape{1, 1, 1, 8}, PngShape{7, 3, 1, 8},
-                                                              PngShape{5, 64, 1, 16}),
-                                            ::testing::Values(PngFilter::kNone, PngFilter::kDifferenceToRowAbove)));
-
-TEST(PngCodec, SixteenBitsFromOutsideAreNumbersOfThisProcessor) {
+TEST(PngReader, SixteenBitsFromOutsideAreNumbersOfThisProcessor) {
   const PngShape shape{2, 1, 1, 16};
-  const auto png = encode_grey_png(std::vector<std::uint8_t>{0x12, 0x34, 0xab, 0xcd}, shape, PngFilter::kNone);
+  const auto png = encode_grey_png(std::vector<std::uint8_t>{0x12, 0x34, 0xab, 0xcd}, shape);
   const auto pixels = decoded(png, PngOrigin::kOutside);
   const auto* numbers = reinterpret_cast<const std::uint16_t*>(pixels.data());
   EXPECT_THAT(std::span(numbers, 2), ::testing::ElementsAre(0x1234, 0xabcd));
 }
 
-TEST(PngCodec, TheShapeIsKnownBeforeAnyPixelIsThere) {
+TEST(PngReader, TheShapeIsKnownBeforeAnyPixelIsThere) {
   const PngShape shape{100, 80, 1, 8};
-  const auto png = encode_grey_png(noise(shape), shape, PngFilter::kNone);
+  const auto png = encode_grey_png(noise(shape), shape);
   constexpr std::size_t kHeaderEnd = 33 + 8;  // and the name of the chunk of pixels
   PngReader reader({png.data(), kHeaderEnd}, PngOrigin::kOwn);
   EXPECT_EQ(reader.shape(), shape);
@@ -65,7 +51,7 @@ TEST(PngCodec, TheShapeIsKnownBeforeAnyPixelIsThere) {
   EXPECT_EQ(code_of([&] { reader.read(pixels); }), "png-damaged");
 }
 
-TEST(PngCodec, WhatItWouldNotWriteIsNotItsOwn) {
+TEST(PngReader, WhatItWouldNotWriteIsNotItsOwn) {
   // 2 x 1 pixels of one bit, 0 and 1, of the palette red and green.
   const auto palette =
       as_bytes({0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
@@ -77,9 +63,9 @@ TEST(PngCodec, WhatItWouldNotWriteIsNotItsOwn) {
   EXPECT_EQ(code_of([&] { decoded(palette, PngOrigin::kOwn); }), "png-damaged");
 }
 
-TEST(PngCodec, BytesAfterTheEndArePassedOverFromOutsideAlone) {
+TEST(PngReader, BytesAfterTheEndArePassedOverFromOutsideAlone) {
   const PngShape shape{4, 4, 1, 8};
-  auto png = encode_grey_png(noise(shape), shape, PngFilter::kNone);
+  auto png = encode_grey_png(noise(shape), shape);
   png.push_back(std::byte{0});
   EXPECT_EQ(decoded(png, PngOrigin::kOutside), noise(shape));
   EXPECT_EQ(code_of([&] { decoded(png, PngOrigin::kOwn); }), "png-damaged");

@@ -1,21 +1,19 @@
-#include "core/png/png_codec.hpp"
+#include "core/png/png_reader.hpp"
 
 #include <png.h>
-#include <zlib.h>
 
 #include <array>
 #include <bit>
 #include <cassert>
 #include <csetjmp>
 #include <cstring>
-#include <utility>
 
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
 
-// Whatever lives across a longjmp is owned by a State or a Writer, outside the frame that is left.
+// Whatever lives across a longjmp is owned by a State, outside the frame that is left.
 
 using Message = std::array<char, 128>;
 
@@ -37,12 +35,6 @@ void on_read(png_structp png, png_bytep target, std::size_t size) {
   rest = rest.subspan(size);
 }
 
-void on_write(png_structp png, png_bytep data, std::size_t size) {
-  auto& output = *static_cast<std::vector<std::byte>*>(png_get_io_ptr(png));
-  const auto* first = reinterpret_cast<const std::byte*>(data);
-  output.insert(output.end(), first, first + size);
-}
-
 void require_own(png_structp png, png_infop info) {
   if (png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY || png_get_bit_depth(png, info) < 8 ||
       png_get_interlace_type(png, info) != PNG_INTERLACE_NONE) {
@@ -59,34 +51,6 @@ void choose_channels(png_structp png, png_infop info) {
   if constexpr (std::endian::native == std::endian::little) png_set_swap(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
-}
-
-struct Writer {
-  Writer() = default;
-  ~Writer() { png_destroy_write_struct(&png, &info); }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  png_structp png = nullptr;
-  png_infop info = nullptr;
-  Message message{};
-  std::vector<std::byte> output;
-};
-
-/// False: writer.message says why. No object with a destructor may live in this frame.
-bool write(Writer& writer, std::span<const std::uint8_t> pixels, const PngShape& shape, PngFilter filter) {
-  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-  png_set_write_fn(writer.png, &writer.output, on_write, nullptr);
-  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(shape.cols), static_cast<png_uint_32>(shape.rows),
-               shape.bits, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  png_set_compression_strategy(writer.png, Z_RLE);
-  png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, filter == PngFilter::kNone ? PNG_FILTER_NONE : PNG_FILTER_UP);
-  png_write_info(writer.png, writer.info);
-  const std::size_t row_bytes = pixels.size() / static_cast<std::size_t>(shape.rows);
-  for (std::size_t at = 0; at < pixels.size(); at += row_bytes) png_write_row(writer.png, &pixels[at]);
-  png_write_end(writer.png, nullptr);
-  return true;
 }
 
 }  // namespace
@@ -157,18 +121,6 @@ void PngReader::read(std::span<std::uint8_t> pixels) {
   const auto rows = static_cast<std::size_t>(shape().rows);
   for (std::size_t row = 0; row < rows; ++row) state_->rows.push_back(&pixels[row * (pixels.size() / rows)]);
   if (!state_->finish()) throw state_->damage();
-}
-
-std::vector<std::byte> encode_grey_png(std::span<const std::uint8_t> pixels, const PngShape& shape, PngFilter filter) {
-  assert(shape.channels == 1 && pixels.size() == shape.bytes());
-  Writer writer;
-  writer.output.reserve(pixels.size() + pixels.size() / 8);  // no allocation may fail below libpng
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer.message, on_error, on_warning_in_own);
-  if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
-  if (writer.info == nullptr || !write(writer, pixels, shape, filter)) {
-    throw IoFailure("png-not-encoded", writer.message.data());
-  }
-  return std::move(writer.output);
 }
 
 }  // namespace roadfix

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 
 #include "cli/bench/quality.hpp"
@@ -138,7 +139,7 @@ DrawnQueries from_imagery(const QuerySet& set, const MapView& map, const QueryDr
   const PoseSampling sampling{without(ortho.box(), set.exclude), set.footprint,
                               [&](GridPoint p) { return in_imagery(p) && in_map(p); }};
   const auto show = [&](const GridPose& pose, Random& /*unused*/, Query& query) {
-    query.view = rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m));
+    query.view = std::make_shared<GroundView>(rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m)));
   };
   return at_poses(sampling, zone, set.path.stem().string(), show, set, map, drawing);
 }
@@ -169,20 +170,21 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
-GroundView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
+SharedView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
   const Border border = set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen;
-  return view_of(read_frame(set.path.parent_path(), frame, border), frame, detector);
+  return std::make_shared<GroundView>(view_of(read_frame(set.path.parent_path(), frame, border), frame, detector));
 }
 
+/// `queries` are those of the frames so far, in their order.
 std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
-                                        const UtmZone& zone, const RoadDetector& detector) {
+                                        const UtmZone& zone, const std::vector<Query>& queries) {
   std::vector<EarlierFrame> earlier;
   const FrameTruth& reference = frames[index];
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
     if (frame.sequence != reference.sequence) continue;  // flights may take turns in the file
     const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
-    earlier.push_back({seen_in(frame, set, detector), offset});
+    earlier.push_back({queries[index].view, offset});
   }
   return earlier;
 }
@@ -226,7 +228,7 @@ std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const Ro
                frame.pose.heading, set, map, random);
     query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
-    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, detector);
+    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, queries);
     queries.push_back(std::move(query));
   }
   return queries;

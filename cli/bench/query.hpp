@@ -1,6 +1,7 @@
 // One question with its truth, and one method's answer to it.
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <span>
@@ -14,15 +15,18 @@
 
 namespace roadfix::bench {
 
+/// What a frame shows, shared by all queries that it is part of.
+using SharedView = std::shared_ptr<const GroundView>;
+
 /// A frame taken before the one that is asked about, and where.
 struct EarlierFrame {
-  GroundView view;
+  SharedView view;
   BodyOffset offset;
 };
 
 struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
-  std::optional<GroundView> view;      ///< what a frame shows
+  SharedView view;                     ///< what the frame shows; nullptr where there is none
   std::optional<FeatureMap> features;  ///< instead of a view where the query is simulated
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;

@@ -1,6 +1,9 @@
 #include "cli/bench/roads_method.hpp"
 
 #include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -17,15 +20,52 @@ namespace {
 
 constexpr const char* kRepeated = "frames-repeated";
 
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Detected {
+  FeatureMap features;
+  double time_ms = 0.0;
+};
+
+/// By view, for as long as a query has it.
+class DetectedViews {
+ public:
+  std::optional<Detected> find(const SharedView& view) {
+    const std::lock_guard lock(mutex_);
+    const auto found = detected_.find(view);
+    return found == detected_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+  void insert(const SharedView& view, const Detected& detected) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(detected_, [](const auto& kept) { return kept.first.expired(); });
+    detected_.emplace(view, detected);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::weak_ptr<const GroundView>, Detected, std::owner_less<>> detected_;
+};
+
+/// What a query shows: of its own frame first.
+struct Parts {
+  std::vector<PlacedFeatures> features;
+  double detection_ms = 0.0;
+};
+
 class RoadsMethod : public Method {
  public:
   RoadsMethod(const MapView& map, std::shared_ptr<const RoadDetector> detector, const RoadsOptions& options)
       : map_(map), detector_(std::move(detector)), options_(options) {}
 
   Answer answer(const Query& query) const override {
-    const auto start = std::chrono::steady_clock::now();
-    const std::vector<PlacedFeatures> parts = parts_of(query);
-    const std::optional<FeatureMap> features = together(parts);
+    const Parts parts = parts_of(query);
+    const auto start = Clock::now();
+    const std::optional<FeatureMap> features = together(parts.features);
     Answer answer;
     if (!features) {
       answer.reason = kRepeated;
@@ -33,7 +73,7 @@ class RoadsMethod : public Method {
     }
     FixOptions options = options_.fix;
     options.scale_range = query.scale_range;
-    if (parts.size() > 1) options.own_frame = parts.front().features;
+    if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
     const Fix fix = locate(map_, *features, query.prior, options);
     answer.status = fix.status;
     answer.reason = fix.reason;
@@ -43,26 +83,38 @@ class RoadsMethod : public Method {
       answer.mode = fix.modes.front();
       answer.best = answer.mode->pose;
     }
-    answer.time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    answer.time_ms = parts.detection_ms + ms_since(start);
     if (query.truth) answer.rho_at_truth = match(map_, *features, std::span(&*query.truth, 1)).front().rho;
     return answer;
   }
 
   cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const override {
-    const std::vector<PlacedFeatures> parts = parts_of(query);
+    const std::vector<PlacedFeatures> parts = parts_of(query).features;
     const FeatureMap features = parts.size() == 1 ? parts.front().features : combined(parts, cli::kMaxCells);
     return agreement_picture(map_, imagery, query, features, answer);
   }
 
  private:
-  FeatureMap detected(const GroundView& view) const {
-    return detect_features(*detector_, view, options_.cell_m, options_.seed);
+  /// Once for all queries that show it, unless two ask for it at the same moment.
+  Detected detected(const SharedView& view) const {
+    if (const auto kept = detected_.find(view)) return *kept;
+    const auto start = Clock::now();
+    const FeatureMap features = detect_features(*detector_, *view, options_.cell_m, options_.seed);
+    Detected fresh{features, ms_since(start)};
+    detected_.insert(view, fresh);
+    return fresh;
   }
 
-  std::vector<PlacedFeatures> parts_of(const Query& query) const {
-    if (query.features) return {{*query.features, {}}};
-    std::vector<PlacedFeatures> parts{{detected(*query.view), {}}};
-    for (const EarlierFrame& frame : query.earlier) parts.push_back({detected(frame.view), frame.offset});
+  Parts parts_of(const Query& query) const {
+    if (query.features) return {{{*query.features, {}}}};
+    Parts parts;
+    const auto add = [&](const SharedView& view, const BodyOffset& offset) {
+      const Detected part = detected(view);
+      parts.features.push_back({part.features, offset});
+      parts.detection_ms += part.time_ms;
+    };
+    add(query.view, {});
+    for (const EarlierFrame& frame : query.earlier) add(frame.view, frame.offset);
     return parts;
   }
 
@@ -80,6 +132,7 @@ class RoadsMethod : public Method {
   const MapView& map_;
   std::shared_ptr<const RoadDetector> detector_;
   RoadsOptions options_;
+  mutable DetectedViews detected_;
 };
 
 }  // namespace

@@ -152,9 +152,13 @@ TEST_F(Queries, CombineTheFramesOfAFlightAlsoWhereFlightsTakeTurnsInTheFile) {
   set_.path = folder / "frames.csv";
   set_.together = 2;
   std::vector<std::size_t> earlier;
-  for (const Query& query : drawn()) {
-    earlier.push_back(query.earlier.size());
-    for (const EarlierFrame& frame : query.earlier) EXPECT_NEAR(frame.offset.forward_m, 0.0, 0.01);
+  const std::vector<Query> queries = drawn();
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    earlier.push_back(queries[i].earlier.size());
+    for (const EarlierFrame& frame : queries[i].earlier) {
+      EXPECT_NEAR(frame.offset.forward_m, 0.0, 0.01);
+      EXPECT_EQ(frame.view, queries[i - 2].view) << "kept once";
+    }
   }
   EXPECT_EQ(earlier, (std::vector<std::size_t>{0, 0, 1, 1, 1}));
 }

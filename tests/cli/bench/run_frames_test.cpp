@@ -1,6 +1,7 @@
 // The bench over frames that were taken and described by others.
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <fstream>
 #include <iomanip>
 #include <opencv2/imgcodecs.hpp>
@@ -46,6 +47,28 @@ TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
   EXPECT_LT(*outcome.error_m, 3.0);
   EXPECT_LT(*outcome.heading_error_deg, 1.0);
   EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 70.0 * kToldOffsetShare) << "of offsets that somebody told";
+}
+
+class CountingDetector : public BrightnessDetector {
+ public:
+  using RoadDetector::detect;
+  CellArray detect(const GroundImage& image, double cell_m, std::uint64_t seed,
+                   const std::stop_token& stop) const override {
+    if (image.pixels.size() == cv::Size(110, 110)) ++frames;
+    return BrightnessDetector::detect(image, cell_m, seed, stop);
+  }
+  mutable std::atomic<int> frames = 0;
+};
+
+TEST_F(BenchRunOfFrames, LooksForRoadsOnceInAFrameThatIsPartOfSeveralQueries) {
+  take_flight(folder.path());
+  const auto detector = std::make_shared<CountingDetector>();
+  const Detectors counting(detector);
+  options.maps.detectors = &counting;
+  options.jobs = 1;
+  const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
+  EXPECT_EQ(detector->frames, 3);
+  for (const Outcome& outcome : results.at(0).outcomes) EXPECT_GT(outcome.answer.time_ms, 0.0);
 }
 
 TEST_F(BenchRunOfFrames, GivesNoFixWhereTheCameraHasStopped) {

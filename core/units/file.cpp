@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -22,10 +22,17 @@ std::optional<std::string> bytes_of(const std::filesystem::path& file, int& reas
   if (std::filesystem::is_directory(file, error)) return std::nullopt;
   errno = 0;
   std::ifstream in(file, std::ios::binary);
+  const bool opened = in.is_open();
   std::string bytes;
-  if (in) bytes.assign(std::istreambuf_iterator<char>(in), {});
+  constexpr std::size_t kAtATime = 1 << 20;  // a pipe does not tell its size
+  while (in) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kAtATime);
+    in.read(&bytes[before], kAtATime);
+    bytes.resize(before + static_cast<std::size_t>(in.gcount()));
+  }
   reason = errno == 0 ? EIO : errno;
-  return in ? std::optional(std::move(bytes)) : std::nullopt;
+  return opened && !in.bad() ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
 }  // namespace

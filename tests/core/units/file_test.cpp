@@ -26,6 +26,16 @@ TEST(ReadFile, GivesEveryByte) {
   EXPECT_EQ(read_file(folder / "empty"), "");
 }
 
+TEST(ReadFile, GivesLargeFilesWhole) {
+  const testing::TemporaryFolder folder;
+  for (const std::size_t size : {std::size_t{1} << 20U, (std::size_t{5} << 19U) + 3}) {
+    std::string bytes(size, '\0');
+    for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>(i * 2654435761U >> 13U);
+    std::ofstream(folder / "file", std::ios::binary) << bytes;
+    EXPECT_TRUE(read_file(folder / "file") == bytes) << size;
+  }
+}
+
 TEST(ReadFile, GivesNothingOfAFolderAndOfWhatIsNotThere) {
   const testing::TemporaryFolder folder;
   EXPECT_EQ(read_file(folder.path()), std::nullopt);

@@ -1,5 +1,5 @@
 """A client of `roadfix serve` for ground stations and companion computers, in Python's standard library alone: a line
-of JSON in for each step, a line with the answer out.
+of JSON in for each step, a line with the answer out, which names the step's picture ("image").
 
   {"time_us": 1700000000000000, "north_m": 12.5, "east_m": -3.0, "yaw_deg": 91.2, "image": "0001.jpg"}
 
@@ -121,7 +121,7 @@ def fly(lines, options):
             print(f"{line.name}: {error}", file=sys.stderr)
             all_taken = False
             continue
-        output.print(answer)
+        output.print({**answer, "image": line.step["image"]} if line.has_picture else answer)
     return all_taken and not output.has_failed
 
 

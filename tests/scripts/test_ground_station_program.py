@@ -234,6 +234,14 @@ class Program(unittest.TestCase):
         told_s = datetime.datetime.fromisoformat(date.replace("Z", "+00:00")).timestamp()
         self.assertTrue(began_s - 0.01 <= told_s <= time.time() + 0.01)
 
+    def test_names_the_picture_of_each_answer(self):
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m"],
+                                     input="\n".join(self.lines_and_a_picture(folder)), capture_output=True, text=True,
+                                     timeout=60)
+        answers = [json.loads(line) for line in program.stdout.splitlines()]
+        self.assertEqual([answer.get("image") for answer in answers], [None, None, f"{folder}/3.jpg"])
+
     def test_goes_on_after_lines_that_are_no_text(self):
         good = b'{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n'
         lines = good + b'{"note": "\xfc"}\n' + b"[" * 100_000 + b"\n" + good

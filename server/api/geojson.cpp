@@ -29,8 +29,15 @@ double meeting_lat(LatLon a, LatLon b) {
   return a.lat_deg + share * (b.lat_deg - a.lat_deg);
 }
 
-/// Neighbours in a part lie on one side. Parts that would be a single place are left out.
-std::vector<Stretch> cut(std::span<const LatLon> places) {
+json coordinates(const Stretch& part) {
+  json list = json::array();
+  for (const LatLon& place : part) list.push_back({place.lon_deg, place.lat_deg});
+  return list;
+}
+
+}  // namespace
+
+std::vector<Stretch> cut_at_180(std::span<const LatLon> places) {
   std::vector<Stretch> parts{{places.front()}};
   for (std::size_t i = 1; i < places.size(); ++i) {
     const LatLon before = places[i - 1];
@@ -48,14 +55,6 @@ std::vector<Stretch> cut(std::span<const LatLon> places) {
   return parts;
 }
 
-json coordinates(const Stretch& part) {
-  json list = json::array();
-  for (const LatLon& place : part) list.push_back({place.lon_deg, place.lat_deg});
-  return list;
-}
-
-}  // namespace
-
 json line_json(std::span<const LatLon> places) {
   const Stretch line(places.begin(), places.end());
   return line_json(std::span(&line, 1));
@@ -64,14 +63,14 @@ json line_json(std::span<const LatLon> places) {
 json line_json(std::span<const std::vector<LatLon>> lines) {
   json parts = json::array();
   for (const Stretch& line : lines) {
-    for (const Stretch& part : cut(line)) parts.push_back(coordinates(part));
+    for (const Stretch& part : cut_at_180(line)) parts.push_back(coordinates(part));
   }
   if (parts.size() == 1) return {{"type", "LineString"}, {"coordinates", std::move(parts.front())}};
   return {{"type", "MultiLineString"}, {"coordinates", std::move(parts)}};
 }
 
 json polygon_json(std::span<const LatLon> ring) {
-  std::vector<Stretch> parts = cut(ring);
+  std::vector<Stretch> parts = cut_at_180(ring);
   // The ring began amid a part, and ended there.
   if (parts.size() > 1 && same(parts.front().front(), parts.back().back())) {
     parts.back().insert(parts.back().end(), parts.front().begin() + 1, parts.front().end());

@@ -11,6 +11,11 @@
 
 namespace roadfix::api {
 
+/// Neighbours in a part lie on one side of the meridian of 180 degrees, where it is cut. Parts that would be a single
+/// place are left out. Of neighbours the shorter way is meant, as of all flights. There is a place at least, and all
+/// are in [-180, 180].
+std::vector<std::vector<LatLon>> cut_at_180(std::span<const LatLon> places);
+
 /// A LineString, or a MultiLineString of the parts. Of neighbours the shorter way is meant, as of all flights. There
 /// are two places at least, in [-180, 180].
 nlohmann::json line_json(std::span<const LatLon> places);

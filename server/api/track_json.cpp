@@ -2,12 +2,9 @@
 
 #include <span>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/units/error.hpp"
 #include "server/api/fix_json.hpp"
-#include "server/api/geojson.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -24,16 +21,6 @@ json cluster_json(const TrackCluster& cluster) {
                  {"scale", cluster.scale},
                  {"scale_sigma", cluster.scale_sigma}});
   return answer;
-}
-
-/// What a point of a history has of the answer to its step.
-json told_of(const json& answer) {
-  json properties = json::object();
-  for (const char* name : {"sequence", "time_us", "status", "sigma_m", "ellipse_heading_deg", "heading_sigma_deg",
-                           "radius95_m", "measurement", "doubt", "drifts", "resets", "made_by"}) {
-    if (answer.contains(name)) properties[name] = answer.at(name);
-  }
-  return properties;
 }
 
 }  // namespace
@@ -71,31 +58,6 @@ json stored_json(const std::string& text) {
     throw CorruptData("track-store-corrupt", "what is stored of a track is damaged: delete it and begin a new one");
   }
   return value;
-}
-
-json history_json(std::span<const std::string> answers) {
-  json features = json::array();
-  std::vector<std::vector<LatLon>> stretches(1);  // where a place was claimed at every step
-  for (const std::string& text : answers) {
-    const json answer = stored_json(text);
-    json properties = told_of(answer);
-    const bool placed = answer.contains("geometry");
-    if (placed) {
-      properties["heading_deg"] = answer.at("pose").at("heading_deg");
-      const json& place = answer.at("geometry").at("coordinates");
-      stretches.back().push_back({place.at(1).get<double>(), place.at(0).get<double>()});
-    } else if (!stretches.back().empty()) {
-      stretches.emplace_back();
-    }
-    features.push_back({{"type", "Feature"},
-                        {"geometry", placed ? answer.at("geometry") : json()},
-                        {"properties", std::move(properties)}});
-  }
-  std::erase_if(stretches, [](const auto& stretch) { return stretch.size() < 2; });
-  if (!stretches.empty()) {
-    features.push_back({{"type", "Feature"}, {"geometry", line_json(stretches)}, {"properties", json::object()}});
-  }
-  return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
 }
 
 }  // namespace roadfix::api

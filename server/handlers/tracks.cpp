@@ -1,18 +1,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <string>
 
 #include "core/locate/tracker.hpp"
 #include "core/units/fnv.hpp"
+#include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
+#include "server/api/media.hpp"
 #include "server/api/position_answer.hpp"
 #include "server/api/time_limit.hpp"
+#include "server/api/track_history.hpp"
 #include "server/api/track_json.hpp"
 #include "server/api/track_request.hpp"
 #include "server/handlers/answers.hpp"
@@ -26,6 +30,10 @@ using nlohmann::json;
 
 constexpr int kMaxHistory = 10'000;
 constexpr int kMaxParticlesShown = 10'000;
+
+constexpr std::array<api::Media, 3> kHistoryFormats{{{"geojson", "application/geo+json"},
+                                                     {"gpx", "application/gpx+xml"},
+                                                     {"kml", "application/vnd.google-earth.kml+xml"}}};
 
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
 
@@ -168,17 +176,24 @@ http::Response get_track(const Service& service, const http::Request& request) {
 http::Response get_history(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
+http::Response history(const api::FlownTrack& track, const std::vector<std::string>& answers, const api::Media& media) {
+  if (media.name == "geojson") return {200, std::string(media.type), json_text(api::history_json(track, answers))};
+  http::Response response{200, std::string(media.type), {}};
+  response.body = media.name == "gpx" ? api::history_gpx(track, answers) : api::history_kml(track, answers);
+  response.headers.emplace_back("Content-Disposition",
+                                fmt::format("attachment; filename=\"{}.{}\"", track.id, media.name));
+  return response;
+}
+
   const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
   const StoredTrack track = service.tracks.recorded(id_of(request));
+  const api::Media& media = api::media_asked_for(request, fields, kHistoryFormats);
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
     answers.push_back(std::move(step.answer));
   }
-  json history = api::history_json(answers);
-  history["track"] = track.id;
-  history["map"] = api::map_json(track.map, track.map_version);
-  http::Response response = json_response(history);
-  response.content_type = "application/geo+json";
+  http::Response response = history({track.id, track.map, track.map_version}, answers, media);
+  response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 
@@ -220,7 +235,7 @@ void add_track_routes(Routes& routes) {
   routes.add("GET", "/v1/tracks/{id}", {"particles"}, get_track);
   routes.add("DELETE", "/v1/tracks/{id}", {}, delete_track);
   routes.add_prepared("POST", "/v1/tracks/{id}/steps", step_query(), post_step);
-  routes.add("GET", "/v1/tracks/{id}/history", {"after", "limit"}, get_history);
+  routes.add("GET", "/v1/tracks/{id}/history", {"after", "limit", "format"}, get_history);
   routes.add("GET", "/v1/tracks/{id}/events", {}, get_events, http::Load::kLong);
 }
 

@@ -1,12 +1,12 @@
 #include "server/http/access_log.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include "core/units/error.hpp"
+#include "core/units/utc_text.hpp"
 
 namespace roadfix::http {
 namespace {
@@ -50,14 +50,10 @@ std::shared_ptr<spdlog::logger> open(const std::string& target) {
 }  // namespace
 
 std::string json_line(const AccessRecord& r) {
-  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(r.time.time_since_epoch());
-  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_epoch);
   return fmt::format(
-      R"({{"time":"{:%Y-%m-%dT%H:%M:%S}.{:03}Z","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}}})",
-      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::time_point(whole))),
-      (since_epoch - whole).count(), json_string(r.id), json_string(r.client), json_string(r.method),
-      json_string(r.target), json_string(r.route), r.status, r.bytes, r.ms,
-      r.problem.empty() ? "" : ",\"problem\":" + json_string(r.problem));
+      R"({{"time":"{}","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}}})",
+      utc_text(r.time), json_string(r.id), json_string(r.client), json_string(r.method), json_string(r.target),
+      json_string(r.route), r.status, r.bytes, r.ms, r.problem.empty() ? "" : ",\"problem\":" + json_string(r.problem));
 }
 
 AccessLog::AccessLog(const std::string& target) : logger_(open(target)) {}

@@ -126,6 +126,9 @@ class ResponseBodies : public testing::DescribedService {
     expect_as_described("getTrack", 200, client_->Get(url + "?particles=5"));
     expect_as_described("listTracks", 200, client_->Get("/v1/tracks"));
     expect_as_described("getTrackHistory", 200, client_->Get(url + "/history"));
+    for (const char* format : {"gpx", "kml"}) {
+      expect_as_described("getTrackHistory", 200, client_->Get(url + "/history?format=" + format));
+    }
     end_while_listening(url);
   }
 

@@ -82,6 +82,7 @@ TEST_F(ResponseHeaders, AreDescribedWhereTheyAreSent) {
   expect_described("takeStep", 200, client_->Post(steps, step, "application/json"));
   expect_described("takeStep", 200, client_->Post(steps + "?format=nmea", step, "application/json"));
   expect_described("takeStep", 204, client_->Post(steps + "?format=command_int", step, "application/json"));
+  expect_described("getTrackHistory", 200, client_->Get("/v1/tracks/" + id + "/history?format=gpx"));
   std::atomic<bool> listening = false;
   const std::jthread end([&] {
     EXPECT_TRUE(testing::eventually([&] { return listening.load(); }));

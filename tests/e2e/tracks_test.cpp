@@ -42,6 +42,14 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
   EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=5").c_str()))["features"].size(), 3U);
   EXPECT_EQ(testing::json_of(client.Get(("/v1/tracks/" + id + "/history?after=4294967296").c_str()))["features"],
             json::array());
+  for (const auto& [name, type] :
+       {std::pair("gpx", "application/gpx+xml"), std::pair("kml", "application/vnd.google-earth.kml+xml")}) {
+    const auto file = client.Get(("/v1/tracks/" + id + "/history?format=" + name).c_str());
+    EXPECT_EQ(file->get_header_value("Content-Type"), type);
+    EXPECT_THAT(file->body, HasSubstr("</" + std::string(name) + ">"));
+    const auto negotiated = client.Get(("/v1/tracks/" + id + "/history").c_str(), {{"Accept", type}});
+    EXPECT_EQ(negotiated->body, file->body);
+  }
 }
 
 TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {

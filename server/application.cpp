@@ -32,13 +32,21 @@ void tidy(TrackRegistry& tracks) {
   }
 }
 
+void warn_of_another_reader(const ServedMap& map, const Detectors& detectors) {
+  const std::string& reader = map.view.imagery_reader;
+  if (detectors.include_reader(reader)) return;
+  spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer", map.name,
+               reader);
+}
+
 }  // namespace
 
 struct Application::Parts {
   explicit Parts(Configuration c)
       : configuration(std::move(c)),
-        maps(configuration.maps, configuration.map_cache_bytes, configuration.search_cache_bytes),
         detectors(configuration.detector),
+        maps(configuration.maps, configuration.map_cache_bytes, configuration.search_cache_bytes,
+             [this](const ServedMap& map) { warn_of_another_reader(map, detectors); }),
         pictures(configuration.picture_cache_bytes),
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
                configuration.track_limits, maps, configuration.limits, configuration.calibration),
@@ -73,8 +81,8 @@ struct Application::Parts {
   }
 
   const Configuration configuration;
+  const Detectors detectors;
   MapRegistry maps;
-  Detectors detectors;
   PictureCache pictures;
   http::Metrics metrics;
   TrackRegistry tracks;
@@ -93,11 +101,6 @@ int Application::start() {
   parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detectors.describe());
-  for (const auto& map : parts_->maps.maps()) {
-    if (parts_->detectors.include_reader(map->view.imagery_reader)) continue;
-    spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer",
-                 map->view.name, map->view.imagery_reader);
-  }
   return port;
 }
 

@@ -74,8 +74,11 @@ bool says_the_same(const MapInfo& a, const MapInfo& b) {
 
 std::string ServedMap::edition() const { return fmt::format("{}-{}", view.version, reader->info().pending); }
 
-MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes)
-    : folder_(std::move(folder)), cache_bytes_(cache_bytes), search_cache_bytes_(search_cache_bytes) {
+MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes, OnServing on_serving)
+    : folder_(std::move(folder)),
+      cache_bytes_(cache_bytes),
+      search_cache_bytes_(search_cache_bytes),
+      on_serving_(std::move(on_serving)) {
   std::error_code unseen;
   const fs::file_type type = fs::status(folder_, unseen).type();
   if (type != fs::file_type::directory && type != fs::file_type::none) {  // none: refresh() says why it is not seen
@@ -146,6 +149,7 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
     spdlog::info("serving map {} version {}", name, reader->info().version);
     const std::string missing = missing_of(reader->info());
     if (!missing.empty()) spdlog::warn("map {} lacks what an ingest has not brought yet ({})", name, missing);
+    if (on_serving_) on_serving_(*map);
     return {stamp, std::move(map), {}};
   } catch (const InUse&) {
     throw;

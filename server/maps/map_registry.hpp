@@ -41,9 +41,13 @@ struct UnreadableMap {
 
 class MapRegistry {
  public:
-  /// `cache_bytes` bounds the decoded tiles of each map, `search_cache_bytes` what its searches build. Throws NotFound
+  using OnServing = std::function<void(const ServedMap&)>;
+
+  /// `cache_bytes` bounds the decoded tiles of each map, `search_cache_bytes` what its searches build. `on_serving` is
+  /// called of each map that is served from then on, by whoever looks at the folder. Throws NotFound
   /// ("maps-folder-not-found") and IoFailure ("maps-folder-unreadable").
-  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes = 0);
+  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes = 0,
+              OnServing on_serving = {});
   ~MapRegistry();
   MapRegistry(const MapRegistry&) = delete;
   MapRegistry& operator=(const MapRegistry&) = delete;
@@ -91,6 +95,7 @@ class MapRegistry {
   const std::filesystem::path folder_;
   const std::size_t cache_bytes_;
   const std::size_t search_cache_bytes_;
+  const OnServing on_serving_;
   std::mutex refresh_mutex_;
   std::set<std::filesystem::path> left_out_;  ///< files of which it was said; changed holding `refresh_mutex_`
   mutable std::mutex mutex_;

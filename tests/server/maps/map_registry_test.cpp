@@ -2,18 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ringbuffer_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "core/units/error.hpp"
 #include "tests/support/as_another_user.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
@@ -23,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using roadfix::testing::AsAnotherUser;
+using roadfix::testing::CapturedLog;
 using roadfix::testing::code_of;
 using roadfix::testing::TemporaryFolder;
 
@@ -32,24 +34,6 @@ void make_map(const fs::path& path, std::uint64_t seed, bool replace = false) {
   MapWriter writer(path, roadfix::testing::settings_37n());
   roadfix::testing::ingest(writer, {"imagery", seed, roadfix::testing::some_blocks(1)}, replace);
 }
-
-/// What is logged while it lives.
-class CapturedLog {
- public:
-  CapturedLog() { spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", lines_)); }
-  ~CapturedLog() { spdlog::set_default_logger(usual_); }
-  CapturedLog(const CapturedLog&) = delete;
-  CapturedLog& operator=(const CapturedLog&) = delete;
-
-  std::ptrdiff_t count(const std::string& what) const {
-    return std::ranges::count_if(lines_->last_formatted(),
-                                 [&](const std::string& line) { return line.find(what) != std::string::npos; });
-  }
-
- private:
-  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> lines_ = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
-  std::shared_ptr<spdlog::logger> usual_ = spdlog::default_logger();
-};
 
 TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
   const TemporaryFolder folder;
@@ -71,6 +55,19 @@ TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
   fs::remove(folder / "city.gpkg");
   registry.refresh();
   EXPECT_THROW(registry.find("city"), NotFound);
+}
+
+TEST(MapRegistry, TellsOfEachMapThatItServesFromNowOn) {
+  const TemporaryFolder folder;
+  make_map(folder / "there.gpkg", 1);
+  std::vector<std::string> told;
+  MapRegistry registry(folder.path(), kCache, 0, [&](const ServedMap& map) { told.push_back(map.name); });
+  EXPECT_EQ(told, std::vector<std::string>{"there"});
+  make_map(folder / "later.gpkg", 1);
+  make_map(folder / "there.gpkg", 2, true);
+  registry.refresh();
+  registry.refresh();
+  EXPECT_EQ(told, (std::vector<std::string>{"there", "later", "there"}));
 }
 
 TEST(MapRegistry, KeepsTheReaderOfAFileThatWasOnlyTouched) {

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,7 +18,6 @@
 #include "core/locate/fix.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
-#include "server/api/frame_scale.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -100,9 +98,7 @@ void run_fix(const FixArguments& options) {
   };
   const Fix fix = locate(view, input.map, prior, fix_options);
   if (options.as_json) {
-    nlohmann::json answer = api::to_json(fix, input.detect_time);
-    if (input.camera_in_file) answer["camera"] = api::to_json(*input.camera_in_file);
-    fmt::print("{}\n", json_text(answer, 2));
+    fmt::print("{}\n", json_text(api::to_json(fix, input), 2));
   } else {
     print_text(fix);
   }

@@ -16,7 +16,8 @@ SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max
 Features detected(const SeenFrame& frame, const Detection& detection) {
   const auto start = std::chrono::steady_clock::now();
   FeatureMap map = detect_features(detection.detector, frame.view, detection.cell_m, detection.seed, detection.stop);
-  return {std::move(map), std::chrono::steady_clock::now() - start, frame.camera_in_file};
+  return {std::move(map), std::chrono::steady_clock::now() - start, frame.camera_in_file,
+          detection.detector.describe()};
 }
 
 Features together(Features first, std::vector<OtherFeatures> others, double max_cells) {

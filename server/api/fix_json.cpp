@@ -1,5 +1,7 @@
 #include "server/api/fix_json.hpp"
 
+#include "server/api/frame_scale.hpp"
+
 namespace roadfix::api {
 namespace {
 
@@ -38,7 +40,11 @@ json pose_json(const GeoPose& pose) {
 
 json map_json(const std::string& name, const std::string& version) { return {{"name", name}, {"version", version}}; }
 
-json made_by() { return {{"roadfix", ROADFIX_VERSION}}; }
+json made_by(const std::string& detector) {
+  json made{{"roadfix", ROADFIX_VERSION}};
+  if (!detector.empty()) made["detector"] = detector;
+  return made;
+}
 
 json bbox_json(const GeoBox& box) {
   return {box.south_west.lon_deg, box.south_west.lat_deg, box.north_east.lon_deg, box.north_east.lat_deg};
@@ -49,7 +55,7 @@ json placed_json(const GeoPose& pose) {
   return {{"pose", pose_json(pose)}, {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}}};
 }
 
-json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time) {
+json to_json(const Fix& fix) {
   json answer{{"status", to_string(fix.status)}};
   if (fix.status == FixStatus::kFix) {
     answer.update(mode_json(fix.modes.at(0)));
@@ -75,7 +81,14 @@ json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::mi
   answer["map"] = map_json(fix.map_name, fix.map_version);
   answer["made_by"] = made_by();
   answer["time_ms"] = {{"search", fix.search_time.count()}};
-  if (detect_time) answer["time_ms"]["detect"] = detect_time->count();
+  return answer;
+}
+
+json to_json(const Fix& fix, const Features& features) {
+  json answer = to_json(fix);
+  answer["made_by"] = made_by(features.detector);
+  if (features.detect_time) answer["time_ms"]["detect"] = features.detect_time->count();
+  if (features.camera_in_file) answer["camera"] = to_json(*features.camera_in_file);
   return answer;
 }
 

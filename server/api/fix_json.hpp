@@ -4,15 +4,14 @@
 // modes have one. `geometry` is the same position as GeoJSON.
 #pragma once
 
-#include <chrono>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 
 #include "core/locate/fix.hpp"
 #include "core/locate/localizability.hpp"
 #include "core/match/correlation.hpp"
+#include "server/api/features.hpp"
 
 namespace roadfix::api {
 
@@ -26,14 +25,15 @@ nlohmann::json placed_json(const GeoPose& pose);
 
 /// Which map an answer is about.
 nlohmann::json map_json(const std::string& name, const std::string& version);
-/// What made an answer: the version of the program.
-nlohmann::json made_by();
+/// What made an answer: the version of the program, and the detector of frames, if any.
+nlohmann::json made_by(const std::string& detector = {});
 
 /// West, south, east and north, as GeoJSON has a bbox.
 nlohmann::json bbox_json(const GeoBox& box);
 
-/// `detect_time` where the fix began with a frame.
-nlohmann::json to_json(const Fix& fix, std::optional<std::chrono::duration<double, std::milli>> detect_time = {});
+nlohmann::json to_json(const Fix& fix);
+/// With what the features that it was found by tell of a frame: its detector and how long that took, and its camera.
+nlohmann::json to_json(const Fix& fix, const Features& features);
 
 nlohmann::json to_json(const Localizability& place);
 

@@ -6,7 +6,6 @@
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/flight_request.hpp"
-#include "server/api/frame_scale.hpp"
 #include "server/api/position_answer.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
@@ -51,11 +50,13 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   options.stop = hang_up.token();
   const SearchThreads::Share share(service.search_threads);
   options.threads = share.threads();
-  auto answer = api::to_json(locate(map->view, features.map, prior, options), features.detect_time);
-  if (features.camera_in_file) answer["camera"] = api::to_json(*features.camera_in_file);
-  service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", answer.at("status").get<std::string>()));
-  if (format.is_json()) return json_response(answer);
-  return api::position_response(answer, format, time_of(request, time_us));
+  const auto answer = api::to_json(locate(map->view, features.map, prior, options), features);
+  const std::string status = answer.at("status");
+  service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", status));
+  http::Response response =
+      format.is_json() ? json_response(answer) : api::position_response(answer, format, time_of(request, time_us));
+  response.answer = status;
+  return response;
 }
 
 }  // namespace

@@ -106,11 +106,10 @@ http::Response formatted(const Service& service, const PostedStep& step, StepAns
 
 http::Response step_response(const Service& service, const PostedStep& step, StepAnswer answer) {
   const bool repeated = answer.repeated;
-  if (!repeated) {
-    const std::string& status = answer.answer.at("status").get_ref<const std::string&>();
-    service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
-  }
+  const std::string status = answer.answer.at("status");
+  if (!repeated) service.metrics.count(kAnswers, fmt::format("kind=\"step\",status=\"{}\"", status));
   http::Response response = formatted(service, step, std::move(answer));
+  response.answer = status;
   if (repeated) response.headers.emplace_back("Roadfix-Repeated", "true");
   return response;
 }
@@ -132,10 +131,14 @@ http::Response take_step(const Service& service, const http::Request& request, P
     return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);
+  std::string detector_used;
   if (api::shows_ground(step.content)) {
     const auto map = service.maps.find(track.map);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
-    input.features = api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits).map;
+    api::Features features =
+        api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits);
+    input.features = std::move(features.map);
+    detector_used = std::move(features.detector);
   }
   StepLimits limits;
   const SearchThreads::Share share(service.search_threads);
@@ -143,7 +146,8 @@ http::Response take_step(const Service& service, const http::Request& request, P
   constexpr int kRestOfStep = 10;  // a tenth of the time
   limits.searches_end = request.deadline - api::time_left(request.deadline) / kRestOfStep;
   limits.stop = limit.token();
-  return step_response(service, step, service.steps.take(track.id, input, digest, limits, request.received));
+  return step_response(service, step,
+                       service.steps.take(track.id, input, digest, limits, request.received, detector_used));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first, while it is held in memory once.
@@ -173,9 +177,6 @@ http::Response get_track(const Service& service, const http::Request& request) {
   return json_response(answer);
 }
 
-http::Response get_history(const Service& service, const http::Request& request) {
-  const api::Fields fields(request.query);
-  const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
 http::Response history(const api::FlownTrack& track, const std::vector<std::string>& answers, const api::Media& media) {
   if (media.name == "geojson") return {200, std::string(media.type), json_text(api::history_json(track, answers))};
   http::Response response{200, std::string(media.type), {}};
@@ -185,9 +186,12 @@ http::Response history(const api::FlownTrack& track, const std::vector<std::stri
   return response;
 }
 
+http::Response get_history(const Service& service, const http::Request& request) {
+  const api::Fields fields(request.query);
+  const api::Media& media = api::media_asked_for(request, fields, kHistoryFormats);
+  const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
   const StoredTrack track = service.tracks.recorded(id_of(request));
-  const api::Media& media = api::media_asked_for(request, fields, kHistoryFormats);
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
     answers.push_back(std::move(step.answer));

@@ -29,6 +29,11 @@ std::string json_string(std::string_view text) {
   return result;
 }
 
+/// Empty where the value is.
+std::string member(std::string_view name, const std::string& value) {
+  return value.empty() ? "" : fmt::format(",\"{}\":{}", name, json_string(value));
+}
+
 std::shared_ptr<spdlog::logger> open(const std::string& target) {
   if (target.empty()) return nullptr;
   try {
@@ -51,9 +56,9 @@ std::shared_ptr<spdlog::logger> open(const std::string& target) {
 
 std::string json_line(const AccessRecord& r) {
   return fmt::format(
-      R"({{"time":"{}","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}}})",
+      R"({{"time":"{}","id":{},"client":{},"method":{},"target":{},"route":{},"status":{},"bytes":{},"ms":{:.3f}{}{}}})",
       utc_text(r.time), json_string(r.id), json_string(r.client), json_string(r.method), json_string(r.target),
-      json_string(r.route), r.status, r.bytes, r.ms, r.problem.empty() ? "" : ",\"problem\":" + json_string(r.problem));
+      json_string(r.route), r.status, r.bytes, r.ms, member("problem", r.problem), member("answer", r.answer));
 }
 
 AccessLog::AccessLog(const std::string& target) : logger_(open(target)) {}

@@ -23,6 +23,7 @@ struct AccessRecord {
   std::size_t bytes = 0;
   double ms = 0.0;
   std::string problem = {};  ///< code of the error that was answered, empty where it was none
+  std::string answer = {};   ///< Response::answer
 };
 
 std::string json_line(const AccessRecord& record);

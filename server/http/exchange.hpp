@@ -29,6 +29,7 @@ struct Exchange {
   std::string content_type;
   bool packed = false;  ///< the body, by gzip
   std::string problem;  ///< code of the error that is answered
+  std::string answer;   ///< Response::answer
   Clock::time_point started = Clock::now();
   bool head_read = false;
   bool must_close = false;  ///< bytes of the request were left unread

@@ -46,6 +46,7 @@ struct Response {
   /// client has left. May wait, but not for long.
   std::function<std::optional<std::string>()> stream = {};
   std::string problem = {};  ///< its code, where the answer is an error
+  std::string answer = {};   ///< in a word, for the access log: "fix", "converged"; empty where there is none
 };
 
 }  // namespace roadfix::http

@@ -205,6 +205,7 @@ void Server::Impl::complete_headers(Exchange& exchange, Response& response) cons
   if (is_packed_on_request(response.content_type)) response.headers.emplace_back("Vary", "Accept-Encoding");
   if (exchange.must_close) response.headers.emplace_back("Connection", "close");
   exchange.problem = response.problem;
+  exchange.answer = response.answer;
 }
 
 void Server::Impl::reply(Exchange& exchange, httplib::Response& out, Response response) const {
@@ -243,7 +244,7 @@ void Server::Impl::finished(const httplib::Request& head, const httplib::Respons
                  out.body.size());
   access_log_.write({std::chrono::system_clock::now(), exchange.request.id, exchange.request.client, head.method,
                      head.target, route, out.status, out.body.size(),
-                     std::chrono::duration<double, std::milli>(time).count(), exchange.problem});
+                     std::chrono::duration<double, std::milli>(time).count(), exchange.problem, exchange.answer});
 }
 
 }  // namespace roadfix::http

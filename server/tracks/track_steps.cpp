@@ -50,7 +50,7 @@ void TrackSteps::await_predecessor(const std::string& id, std::int64_t sequence)
 }
 
 StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::int64_t digest,
-                            const StepLimits& limits, TrackTimes::Clock::time_point came) {
+                            const StepLimits& limits, TrackTimes::Clock::time_point came, const std::string& detector) {
   const std::shared_ptr<LiveTrack> track = tracks_.live(id);
   LiveTrack::Turn turn(*track, input.sequence, tracks_.limits().order_wait);
   if (auto before = stored(id, input.sequence, digest)) return *std::move(before);
@@ -59,7 +59,7 @@ StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::
   nlohmann::json answer = api::to_json(result.estimate);
   answer["track"] = id;
   answer["map"] = api::map_json(track->map().name, track->map().view.version);
-  answer["made_by"] = api::made_by();
+  answer["made_by"] = api::made_by(detector);
   std::string text = json_text(answer);
   turn.doubt();
   tracks_.store_step(id, {input.sequence, digest, text}, result.state);

@@ -32,9 +32,9 @@ class TrackSteps {
   void await_predecessor(const std::string& id, std::int64_t sequence);
   /// Takes the step, unless that was done meanwhile, and returns its answer once it cannot be lost any more. Throws
   /// what Tracker::advance throws, InvalidInput ("map-replaced") and the store's errors; the track is then as it was.
-  /// `came` is when the step did.
+  /// `came` is when the step did, `detector` what read its frame.
   StepAnswer take(const std::string& id, const StepInput& input, std::int64_t digest, const StepLimits& limits,
-                  TrackTimes::Clock::time_point came = TrackTimes::Clock::now());
+                  TrackTimes::Clock::time_point came = TrackTimes::Clock::now(), const std::string& detector = {});
 
  private:
   std::optional<StepAnswer> stored(const std::string& id, std::int64_t sequence, std::int64_t digest) const;

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "tests/e2e/child_process.hpp"
 #include "tests/e2e/service_fixture.hpp"
@@ -98,6 +100,29 @@ TEST(ServeCommand, WritesALineForEachRequest) {
   EXPECT_EQ(entry["status"], 400);
   EXPECT_EQ(entry["route"], "/v1/maps");
   EXPECT_EQ(entry["problem"], "unknown-parameter");
+}
+
+TEST(ServeCommand, WritesWhatAFixAndAStepWereAnswered) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const std::string log = (folder / "access.log").string();
+  const testing::ServiceProcess service(folder.path(), {"--access-log", log});
+  httplib::Client client = testing::client_of(service);
+  client.Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png");
+  const json track{{"map", "town"}, {"start", "uniform"}, {"particles", 200}};
+  const std::string id = testing::json_of(client.Post("/v1/tracks", track.dump(), "application/json"))["id"];
+  client.Post("/v1/tracks/" + id + "/steps", R"({"sequence": 0, "time_us": 1})", "application/json");
+  std::vector<json> entries;
+  EXPECT_TRUE(eventually([&] {
+    entries.clear();
+    std::ifstream file(log);
+    for (std::string line; std::getline(file, line) && !file.eof();) entries.push_back(json::parse(line));
+    return entries.size() == 3;
+  }));
+  EXPECT_EQ(entries[0]["answer"], "fix");
+  EXPECT_FALSE(entries[1].contains("answer"));
+  EXPECT_EQ(entries[2]["answer"], "searching");
 }
 
 }  // namespace

@@ -29,7 +29,10 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   fix.proof = SearchProof{4.0, 472, 1, 0.6, 0.8, false, 0.97};
   fix.headings = 360;
   fix.map_name = "adiyaman";
-  const auto answer = to_json(fix, std::chrono::milliseconds(140));
+  Features frame;
+  frame.detect_time = std::chrono::milliseconds(140);
+  frame.detector = "tree";
+  const auto answer = to_json(fix, frame);
   EXPECT_EQ(answer["status"], "fix");
   EXPECT_EQ(answer["pose"]["lat"], 37.7632);
   EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), 270.0, 1e-9);
@@ -48,7 +51,9 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_EQ(answer["searched"]["proof"]["bound"], 0.8);
   EXPECT_EQ(answer["searched"]["proof"]["excluded_share"], 0.97);
   EXPECT_EQ(answer["map"]["name"], "adiyaman");
-  EXPECT_EQ(answer["made_by"], made_by());
+  EXPECT_EQ(answer["made_by"], made_by("tree"));
+  EXPECT_EQ(answer["made_by"]["detector"], "tree");
+  EXPECT_EQ(to_json(fix)["made_by"], made_by()) << "of a feature map nobody knows";
   EXPECT_EQ(answer["time_ms"]["detect"], 140.0);
   EXPECT_FALSE(answer.contains("reason"));
 }

@@ -24,7 +24,17 @@ TEST(AccessLog, WritesOneValidJsonObjectForEachRequestWhateverTheClientSends) {
   EXPECT_EQ(json["status"], 400);
   EXPECT_EQ(json["route"], "/v1/maps");
   EXPECT_FALSE(json.contains("problem"));
+  EXPECT_FALSE(json.contains("answer"));
   EXPECT_FALSE(std::getline(file, line));
+}
+
+TEST(AccessLog, SaysWhatWasAnsweredOrWhyNothingWas) {
+  AccessRecord record;
+  record.answer = "no_fix";
+  EXPECT_EQ(nlohmann::json::parse(json_line(record))["answer"], "no_fix");
+  record = {};
+  record.problem = "body-too-large";
+  EXPECT_EQ(nlohmann::json::parse(json_line(record))["problem"], "body-too-large");
 }
 
 TEST(AccessLog, SaysWhenTheFileCannotBeWritten) {

@@ -34,13 +34,16 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
   EXPECT_FALSE(tracks->times().age_of_step(id, 0));
 }
 
-TEST_F(TrackStepsTest, NamesTheMapAndTheProgramInWhatItKeeps) {
+TEST_F(TrackStepsTest, NamesTheMapTheProgramAndTheDetectorInWhatItKeeps) {
   const auto tracks = registry();
   const std::string id = begin(*tracks);
   TrackSteps(*tracks).take(id, step_of(0), 0, {});
   const auto kept = nlohmann::json::parse(tracks->last_step(id).value().answer);
   EXPECT_EQ(kept["map"], (nlohmann::json{{"name", "town"}, {"version", maps_.find("town")->view.version}}));
   EXPECT_TRUE(kept["made_by"].contains("roadfix"));
+  EXPECT_FALSE(kept["made_by"].contains("detector"));
+  TrackSteps(*tracks).take(id, step_of(1), 1, {}, TrackTimes::Clock::now(), "tree");
+  EXPECT_EQ(nlohmann::json::parse(tracks->last_step(id).value().answer)["made_by"]["detector"], "tree");
 }
 
 TEST_F(TrackStepsTest, RefusesWhatCannotFollowBeforeItsRoadsAreLookedFor) {

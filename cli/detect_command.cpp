@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include "cli/frame_options.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
+#include "cli/picture_files.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
@@ -30,12 +32,17 @@ namespace {
 struct DetectOptions {
   DetectorChoice detector;
   ComparedWith compared = ComparedWith::kImagery;
-  std::string image;
-  std::string target;
+  std::vector<std::string> names;  ///< pictures, then the target
   FrameOptions frame;
   double cell_m = 2.0;
   std::uint64_t seed = 1;
   bool json = false;
+};
+
+/// A picture, and where its feature map goes.
+struct Job {
+  std::string image;
+  std::string target;
 };
 
 /// Devices have names without an ending, and take a PNG too.
@@ -59,13 +66,11 @@ struct Picture {
   std::optional<Place> place;
 };
 
-Picture read_picture(const DetectOptions& options, const RoadDetector& detector) {
-  require_frame_for(options.frame);
-  if (options.frame.given()) {
-    return {ground_seen(options.frame, options.image, detector), {}};
-  }
-  const UtmZone zone = zone_of_image(options.image);
-  Orthoimage ortho = read_orthoimage(options.image, zone);
+Picture read_picture(const DetectOptions& options, const std::string& image, const RoadDetector& detector) {
+  if (options.frame.given()) return {ground_seen(options.frame, image, detector), {}};
+  require_not_empty(image);
+  const UtmZone zone = zone_of_image(image);
+  Orthoimage ortho = read_orthoimage(image, zone);
   return {{rectified(std::move(ortho.image))}, Place{zone, ortho.north_west}};
 }
 
@@ -80,13 +85,13 @@ void write_place(std::filesystem::path png, const Place& place, double cell_m) {
 
 /// Where picture and target differ in their endings alone, one world file would serve both: the picture's is neither
 /// taken away nor left to say where a frame lies.
-void require_own_world_file(const DetectOptions& options) {
+void require_own_world_file(const Job& job) {
   namespace fs = std::filesystem;
-  const fs::path world = fs::absolute(common_world_file(options.target)).lexically_normal();
-  if (fs::absolute(common_world_file(options.image)).lexically_normal() != world || !fs::exists(world)) return;
+  const fs::path world = fs::absolute(common_world_file(job.target)).lexically_normal();
+  if (fs::absolute(common_world_file(job.image)).lexically_normal() != world || !fs::exists(world)) return;
   throw InvalidInput("target-is-source",
                      fmt::format("{} belongs to {}, and would be taken for that of {}: name another file",
-                                 world.string(), options.image, options.target));
+                                 world.string(), job.image, job.target));
 }
 
 double mean_probability(const CellArray& cells) {
@@ -99,10 +104,11 @@ double mean_probability(const CellArray& cells) {
 
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
-nlohmann::json json_of(const DetectOptions& options, const FeatureMap& map, const std::string& detector,
+nlohmann::json json_of(const Job& job, double cell_m, const FeatureMap& map, const std::string& detector,
                        Milliseconds time) {
-  return {{"feature_map", options.target},
-          {"cell_m", options.cell_m},
+  return {{"image", job.image},
+          {"feature_map", job.target},
+          {"cell_m", cell_m},
           {"cols", map.cells.cols()},
           {"rows", map.cells.rows()},
           {"nadir_cell", {map.nadir.col, map.nadir.row}},
@@ -114,61 +120,110 @@ nlohmann::json json_of(const DetectOptions& options, const FeatureMap& map, cons
           {"time_ms", time.count()}};
 }
 
-std::string text_of(const DetectOptions& options, const FeatureMap& map, const std::string& detector,
+std::string text_of(const Job& job, double cell_m, const FeatureMap& map, const std::string& detector,
                     Milliseconds time) {
   return fmt::format(
       "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
       "UAV above column {:.1f}, row {:.1f}{}\n{}",
-      options.target, map.cells.cols(), map.cells.rows(), options.cell_m, map.cells.observed_count(),
-      mean_probability(map.cells), time.count(), map.nadir.col, map.nadir.row,
+      job.target, map.cells.cols(), map.cells.rows(), cell_m, map.cells.observed_count(), mean_probability(map.cells),
+      time.count(), map.nadir.col, map.nadir.row,
       map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis) and {:.1f} degrees",
                                             map.nadir_sigma_m, map.nadir_heading_sigma.degrees())
                               : "",
       detector);
 }
 
-void run_detect(const DetectOptions& options) {
-  require_apart({options.target}, {options.image});
-  require_png_name(options.target);
-  require_own_world_file(options);
-  const auto detector = make_detector(options.detector, options.compared);
-  const Picture picture = read_picture(options, *detector);
-  const api::Features features = api::detected(picture.frame, {*detector, options.cell_m, {}, options.seed});
+void detect(const DetectOptions& options, const Job& job, const RoadDetector& detector) {
+  require_apart({job.target}, {job.image});
+  require_own_world_file(job);
+  const Picture picture = read_picture(options, job.image, detector);
+  const api::Features features = api::detected(picture.frame, {detector, options.cell_m, {}, options.seed});
   const FeatureMap& map = features.map;
   const auto time = features.detect_time.value();
   if (map.cells.observed_count() == 0) {
-    throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", options.image));
+    throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", job.image));
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map);
-  write_file(options.target, {reinterpret_cast<const char*>(png.data()), png.size()});
-  if (std::filesystem::is_regular_file(options.target) && !is_standard_output(options.target)) {
-    remove_side_files(options.target);
-    if (picture.place) write_place(options.target, *picture.place, options.cell_m);
+  write_file(job.target, {reinterpret_cast<const char*>(png.data()), png.size()});
+  if (std::filesystem::is_regular_file(job.target) && !is_standard_output(job.target)) {
+    remove_side_files(job.target);
+    if (picture.place) write_place(job.target, *picture.place, options.cell_m);
   }
-  std::FILE* out = printed_beside({options.target});
+  std::FILE* out = printed_beside({job.target});
   if (options.json) {
-    nlohmann::json answer = json_of(options, map, detector->describe(), time);
+    nlohmann::json answer = json_of(job, options.cell_m, map, detector.describe(), time);
     if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
     fmt::print(out, "{}\n", json_text(answer));
   } else {
-    fmt::print(out, "{}\n", text_of(options, map, detector->describe(), time));
+    fmt::print(out, "{}\n", text_of(job, options.cell_m, map, detector.describe(), time));
   }
+}
+
+std::string target_in(const std::filesystem::path& folder, const std::filesystem::path& image) {
+  return (folder / image.stem()).string() + ".png";
+}
+
+/// No feature map goes over another one, nor over a picture that is read later.
+void require_own_targets(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& images) {
+  namespace fs = std::filesystem;
+  std::map<fs::path, fs::path> taken;  // by what
+  for (const fs::path& image : images) taken.emplace(fs::weakly_canonical(image), image);
+  for (const fs::path& image : images) {
+    const fs::path target = target_in(folder, image);
+    const auto [other, is_own] = taken.emplace(fs::weakly_canonical(target), image);
+    if (is_own) continue;
+    throw InvalidInput("target-given-twice",
+                       fmt::format("{} would go to {}, which is also of {}: name another folder, or rename one of them",
+                                   image.string(), target.string(), other->second.string()));
+  }
+}
+
+void detect_all(const DetectOptions& options, const std::vector<std::string>& pictures, const std::string& target) {
+  require_name(target);
+  const auto images = picture_files(pictures, kPictureEndings);
+  require_own_targets(target, images);
+  std::filesystem::create_directories(target);
+  const auto detector = make_detector(options.detector, options.compared);
+  const std::size_t left_out = for_each_picture(images, "detecting", true, [&](const std::filesystem::path& image) {
+    detect(options, {image.string(), target_in(target, image)}, *detector);
+  });
+  require_none(left_out, images.size());
+}
+
+void run_detect(const DetectOptions& options) {
+  require_frame_for(options.frame);
+  const std::vector<std::string> pictures(options.names.begin(), options.names.end() - 1);
+  const std::string& target = options.names.back();
+  if (are_several(pictures) || std::filesystem::is_directory(target)) {
+    detect_all(options, pictures, target);
+    return;
+  }
+  require_apart({target}, {pictures.front()});
+  require_png_name(target);
+  detect(options, {pictures.front(), target}, *make_detector(options.detector, options.compared));
 }
 
 }  // namespace
 
 void add_detect_command(CLI::App& app) {
-  auto* command = app.add_subcommand("detect", "Detects the roads of one picture: a feature map as PNG");
+  auto* command = app.add_subcommand("detect", "Detects the roads of pictures: feature maps as PNG");
   command->footer(
       "Examples: roadfix detect frame.png roads.png --gsd 0.5\n"
       "          roadfix detect frame.jpg roads.png --fov 73 --agl 120 --pitch 4\n"
-      "          roadfix detect ortho.tif roads.png   (north up, with a world file)");
+      "          roadfix detect ortho.tif roads.png   (north up, with a world file)\n"
+      "          roadfix detect photos/ roads/ --exif   (roads/ gets a PNG of the name of each photo)\n"
+      "Exit code: 0 done, 1 where a picture could not be used, 2 for wrong usage. Of several pictures the others are "
+      "done.");
   const auto options = std::make_shared<DetectOptions>();
   command
-      ->add_option("image", options->image,
-                   "Frame (PNG or JPEG, with --gsd, --exif or --fov and --agl), or any georeferenced image")
-      ->required();
-  command->add_option("target", options->target, "PNG to write: grey = probability, alpha = observed")->required();
+      ->add_option(
+          "pictures", options->names,
+          "Frames (PNG or JPEG, with --gsd, --exif or --fov and --agl), or any georeferenced images, or folders "
+          "of PNG and JPEG; then what to write: a PNG (grey = probability, alpha = observed), or of several "
+          "pictures a folder for one each")
+      ->option_text("IMAGE... TARGET REQUIRED")
+      ->required()
+      ->expected(2, -1);
   add_frame_options(*command, options->frame);
   command->add_option("--cell", options->cell_m, "Cell size in metres")
       ->capture_default_str()

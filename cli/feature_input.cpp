@@ -64,8 +64,6 @@ api::Features features_in(const std::string& path, const FeatureInputOptions& op
 }  // namespace
 
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
-  command.add_option("input", o.path, "Feature map (PNG: grey = probability of road, alpha = observed) or frame")
-      ->required();
   command
       .add_option("--also", o.also,
                   "Another frame or feature map, taken FORWARD m ahead and RIGHT m to the right of the input's place, "
@@ -94,20 +92,23 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   add_detector_options(command, o.detector);
 }
 
-api::Features read_feature_input(const FeatureInputOptions& options, const MapView& map) {
+FeatureInput::FeatureInput(const FeatureInputOptions& options, const MapView& map)
+    : options_(options), map_cell_m_(map.cell_m) {
   require_frame_for(options.frame);
-  const auto detector = options.frame.given() ? detector_for(map, options.detector) : nullptr;
-  const auto read = [&](const std::string& path) { return features_in(path, options, detector.get(), map.cell_m); };
-  api::Features first = read(options.path);
-  if (options.also.empty()) return first;
-  if (options.also.size() >= kMaxFrames) {
+  if (options.frame.given()) detector_ = detector_for(map, options.detector);
+}
+
+api::Features FeatureInput::read(const std::string& path) const {
+  api::Features first = features_in(path, options_, detector_.get(), map_cell_m_);
+  if (options_.also.empty()) return first;
+  if (options_.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
-                        fmt::format("{} frames; at most {} are allowed", options.also.size() + 1, kMaxFrames));
+                        fmt::format("{} frames; at most {} are allowed", options_.also.size() + 1, kMaxFrames));
   }
   std::vector<api::OtherFeatures> others;
-  for (const std::string& text : options.also) {
+  for (const std::string& text : options_.also) {
     const Another another = parse_also(text);
-    others.push_back({read(another.path), another.offset});
+    others.push_back({features_in(another.path, options_, detector_.get(), map_cell_m_), another.offset});
   }
   return api::together(std::move(first), std::move(others), kMaxCells);
 }

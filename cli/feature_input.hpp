@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,6 @@
 namespace roadfix::cli {
 
 struct FeatureInputOptions {
-  std::string path;
   std::vector<std::string> also;        ///< FILE,FORWARD,RIGHT,TURN: more of the same kind, and where they were taken
   std::optional<double> cell_m;         ///< of feature maps that do not tell it themselves
   std::vector<double> nadir;            ///< of feature maps, where told: column and row
@@ -25,12 +25,25 @@ struct FeatureInputOptions {
   DetectorChoice detector;
 };
 
-/// Adds the input file and its options; `options` must live as long as the command.
+inline constexpr const char* kInputMeaning = "Feature map (PNG: grey = probability of road, alpha = observed) or frame";
+
+/// Adds all options but the input itself; `options` must live as long as the command.
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& options);
 
-/// Roads of a frame come in the map's cells, by the detector that suits the map; several frames are laid together.
-/// Without options of a frame the input is a feature map. Throws InvalidInput "input-kind-missing" where it does not
-/// say so itself and no option does.
-api::Features read_feature_input(const FeatureInputOptions& options, const MapView& map);
+/// Reads inputs for a map. Without options of a frame these are feature maps.
+class FeatureInput {
+ public:
+  /// Loads the detector that suits the map, for frames. Both arguments must outlive it.
+  FeatureInput(const FeatureInputOptions& options, const MapView& map);
+
+  /// Roads of a frame come in the map's cells; several frames (--also) are laid together. Throws InvalidInput
+  /// "input-kind-missing" where a feature map does not say so itself and no option does.
+  api::Features read(const std::string& path) const;
+
+ private:
+  const FeatureInputOptions& options_;
+  const double map_cell_m_;
+  std::shared_ptr<const RoadDetector> detector_;  ///< null for feature maps
+};
 
 }  // namespace roadfix::cli

@@ -1,21 +1,29 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/bbox_option.hpp"
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/feature_input.hpp"
+#include "cli/fix_answers.hpp"
 #include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/output_file.hpp"
+#include "cli/picture_files.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
 #include "core/locate/fix.hpp"
+#include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 
@@ -24,6 +32,7 @@ namespace {
 
 struct FixArguments {
   std::string map;
+  std::vector<std::string> pictures;
   FeatureInputOptions input;
   double lat = 0.0;
   double lon = 0.0;
@@ -34,6 +43,7 @@ struct FixArguments {
   std::string calibration;
   FixOptions fix;
   bool as_json = false;
+  std::string csv;
 };
 
 constexpr std::chrono::seconds kQuiet{2};  // a search that is over by then says nothing of its progress
@@ -48,71 +58,102 @@ Prior prior_of(const FixArguments& options) {
   return prior;
 }
 
-void print_mode(const FixMode& mode) {
-  fmt::print("  {:.6f} {:.6f}  heading {:5.1f} +- {:.1f} deg  1 sigma {:.1f} x {:.1f} m  weight {:.3f}  rho {:.3f}\n",
-             mode.pose.position.lat_deg, mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(),
-             mode.heading_sigma.degrees(), mode.sigma_m[0], mode.sigma_m[1], mode.weight, mode.rho);
+void print_answer(const FixArguments& options, const std::string& picture, const api::Features& input, const Fix& fix) {
+  const bool is_one_of_several = are_several(options.pictures);
+  if (options.as_json) {
+    nlohmann::json answer = api::to_json(fix, input);
+    if (is_one_of_several) answer["file"] = picture;
+    fmt::print("{}\n", json_text(answer, is_one_of_several ? -1 : 2));
+  } else {
+    if (is_one_of_several) fmt::print("{}: ", picture);
+    print_text(fix);
+  }
 }
 
-void print_text(const Fix& fix) {
-  fmt::print("{}", api::to_string(fix.status));
-  if (fix.status == FixStatus::kFix) {
-    fmt::print("  probability {:.4f}\n", fix.probability);
-    print_mode(fix.modes.front());
-  } else {
-    fmt::print(" ({}): {}\n", fix.reason, fix.explanation);
-    if (!fix.modes.empty()) fmt::print("best places, not to be flown on:\n");
-    for (const FixMode& mode : fix.modes) print_mode(mode);
+/// What is the same for all pictures.
+struct Search {
+  MapView view;
+  Prior prior;
+  FixOptions options;
+};
+
+Search search_of(const FixArguments& options) {
+  constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // all pictures search the same map
+  const std::size_t cache_bytes = are_several(options.pictures) ? kSearchCacheBytes : 0;
+  Search search{view_with_notes(options.map, cache_bytes), prior_of(options), options.fix};
+  search_region(search.view, search.prior, options.fix);  // before the frame, in which roads are looked for
+  if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
+  return search;
+}
+
+Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
+  FixOptions options = search.options;
+  options.own_frame = std::move(input.own_frame);
+  options.stop = stop_on_signals();
+  options.progress = std::move(progress);
+  return locate(search.view, input.map, search.prior, options);
+}
+
+void fix_one(const FixArguments& options) {
+  const Search search = search_of(options);
+  api::Features input = FeatureInput(options.input, search.view).read(options.pictures.front());
+  Progress progress("searching", "headings");
+  const auto began = std::chrono::steady_clock::now();
+  const Fix fix = located(search, input, [&](std::int64_t done, std::int64_t total) {
+    if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
+  });
+  print_answer(options, options.pictures.front(), input, fix);
+}
+
+/// A table is written also of what was answered before an interruption.
+void fix_all(const FixArguments& options) {
+  if (!options.input.also.empty()) throw CLI::ExcludesError("--also", "several pictures and --csv");
+  const auto files = picture_files(options.pictures, kPictureEndings);
+  for (const auto& file : files) require_apart({options.csv}, {file});
+  require_writable({options.csv});
+  const Search search = search_of(options);
+  const FeatureInput inputs(options.input, search.view);
+  std::string table = fix_columns();
+  const auto save = [&] {
+    if (!options.csv.empty()) write_file(options.csv, table);
+  };
+  std::size_t left_out = 0;
+  try {
+    left_out = for_each_picture(files, "locating", options.csv.empty(), [&](const std::filesystem::path& file) {
+      api::Features input = inputs.read(file);
+      const Fix fix = located(search, input);
+      if (options.csv.empty()) {
+        print_answer(options, file, input, fix);
+      } else {
+        table += row_of(file, fix);
+      }
+    });
+  } catch (const Interrupted&) {
+    save();
+    throw;
   }
-  if (fix.scales > 1) {
-    fmt::print("tried {} sizes of the ground; {:.3f} times that of the feature map fits best\n", fix.scales,
-               fix.modes.empty() ? 1.0 : fix.modes.front().scale);
-  }
-  fmt::print("searched {:.2f} km2 at {} headings in {:.0f} ms\n", fix.searched_km2, fix.headings,
-             fix.search_time.count());
-  if (!fix.complete)
-    fmt::print("the time limit ended the search: {:.1f} % of the poses were examined\n", 100.0 * fix.searched_share);
-  if (!fix.proof) return;
-  if (fix.proof->complete) {
-    fmt::print("proof complete: no other pose of the region fits better (cells of {} m, {} headings)\n",
-               fix.proof->cell_m, fix.proof->headings);
-  } else {
-    fmt::print("proof incomplete: {:.1f} % of the poses cannot fit better; the rest score at most {:.3f}\n",
-               100.0 * fix.proof->excluded_share, fix.proof->bound);
-  }
+  save();
+  require_none(left_out, files.size());
 }
 
 void run_fix(const FixArguments& options) {
-  const MapView view = view_with_notes(options.map);
-  const Prior prior = prior_of(options);
-  search_region(view, prior, options.fix);  // before the frame, in which roads are looked for
-  api::Features input = read_feature_input(options.input, view);
-  FixOptions fix_options = options.fix;
-  if (!options.calibration.empty()) fix_options.calibration = read_calibration(options.calibration);
-  fix_options.own_frame = std::move(input.own_frame);
-  fix_options.stop = stop_on_signals();
-  Progress progress("searching", "headings");
-  const auto began = std::chrono::steady_clock::now();
-  fix_options.progress = [&](std::int64_t done, std::int64_t total) {
-    if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
-  };
-  const Fix fix = locate(view, input.map, prior, fix_options);
-  if (options.as_json) {
-    fmt::print("{}\n", json_text(api::to_json(fix, input), 2));
-  } else {
-    print_text(fix);
-  }
+  are_several(options.pictures) || !options.csv.empty() ? fix_all(options) : fix_one(options);
 }
 
 }  // namespace
 
 void add_fix_command(CLI::App& app) {
-  auto* command = app.add_subcommand("fix", "Finds where a feature map or a frame was taken");
+  auto* command = app.add_subcommand("fix", "Finds where feature maps or frames were taken");
   command->footer(
-      "Exit code: 0 for an answer, whichever (scripts read \"status\" of --json), 1 for none, 2 for wrong usage.\n"
-      "Example: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800");
+      "Exit code: 0 for an answer, whichever (scripts read \"status\" of --json), 1 for none, 2 for wrong usage. Of "
+      "several pictures those that cannot be read are left out, which is said; the code is 1 then.\n"
+      "Examples: roadfix fix town.gpkg window.png --cell 2 --lat 57.70 --lon 11.97 --radius 800\n"
+      "          roadfix fix town.gpkg photos/ --exif --csv fixes.csv");
   const auto o = std::make_shared<FixArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
+  command
+      ->add_option("input", o->pictures, std::string(kInputMeaning) + "; several of them, and folders of PNG and JPEG")
+      ->required();
   add_feature_input_options(*command, o->input);
   auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");
   auto* lon = command->add_option("--lon", o->lon, "Prior: longitude of the centre, degrees");
@@ -164,7 +205,11 @@ void add_fix_command(CLI::App& app) {
   add_seconds_option(*command, "--time-limit", o->fix.time_limit,
                      "End the search after this many seconds and report what it has")
       ->check(positive());
-  command->add_flag("--json", o->as_json, "The answer of the service as JSON");
+  auto* json = command->add_flag(
+      "--json", o->as_json, "The answer of the service as JSON; of several pictures one a line, with its \"file\"");
+  command->add_option("--csv", o->csv, "Write a table with a row for each picture to this file")
+      ->type_name("FILE")
+      ->excludes(json);
   command->callback([o] { run_fix(*o); });
 }
 

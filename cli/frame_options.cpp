@@ -6,6 +6,7 @@
 
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/picture_files.hpp"
 #include "cli/unit_options.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
@@ -19,6 +20,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) {
     throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
   }
+  require_not_empty(path);
   const std::string bytes = read_named_file(path, "file-not-found");
   return {bytes.begin(), bytes.end()};
 }

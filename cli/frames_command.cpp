@@ -12,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/output_file.hpp"
+#include "cli/picture_files.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/sources/drone_picture.hpp"
@@ -39,30 +40,6 @@ struct Frame {
   DronePicture picture;
   double agl_m = 0.0;
 };
-
-std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string ending = lower_case(entry.path().extension().string());
-    if (entry.is_regular_file() && (ending == ".jpg" || ending == ".jpeg")) files.push_back(entry.path());
-  }
-  if (files.empty()) throw InvalidInput("no-pictures", fmt::format("{}: no JPEG in this folder", folder.string()));
-  std::ranges::sort(files);
-  return files;
-}
-
-std::vector<fs::path> files_of(const std::vector<std::string>& names) {
-  std::vector<fs::path> files;
-  for (const std::string& name : names) {
-    if (!fs::is_directory(name)) {
-      files.emplace_back(name);
-      continue;
-    }
-    const auto found = pictures_in(name);
-    files.insert(files.end(), found.begin(), found.end());
-  }
-  return files;
-}
 
 std::optional<double> agl_of(const DronePicture& picture, const FramesOptions& options) {
   if (picture.agl_m || !picture.takeoff_m) return picture.agl_m;
@@ -112,19 +89,13 @@ std::string unnameable(const std::string& name, const std::string& sequence) {
   return "";
 }
 
-void say_left_out(const fs::path& file, std::string_view reason) {
-  fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
-}
-
 /// nullopt, said on stderr, where it is damaged.
 std::optional<PictureTags> tags_of(const fs::path& file) {
   try {
+    require_not_empty(file);
     return read_picture_tags(file);
   } catch (const InvalidInput& error) {
-    std::string_view reason = error.what();
-    const std::string named = file.string() + ": ";
-    if (reason.starts_with(named)) reason.remove_prefix(named.size());
-    say_left_out(file, reason);
+    say_left_out(file, error.what());
     return std::nullopt;
   }
 }
@@ -166,7 +137,7 @@ void run_frames(const FramesOptions& options) {
   const fs::path folder =
       options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
   std::vector<Frame> frames;
-  const auto files = files_of(options.pictures);
+  const auto files = picture_files(options.pictures, kPhotoEndings);
   for (const fs::path& file : files) {
     require_apart({options.csv}, {file});
     if (auto frame = frame_of(file, folder, options)) frames.push_back(std::move(*frame));

@@ -26,6 +26,7 @@ namespace {
 
 struct MatchArguments {
   std::string map;
+  std::string picture;
   FeatureInputOptions input;
   std::vector<std::string> poses;
   std::string poses_file;
@@ -79,7 +80,7 @@ void run_match(const MatchArguments& options) {
   if (!options.poses_file.empty()) read_poses(options.poses_file, poses);
   if (poses.empty()) throw InvalidInput("poses-missing", "give at least one --pose LAT,LON,HEADING or a --poses file");
   const MapView view = view_with_notes(options.map);
-  const api::Features input = read_feature_input(options.input, view);
+  const api::Features input = FeatureInput(options.input, view).read(options.picture);
   MatchOptions match_options = options.match;
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.map, poses, match_options);
@@ -97,6 +98,7 @@ void add_match_command(CLI::App& app) {
   command->footer("Example: roadfix match town.gpkg window.png --cell 2 --pose 57.70,11.97,45");
   const auto o = std::make_shared<MatchArguments>();
   command->add_option("map", o->map, "Map file (GeoPackage)")->required();
+  command->add_option("input", o->picture, kInputMeaning)->required();
   add_feature_input_options(*command, o->input);
   command->add_option("--pose", o->poses, "LATITUDE,LONGITUDE,HEADING: degrees, heading from true north; repeatable");
   command->add_option("--poses", o->poses_file, "CSV file with one such pose per line");

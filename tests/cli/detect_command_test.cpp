@@ -170,6 +170,27 @@ TEST_F(DetectCommand, NamesTheFileThatIsNoPicture) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("frame.png: "), HasSubstr("gdal_translate"), HasSubstr("[image-format]")));
 }
 
+TEST_F(DetectCommand, MakesAFeatureMapOfEachPictureOfAFolderThatCanBeRead) {
+  const std::filesystem::path photos = folder / "photos";
+  std::filesystem::create_directory(photos);
+  for (const char* name : {"1.png", "2.png"}) std::filesystem::copy_file(folder / "frame.png", photos / name);
+  std::ofstream(photos / "0.jpg").flush();
+  const std::string options = " --detector tree --gsd 0.5 --json";
+  const ProgramResult result =
+      run_program(folder.path(), "detect " + photos.string() + " " + (folder / "roads").string() + options);
+  EXPECT_EQ(result.code, 1) << "one is left out";
+  EXPECT_THAT(result.err, HasSubstr("0.jpg is left out: the file is empty: copy it again [image-damaged]\n"));
+  EXPECT_EQ(std::ranges::count(result.out, '\n'), 2) << result.out;
+  const auto first = nlohmann::json::parse(result.out.substr(0, result.out.find('\n')));
+  EXPECT_EQ(first["image"], (photos / "1.png").string());
+  EXPECT_EQ(first["feature_map"], (folder / "roads" / "1.png").string());
+  EXPECT_TRUE(std::filesystem::exists(folder / "roads" / "1.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "roads" / "2.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "roads" / "0.png"));
+  EXPECT_THAT(run_program(folder.path(), "detect " + photos.string() + " " + photos.string() + options).err,
+              HasSubstr("[target-given-twice]"));
+}
+
 TEST_F(DetectCommand, SaysInOneLineThatANetworkCannotBeRun) {
   std::string onnx = text_of(ROADFIX_TEST_NETWORKS "/tiny.onnx");
   for (std::size_t at = onnx.find("Conv"); at != std::string::npos; at = onnx.find("Conv", at)) onnx[at] = 'X';

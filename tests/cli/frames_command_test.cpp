@@ -90,7 +90,7 @@ TEST_F(FramesCommand, LeavesOutDamagedFilesOfAFolderButMissesNamedOnes) {
   const ProgramResult result = frames(place);
   EXPECT_EQ(result.code, 0);
   EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("empty")), Not(HasSubstr("text"))));
-  EXPECT_THAT(result.err, AllOf(HasSubstr("empty.jpg is left out: cannot be opened ("),
+  EXPECT_THAT(result.err, AllOf(HasSubstr("empty.jpg is left out: the file is empty"),
                                 HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 3 pictures")));
   EXPECT_THAT(frames(place + " none.jpg").err, HasSubstr("[source-not-found]"));
 }

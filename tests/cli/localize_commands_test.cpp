@@ -3,7 +3,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/grid/resample.hpp"
@@ -67,6 +69,84 @@ TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
   EXPECT_NEAR(answer["pose"]["lon"].get<double>(), place.lon_deg, 3e-5);
   EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), heading_deg, 1.0);
   EXPECT_EQ(answer["map"]["name"], "town");
+}
+
+TEST_F(LocalizeCommands, FixTellsAPersonWhatItsNumbersAre) {
+  const ProgramResult result = roadfix("fix " + input);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("\n  lat 57\\.[0-9]+ lon [0-9.]+  heading [0-9.]+ "));
+  EXPECT_THAT(result.out, HasSubstr("\npositions are WGS 84, headings from true north\n"));
+}
+
+TEST_F(LocalizeCommands, FixSaysThatAFileIsEmpty) {
+  std::ofstream(window).flush();
+  for (const char* kind : {"--cell 2", "", "--gsd 1 --detector tree", "--exif --detector tree"}) {
+    const ProgramResult result = roadfix("fix " + map.string() + " " + window.string() + " " + kind);
+    EXPECT_EQ(result.code, 1);
+    EXPECT_EQ(result.err, "roadfix: " + window.string() + ": the file is empty: copy it again [image-damaged]\n");
+  }
+}
+
+class FixOfSeveralPictures : public LocalizeCommands {
+ protected:
+  FixOfSeveralPictures() {
+    std::filesystem::create_directory(flight);
+    std::filesystem::rename(window, flight / "a, 1.png");
+    save(encode_feature_map(CellArray(160, 160, kNoRoad)), flight / "b.PNG");
+    std::ofstream(flight / "c.png").flush();
+    std::ofstream(flight / ".d.png") << "hidden";
+    std::ofstream(flight / "e.txt") << "no picture";
+  }
+
+  std::filesystem::path flight = folder / "flight";
+  std::string of_flight = "fix " + map.string() + " " + flight.string() + " --cell 2 ";
+};
+
+TEST_F(FixOfSeveralPictures, IsALineOfJsonForEachThatCanBeRead) {
+  const ProgramResult result = roadfix(of_flight + "--json");
+  EXPECT_EQ(result.code, 1) << "one is left out";
+  std::istringstream lines(result.out);
+  std::vector<nlohmann::json> answers;
+  for (std::string line; std::getline(lines, line);) answers.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(answers.size(), 2U) << result.out;
+  EXPECT_EQ(answers[0]["file"], (flight / "a, 1.png").string());
+  EXPECT_EQ(answers[0]["status"], "fix");
+  EXPECT_NEAR(answers[0]["pose"]["lat"].get<double>(), place.lat_deg, 2e-5);
+  EXPECT_EQ(answers[1]["file"], (flight / "b.PNG").string());
+  EXPECT_EQ(answers[1]["status"], "no_fix");
+  EXPECT_THAT(result.err, HasSubstr("c.png is left out: the file is empty: copy it again [image-damaged]\n"));
+  EXPECT_THAT(result.err, HasSubstr("1 of 3 pictures were left out"));
+  EXPECT_THAT(result.err, HasSubstr("[pictures-left-out]\n"));
+  EXPECT_THAT(result.err, HasSubstr("locating 100.0 %  3/3"));
+}
+
+TEST_F(FixOfSeveralPictures, IsARowOfATableForEachWithAPlaceOnlyWhereThereIsAFix) {
+  std::filesystem::remove(flight / "c.png");
+  const std::filesystem::path table = folder / "fixes.csv";
+  const ProgramResult result = roadfix(of_flight + "--csv " + table.string());
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  std::istringstream rows(testing::text_of(table));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row,
+            "file,status,lat,lon,heading_deg,sigma_major_m,sigma_minor_m,ellipse_heading_deg,heading_sigma_deg,"
+            "probability,reason,map,map_version");
+  std::getline(rows, row);
+  EXPECT_EQ(row.find('"' + (flight / "a, 1.png").string() + "\",fix,57."), 0U) << row;
+  std::getline(rows, row);
+  EXPECT_EQ(row.find((flight / "b.PNG").string() + ",no_fix,,,,,,,,0.0000,"), 0U) << row;
+  EXPECT_THAT(row, HasSubstr(",town,"));
+  EXPECT_FALSE(std::getline(rows, row));
+}
+
+TEST_F(FixOfSeveralPictures, IsAskedWithoutWhatHoldsForOneAlone) {
+  EXPECT_EQ(roadfix(of_flight + "--also x.png,1,2,3").code, 2);
+  EXPECT_EQ(roadfix(of_flight + "--json --csv fixes.csv").code, 2);
+  const std::string picture = (flight / "a, 1.png").string();
+  EXPECT_THAT(roadfix(of_flight + "--csv '" + picture + "'").err, HasSubstr("[target-is-source]"));
+  std::filesystem::create_directory(folder / "empty");
+  EXPECT_THAT(roadfix("fix " + map.string() + " " + (folder / "empty").string()).err, HasSubstr("[no-pictures]"));
 }
 
 TEST_F(LocalizeCommands, LocalizabilitySaysHowMuchOfTheGroundGivesAFix) {

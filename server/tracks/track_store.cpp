@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <string_view>
 #include <system_error>
@@ -21,10 +22,11 @@ namespace roadfix::server {
 namespace {
 
 constexpr std::int64_t kPageBytes = 4096;
-constexpr int kMiB = 1 << 20;
+constexpr std::int64_t kMiB = 1 << 20;
 constexpr int kEndedKept = 100;
 constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
 constexpr int kVersion = 4;              // of what a state holds, too
+constexpr const char* kStoreFull = "track-store-full";
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
 
 IoFailure not_writable(const std::filesystem::path& path) {
@@ -42,12 +44,10 @@ void require_writable_folder(const std::filesystem::path& path) {
 
 /// SQLite does not tell a full disk from its own limit: whoever reads this can.
 IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes) {
-  std::error_code unknown;
-  const std::uintmax_t free_bytes = std::filesystem::space(path, unknown).available;
-  return {"track-store-full",
+  return {kStoreFull,
           fmt::format("{}: no space left for the tracks (serve --tracks-size allows {} MiB, and its disk has {} MiB "
                       "free): nothing was changed; end tracks or make room, then send the request again",
-                      path.string(), max_bytes / kMiB, unknown ? 0 : free_bytes / kMiB)};
+                      path.string(), max_bytes / kMiB, free_bytes_beside(path) / kMiB)};
 }
 
 /// What a refusal of SQLite means for this store, which may have `max_bytes`.
@@ -104,29 +104,49 @@ StoredTrack track_of(const sqlite::Statement& row) {
           row.text(4), row.integer(5), row.integer(6), end_of(row.text(7))};
 }
 
-/// How far the file is filled, 0 to 1, as `connection` sees it.
-double filled(sqlite::Connection& connection) {
-  const auto pages = [&](const char* name) {
-    return static_cast<double>(sqlite::number(connection, fmt::format("PRAGMA {}", name)));
-  };
-  return (pages("page_count") - pages("freelist_count")) / pages("max_page_count");
+/// How far the file, as large as it may become on a disk with so much room, is filled, 0 to 1, as `connection` sees it.
+double filled(sqlite::Connection& connection, std::int64_t free_bytes) {
+  const auto pages = [&](const char* name) { return sqlite::number(connection, fmt::format("PRAGMA {}", name)); };
+  const std::int64_t now = pages("page_count");
+  const std::int64_t most = std::min(pages("max_page_count"), now + free_bytes / kPageBytes);
+  return static_cast<double>(now - pages("freelist_count")) / static_cast<double>(most);
 }
 
 void delete_steps(sqlite::Connection& connection, const std::string& id) {
   sqlite::Statement(connection, "DELETE FROM steps WHERE track = ?1").with(id).run();
 }
 
-/// Flights that are over, the oldest first, give way to those that come: these have half of the file at least.
-void make_room(sqlite::Connection& connection) {
+/// The steps of the oldest of the flights that are over; false where there are none.
+bool delete_oldest_history(sqlite::Connection& connection) {
+  sqlite::Statement oldest(connection,
+                           "SELECT id FROM tracks WHERE ended <> '' AND EXISTS (SELECT 1 FROM steps WHERE track = id) "
+                           "ORDER BY touched_us, id LIMIT 1");
+  if (!oldest.step()) return false;
+  const std::string id = oldest.text(0);
+  oldest.reset();
+  delete_steps(connection, id);
+  return true;
+}
+
+/// Flights that are over give way to those that come: these have half of the room at least.
+void make_room(sqlite::Connection& connection, std::int64_t free_bytes) {
   constexpr double kMostFilled = 0.5;
-  while (filled(connection) > kMostFilled) {
-    sqlite::Statement oldest(connection,
-                             "SELECT id FROM tracks WHERE ended <> '' AND EXISTS (SELECT 1 FROM steps WHERE track = "
-                             "id) ORDER BY touched_us, id LIMIT 1");
-    if (!oldest.step()) return;
-    const std::string id = oldest.text(0);
-    oldest.reset();
-    delete_steps(connection, id);
+  while (filled(connection, free_bytes) > kMostFilled && delete_oldest_history(connection)) {
+  }
+}
+
+/// Does `work`, a transaction. Where there is no room for it, flights that are over give way to it.
+template <typename Work>
+auto with_room(sqlite::Connection& connection, Work work) -> decltype(work()) {
+  for (;;) {
+    try {
+      return work();
+    } catch (const IoFailure& error) {
+      if (error.code() != kStoreFull) throw;
+      sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
+      if (!delete_oldest_history(connection)) throw;
+      transaction.commit();
+    }
   }
 }
 
@@ -143,13 +163,26 @@ void forget_ended(sqlite::Connection& connection) {
 
 StoredStep step_of(const sqlite::Statement& row) { return {row.integer(0), row.integer(1), row.text(2)}; }
 
+/// Above the sequence number, in order.
+std::vector<StoredStep> last_steps(sqlite::Connection& connection, const std::string& id, std::int64_t sequence) {
+  sqlite::Statement rows(connection,
+                         "SELECT sequence, digest, answer FROM steps WHERE track = ?1 AND sequence > ?2 ORDER BY "
+                         "sequence DESC LIMIT ?3");
+  rows.with(id, sequence, kStepsHandedOut);
+  std::vector<StoredStep> last;
+  while (rows.step()) last.push_back(step_of(rows));
+  std::ranges::reverse(last);
+  return last;
+}
+
 }  // namespace
 
 const char* to_string(TrackEnd end) { return end == TrackEnd::kExpired ? "expired" : "finished"; }
 
 class TrackStore::Impl {
  public:
-  Impl(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
+  Impl(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes)
+      : path_(path), free_bytes_(std::move(free_bytes)) {
     const std::int64_t version = with([&] {
       require_writable_folder(path_);
       connection_.emplace(path_, sqlite::Access::kCreate,
@@ -203,6 +236,7 @@ class TrackStore::Impl {
     }
   }
   sqlite::Connection& connection() { return *connection_; }
+  std::int64_t free_bytes() const { return free_bytes_(path_); }
   /// Of work that runs: what failed before is over. A track that begins is too small to show that.
   void has_room() { problem_.reset(); }
   std::optional<std::string> problem() const {
@@ -218,15 +252,22 @@ class TrackStore::Impl {
                        path_.string());
   }
 
-  std::filesystem::path path_;
+  const std::filesystem::path path_;
+  const FreeBytes free_bytes_;
   mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;
   std::optional<FileIdentity> identity_;  ///< of the file when it was opened
   std::optional<std::string> problem_;
 };
 
-TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes)
-    : impl_(std::make_unique<Impl>(path, max_bytes)) {}
+std::int64_t free_bytes_beside(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::space(file, unknown).available;
+  return unknown ? std::numeric_limits<std::int64_t>::max() : static_cast<std::int64_t>(bytes);
+}
+
+TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes)
+    : impl_(std::make_unique<Impl>(path, max_bytes, std::move(free_bytes))) {}
 
 TrackStore::~TrackStore() = default;
 
@@ -235,13 +276,16 @@ std::optional<std::string> TrackStore::problem() const { return impl_->problem()
 void TrackStore::add(const StoredTrack& t) {
   impl_->with([&] {
     impl_->require_file();
-    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    make_room(impl_->connection());
-    sqlite::Statement(impl_->connection(),
-                      fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
-        .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
-        .run();
-    transaction.commit();
+    sqlite::Connection& connection = impl_->connection();
+    with_room(connection, [&] {
+      sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
+      make_room(connection, impl_->free_bytes());
+      sqlite::Statement(connection,
+                        fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
+          .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
+          .run();
+      transaction.commit();
+    });
   });
 }
 
@@ -277,18 +321,21 @@ bool TrackStore::add_step(const std::string& id, std::int64_t now_us, std::span<
                           const StoredStep& step) {
   return impl_->with([&] {
     impl_->require_file();
-    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    sqlite::Statement update(impl_->connection(),
-                             "UPDATE tracks SET touched_us = ?2, state = ?3 WHERE id = ?1 AND ended = '' RETURNING 1");
-    if (!update.with(id, now_us, state).step()) return false;
-    update.reset();
-    sqlite::Statement(impl_->connection(),
-                      "INSERT INTO steps (track, sequence, digest, answer) VALUES (?1, ?2, ?3, ?4)")
-        .with(id, step.sequence, step.digest, step.answer)
-        .run();
-    transaction.commit();
-    impl_->has_room();
-    return true;
+    sqlite::Connection& connection = impl_->connection();
+    const bool flies = with_room(connection, [&] {
+      sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
+      sqlite::Statement update(
+          connection, "UPDATE tracks SET touched_us = ?2, state = ?3 WHERE id = ?1 AND ended = '' RETURNING 1");
+      if (!update.with(id, now_us, state).step()) return false;
+      update.reset();
+      sqlite::Statement(connection, "INSERT INTO steps (track, sequence, digest, answer) VALUES (?1, ?2, ?3, ?4)")
+          .with(id, step.sequence, step.digest, step.answer)
+          .run();
+      transaction.commit();
+      return true;
+    });
+    if (flies) impl_->has_room();
+    return flies;
   });
 }
 
@@ -322,23 +369,20 @@ std::vector<StoredStep> TrackStore::steps_after(const std::string& id, std::int6
 
 std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence) {
   return impl_->with([&] {
-    sqlite::Transaction transaction(impl_->connection(), sqlite::Transaction::Kind::kWrite);
-    std::vector<StoredStep> last;
-    if (sequence) {
-      sqlite::Statement rows(impl_->connection(),
-                             "SELECT sequence, digest, answer FROM steps WHERE track = ?1 AND sequence > ?2 ORDER BY "
-                             "sequence DESC LIMIT ?3");
-      rows.with(id, *sequence, kStepsHandedOut);
-      while (rows.step()) last.push_back(step_of(rows));
-      std::ranges::reverse(last);
-    }
-    sqlite::Statement(impl_->connection(), "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1 AND ended = ''")
-        .with(id, end_column(how))
-        .run();
-    if (how == TrackEnd::kFinished) delete_steps(impl_->connection(), id);
-    forget_ended(impl_->connection());
-    make_room(impl_->connection());
-    transaction.commit();
+    sqlite::Connection& connection = impl_->connection();
+    std::vector<StoredStep> last = with_room(connection, [&] {
+      sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
+      std::vector<StoredStep> steps;
+      if (sequence) steps = last_steps(connection, id, *sequence);
+      sqlite::Statement(connection, "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1 AND ended = ''")
+          .with(id, end_column(how))
+          .run();
+      if (how == TrackEnd::kFinished) delete_steps(connection, id);
+      forget_ended(connection);
+      make_room(connection, impl_->free_bytes());
+      transaction.commit();
+      return steps;
+    });
     impl_->has_room();
     return last;
   });

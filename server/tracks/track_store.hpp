@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -38,10 +39,16 @@ struct StoredStep {
   std::string answer;
 };
 
+/// What the disk of a file has free for this process; no end of it where it does not tell.
+std::int64_t free_bytes_beside(const std::filesystem::path& file);
+
 class TrackStore {
  public:
-  /// Creates the file where there is none. Beyond `max_bytes` it is full.
-  TrackStore(const std::filesystem::path& path, std::int64_t max_bytes);
+  using FreeBytes = std::function<std::int64_t(const std::filesystem::path& file)>;
+
+  /// Creates the file where there is none. Beyond `max_bytes`, or what its disk has free, it is full: flights that are
+  /// over, of which steps are kept, give way then.
+  TrackStore(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes = free_bytes_beside);
   ~TrackStore();
   TrackStore(const TrackStore&) = delete;
   TrackStore& operator=(const TrackStore&) = delete;

@@ -118,6 +118,42 @@ TEST(TrackStore, GivesTheRoomOfTheOldestFlightsToThoseThatCome) {
   EXPECT_TRUE(store.last_step("t19"));
 }
 
+TEST(TrackStore, KeepsOfFlightsThatAreOverNoMoreThanHalfOfWhatTheDiskHasRoomFor) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty, [](const auto&) { return 400'000; });
+  for (int i = 0; i < 10; ++i) {
+    const std::string id = "t" + std::to_string(i);
+    store.add(track(id));
+    ASSERT_TRUE(store.add_step(id, 2 + i, state(100), {0, 0, std::string(100'000, 'a')}));
+    store.end(id, TrackEnd::kExpired);
+  }
+  EXPECT_FALSE(store.last_step("t5"));
+  EXPECT_TRUE(store.last_step("t9"));
+}
+
+TEST(TrackStore, GivesTheRoomOfFlightsThatAreOverToOneThatGoesOn) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", 1 << 20);
+  for (const char* id : {"t0", "t1", "t2", "t3"}) {
+    store.add(track(id));
+    ASSERT_TRUE(store.add_step(id, id[1], state(100), {0, 0, std::string(100'000, 'a')}));
+    store.end(id, TrackEnd::kExpired);
+  }
+  store.add(track("flying"));
+  const auto fly = [&](int i) { (void)store.add_step("flying", 99, state(100), {i, 0, std::string(100'000, 'b')}); };
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(code_of([&] { fly(i); }), "no error") << i;
+  EXPECT_FALSE(store.last_step("t0"));
+  EXPECT_TRUE(store.last_step("t3")) << "no more than it takes";
+  EXPECT_FALSE(store.problem());
+  for (int i = 7; i < 9; ++i) EXPECT_EQ(code_of([&] { fly(i); }), "no error") << i;
+  EXPECT_EQ(code_of([&] {
+              fly(9);
+              fly(10);
+            }),
+            "track-store-full")
+      << "all of it is of the one that flies";
+}
+
 TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);

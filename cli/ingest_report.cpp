@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "cli/shift_text.hpp"
+#include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/source_json.hpp"
 
@@ -22,14 +22,6 @@ std::int64_t expected_bytes(std::int64_t blocks, const std::filesystem::path& ma
   constexpr std::int64_t kBytesPerBlock = 50'000;  // evidence and fused tile with overviews
   constexpr std::int64_t kBytesOfTables = 150'000;
   return kBytesPerBlock * blocks + (std::filesystem::exists(map) ? 0 : kBytesOfTables);
-}
-
-/// Of the disk of the map; nullopt where its folder cannot be asked.
-std::optional<std::int64_t> free_bytes(const std::filesystem::path& map) {
-  std::error_code unknown;
-  const auto space = std::filesystem::space(map.has_parent_path() ? map.parent_path() : ".", unknown);
-  if (unknown) return std::nullopt;
-  return static_cast<std::int64_t>(space.available);
 }
 
 }  // namespace
@@ -59,7 +51,7 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
 void print_plan(nlohmann::json json, std::int64_t blocks, const std::filesystem::path& map, bool as_json) {
   constexpr double kBytesPerMb = 1e6;
   const std::int64_t expected = expected_bytes(blocks, map);
-  const std::optional<std::int64_t> room = free_bytes(map);
+  const std::optional<std::int64_t> room = free_bytes_beside(map);
   json["expected_bytes"] = expected;
   if (room) json["free_bytes"] = *room;
   if (room && expected > *room) {

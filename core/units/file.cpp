@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -48,6 +49,13 @@ std::string read_named_file(const std::filesystem::path& file, const char* code)
   if (bytes) return *std::move(bytes);
   throw NotFound(code, fmt::format("{} cannot be read ({}): check its name and the permission to read it",
                                    file.string(), std::generic_category().message(reason)));
+}
+
+std::optional<std::int64_t> free_bytes_beside(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", unknown);
+  if (unknown) return std::nullopt;
+  return static_cast<std::int64_t>(space.available);
 }
 
 }  // namespace roadfix

@@ -1,6 +1,7 @@
-// Whole files.
+// Whole files, and the room for them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,5 +13,8 @@ std::optional<std::string> read_file(const std::filesystem::path& file);
 
 /// The same of a file that has to be there. Throws NotFound `code`, which tells why the system does not give it.
 std::string read_named_file(const std::filesystem::path& file, const char* code);
+
+/// What the disk of a file's folder has free for this process; nullopt where it does not tell.
+std::optional<std::int64_t> free_bytes_beside(const std::filesystem::path& file);
 
 }  // namespace roadfix

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/units/file.hpp"
+
 namespace roadfix::server {
 
 enum class TrackEnd { kFinished, kExpired };
@@ -39,12 +41,11 @@ struct StoredStep {
   std::string answer;
 };
 
-/// What the disk of a file has free for this process; no end of it where it does not tell.
-std::int64_t free_bytes_beside(const std::filesystem::path& file);
+class TrackFile;
 
 class TrackStore {
  public:
-  using FreeBytes = std::function<std::int64_t(const std::filesystem::path& file)>;
+  using FreeBytes = std::function<std::optional<std::int64_t>(const std::filesystem::path& file)>;
 
   /// Creates the file where there is none. Beyond `max_bytes`, or what its disk has free, it is full: flights that are
   /// over, of which steps are kept, give way then.
@@ -80,8 +81,8 @@ class TrackStore {
   std::vector<StoredStep> end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence = {});
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<TrackFile> file_;
+  FreeBytes free_bytes_;
 };
 
 }  // namespace roadfix::server

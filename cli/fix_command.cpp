@@ -42,6 +42,7 @@ struct FixArguments {
   double heading_range_deg = 180.0;
   std::string calibration;
   FixOptions fix;
+  std::optional<std::chrono::milliseconds> time_limit;
   bool as_json = false;
   std::string csv;
 };
@@ -75,12 +76,13 @@ struct Search {
   MapView view;
   Prior prior;
   FixOptions options;
+  std::optional<std::chrono::milliseconds> time_limit;
 };
 
 Search search_of(const FixArguments& options) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // all pictures search the same map
   const std::size_t cache_bytes = are_several(options.pictures) ? kSearchCacheBytes : 0;
-  Search search{view_with_notes(options.map, cache_bytes), prior_of(options), options.fix};
+  Search search{view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit};
   search_region(search.view, search.prior, options.fix);  // before the frame, in which roads are looked for
   if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
   return search;
@@ -89,7 +91,7 @@ Search search_of(const FixArguments& options) {
 Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
   FixOptions options = search.options;
   options.own_frame = std::move(input.own_frame);
-  options.stop = stop_on_signals();
+  options.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.progress = std::move(progress);
   return locate(search.view, input.map, search.prior, options);
 }
@@ -202,7 +204,7 @@ void add_fix_command(CLI::App& app) {
   add_seconds_option(*command, "--proof", o->fix.proof_time,
                      "Search this many seconds for a better place than the best candidate")
       ->check(positive());
-  add_seconds_option(*command, "--time-limit", o->fix.time_limit,
+  add_seconds_option(*command, "--time-limit", o->time_limit,
                      "End the search after this many seconds and report what it has")
       ->check(positive());
   auto* json = command->add_flag(

@@ -16,7 +16,7 @@ namespace {
 class LibraryLocalizer : public Localizer {
  public:
   LibraryLocalizer(const MapView& map, const TrackSettings& settings, std::stop_token stop) : tracker_(map, settings) {
-    limits_.stop = std::move(stop);
+    limits_.deadline = Deadline(std::move(stop));
   }
 
   TrackEstimate advance(const Report& step) override {

@@ -66,8 +66,7 @@ void refuse_contradicting_frames(Fix& fix) {
   fix.modes.front().weight = fix.probability;
 }
 
-SearchOptions search_options_of(const FixOptions& options, const MapView& map,
-                                std::chrono::steady_clock::time_point started) {
+SearchOptions search_options_of(const FixOptions& options, const MapView& map) {
   SearchOptions result;
   result.max_modes = options.max_modes;
   result.scale_range = options.scale_range;
@@ -76,9 +75,8 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map,
   result.straight_roads = options.straight_roads;
   result.threads = options.threads;
   result.progress = options.progress;
-  result.stop = options.stop;
+  result.deadline = options.deadline;
   result.proof_time = options.proof_time;
-  if (options.time_limit) result.deadline = started + *options.time_limit;
   return result;
 }
 
@@ -139,8 +137,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
     if (auto refusal = refusal_of(*seen)) return refused(map, *std::move(refusal));
   }
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
-  SearchResult found = search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region,
-                              search_options_of(options, map, started));
+  SearchResult found =
+      search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region, search_options_of(options, map));
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
   const Decision decision = decide(found, calibration, options.confidence);
   Fix fix = fix_of(map, found, decision);

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/prior.hpp"
+#include "core/match/deadline.hpp"
 #include "core/units/progress.hpp"
 
 namespace roadfix {
@@ -26,8 +26,7 @@ struct FixOptions {
   /// [0, kMaxScaleRange].
   double scale_range = 0.0;
   std::optional<double> max_search_km2{};  ///< beyond it LimitExceeded
-  /// After so long the search ends as it is: no_fix with what it has.
-  std::optional<std::chrono::milliseconds> time_limit{};
+  Deadline deadline{};                     ///< at it the search ends as it is: no_fix with what it has
   /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
@@ -40,7 +39,6 @@ struct FixOptions {
   std::optional<FeatureMap> own_frame{};
   int threads = 1;
   OnProgress progress{};                             ///< see SearchOptions
-  std::stop_token stop{};                            ///< Interrupted when requested
   std::shared_ptr<const Calibration> calibration{};  ///< nullptr = the one that is shipped
 };
 

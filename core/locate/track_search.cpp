@@ -1,7 +1,6 @@
 #include "core/locate/track_search.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/locate/other_places.hpp"
 
@@ -16,11 +15,7 @@ std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& pr
                                      double time_share) const {
   if (settings_.max_search_km2 && region_of(map_, prior).area_km2() > *settings_.max_search_km2) return std::nullopt;
   options.threads = limits_.threads;
-  if (limits_.searches_end) {
-    const auto left = time_share * (*limits_.searches_end - std::chrono::steady_clock::now());
-    options.time_limit = std::max(std::chrono::ceil<std::chrono::milliseconds>(left), std::chrono::milliseconds(0));
-  }
-  options.stop = limits_.stop;
+  options.deadline = limits_.deadline.after(time_share);
   options.calibration = settings_.calibration;
   return locate(map_, features, prior, options);
 }

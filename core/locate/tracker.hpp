@@ -64,8 +64,8 @@ class Tracker {
   /// Throws InvalidInput where number, time and movement of the step cannot follow: "step-late" for a sequence number
   /// not above the last, "time-backwards", "impossible-speed".
   static void require_possible(const TrackerState& before, const StepInput& step);
-  /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted by `stop`,
-  /// and by `searches_end` at the first step.
+  /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted when
+  /// asked to stop, and at the deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
   /// Thinned to at most `count` poses, every k-th particle.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;

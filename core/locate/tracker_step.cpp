@@ -105,7 +105,7 @@ void Tracker::Step::see() {
 
 ParticleMatches Tracker::Step::matches(const MapView& map, const FeatureMap& features) const {
   return match_particles(map, features, filter_.particles(), settings_.vehicle.scale_range, limits_.threads,
-                         limits_.stop);
+                         limits_.deadline.stop());
 }
 
 /// Neither the frame nor the ground that it is believed to be of has roads (a lake).

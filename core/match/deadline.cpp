@@ -1,5 +1,7 @@
 #include "core/match/deadline.hpp"
 
+#include <algorithm>
+
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -17,7 +19,13 @@ Deadline Deadline::after(double share) const {
   if (!end_) return *this;
   const auto now = std::chrono::steady_clock::now();
   const std::chrono::duration<double> left = *end_ - now;
-  return {stop_, now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(share * left)};
+  return Deadline(stop_, now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(share * left));
+}
+
+Deadline Deadline::within(std::optional<std::chrono::milliseconds> time) const {
+  if (!time) return *this;
+  const auto end = std::chrono::steady_clock::now() + *time;
+  return Deadline(stop_, std::min(end, end_.value_or(end)));
 }
 
 }  // namespace roadfix

@@ -13,14 +13,19 @@ void require_not_stopped(const std::stop_token& stop);
 
 class Deadline {
  public:
+  Deadline() = default;  ///< never
   /// `end`: nullopt = no limit.
-  Deadline(std::stop_token stop, std::optional<std::chrono::steady_clock::time_point> end)
+  explicit Deadline(std::stop_token stop, std::optional<std::chrono::steady_clock::time_point> end = {})
       : stop_(std::move(stop)), end_(end) {}
 
   /// Whether the time is over. Throws as require_not_stopped().
   bool over() const;
   /// A deadline after this share, in [0, 1], of the time that is left.
   Deadline after(double share) const;
+  /// The same, or so long from now where that is sooner; nullopt = the same.
+  Deadline within(std::optional<std::chrono::milliseconds> time) const;
+
+  const std::stop_token& stop() const { return stop_; }
 
  private:
   std::stop_token stop_;

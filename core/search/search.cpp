@@ -39,10 +39,9 @@ SearchResult result_of(const SearchLevels& levels, const Scanned& scanned) {
 
 SearchResult searched(const GridReader& read, double finest_cell_m, const FeatureMap& features,
                       const PoseRegion& region, const SearchOptions& options) {
-  const Deadline deadline(options.stop, options.deadline);
   const SearchLevels levels(read, finest_cell_m, features, region, options);
   const SearchScan scan(levels, options);
-  Scanned scanned = scan.run(deadline);
+  Scanned scanned = scan.run();
   SearchResult result = result_of(levels, scanned);
   std::vector<LatticePose> candidates = std::move(scanned.candidates);
   const auto prove_at = [&](int level) {
@@ -50,18 +49,18 @@ SearchResult searched(const GridReader& read, double finest_cell_m, const Featur
       result.proof = prove(levels, options, candidates);
     }
   };
-  result.refined = refine(levels.coarse(), 1, 1, deadline, candidates);
+  result.refined = refine(levels.coarse(), 1, 1, options.deadline, candidates);
   prove_at(levels.coarsest());
   for (int k = levels.coarsest() - 1; k >= 0; --k) {
     candidates = levels.distinct(candidates, levels.at(k + 1), 2.5 * result.coarse_cell_m, 2, levels.followed(k + 1));
     descend(candidates);
-    result.refined = refine(levels.at(k), 2, 2, deadline, candidates) && result.refined;
+    result.refined = refine(levels.at(k), 2, 2, options.deadline, candidates) && result.refined;
     prove_at(k);
   }
   candidates = levels.distinct(candidates, levels.finest(), scan.separation_m(), kDistinctBins, kSurvivors);
   const RankedPoses poses(levels, candidates);
   set_rivals(levels, scan, options, poses, result.background);
-  FoundModes found = find_modes(levels, scan, options, deadline, poses, result.background);
+  FoundModes found = find_modes(levels, scan, options, poses, result.background);
   result.modes = std::move(found.modes);
   result.nearby = found.nearby;
   result.outside = std::move(found.outside);

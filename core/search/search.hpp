@@ -16,11 +16,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
 #include "core/grid/feature_map.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/match/deadline.hpp"
 #include "core/search/search_cache.hpp"
 #include "core/units/pose_region.hpp"
 #include "core/units/progress.hpp"
@@ -48,8 +48,7 @@ struct SearchOptions {
   /// So many of the longest straight lines do not count in SearchMode::other_roads_m.
   int straight_roads = 2;
   std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
-  std::stop_token stop;
-  std::optional<std::chrono::steady_clock::time_point> deadline;
+  Deadline deadline;
   /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
   /// at a time.
   OnProgress progress;

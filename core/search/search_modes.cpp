@@ -118,8 +118,8 @@ void set_rivals(const SearchLevels& levels, const SearchScan& scan, const Search
 }
 
 FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options,
-                      const Deadline& deadline, const RankedPoses& poses, const ScoreBackground& background) {
-  ModeFinder finder(levels.finest(), background, deadline);
+                      const RankedPoses& poses, const ScoreBackground& background) {
+  ModeFinder finder(levels.finest(), background, options.deadline);
   FoundModes found;
   found.modes = finder.first_of(poses.inside, kRankedModes);
   if (found.modes.empty()) return found;
@@ -127,7 +127,7 @@ FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const 
     append_new(finder, finder.first_of(poses.inside, static_cast<std::size_t>(options.max_modes)), found.modes);
   }
   SearchMode& best = found.modes.front();
-  const bool looks_nearby = !deadline.over();
+  const bool looks_nearby = !options.deadline.over();
   if (looks_nearby) found.nearby = nearby_mode(levels, scan.separation_m(), best, finder);
   if (found.nearby && found.nearby->score > best.score) std::swap(*found.nearby, best);
   best.other_roads_m = other_roads_m(levels.finest(), best, options.straight_roads);

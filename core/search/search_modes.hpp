@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/match/deadline.hpp"
 #include "core/search/search_levels.hpp"
 #include "core/search/search_scan.hpp"
 
@@ -32,6 +31,6 @@ struct FoundModes {
 
 /// Modes from the best poses within the region; those that were flanks of one peak give one.
 FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options,
-                      const Deadline& deadline, const RankedPoses& poses, const ScoreBackground& background);
+                      const RankedPoses& poses, const ScoreBackground& background);
 
 }  // namespace roadfix

@@ -1,7 +1,6 @@
 #include "core/search/search_proof.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "core/proof/branch_and_bound.hpp"
@@ -25,14 +24,6 @@ BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, con
   return bounded;
 }
 
-/// What follows the best pose to the finest cells needs the rest of the time.
-Deadline end_of_proof(const SearchOptions& options) {
-  const auto now = std::chrono::steady_clock::now();
-  auto end = now + options.proof_time;
-  if (options.deadline) end = std::min(end, now + (*options.deadline - now) / 2);
-  return {options.stop, end};
-}
-
 }  // namespace
 
 SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates) {
@@ -40,7 +31,8 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
   SearchProof proof{
       level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), bounded.known, 1.0, false, 0.0};
-  const Deadline deadline = end_of_proof(options);
+  // What follows the best pose to the finest cells needs the rest of the time.
+  const Deadline deadline = options.deadline.after(0.5).within(options.proof_time);
   if (deadline.over()) return proof;
   const int largest = level.scales.reach();
   const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);

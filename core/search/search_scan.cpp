@@ -82,18 +82,18 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
 
 /// Scores spread the farther the coarser the cells are: of a coarser scan the spread is told from some poses in the
 /// cells that calibrations are learned in.
-std::optional<double> SearchScan::finer_spread(const Deadline& deadline) const {
+std::optional<double> SearchScan::finer_spread() const {
   if (levels_.spread_level() == levels_.coarsest()) return std::nullopt;
-  return score_spread(levels_.at(levels_.spread_level()), scanned_, deadline);
+  return score_spread(levels_.at(levels_.spread_level()), scanned_, options_.deadline);
 }
 
-SearchScan::Maxima SearchScan::maxima(const Deadline& deadline) const {
+SearchScan::Maxima SearchScan::maxima() const {
   const Level& coarse = levels_.coarse();
   const int largest = coarse.scales.reach();
   ScanRequest asked = request();
   const LatticeIndex origin = asked.positions.origin;
   const std::shared_ptr<const ScanMap> map = map_below(asked.positions);
-  const Deadline end = deadline.after(kScanTimeShare);
+  const Deadline end = options_.deadline.after(kScanTimeShare);
   Maxima all;
   all.headings = asked.headings.size();
   std::size_t before = 0;
@@ -118,16 +118,16 @@ SearchScan::Maxima SearchScan::maxima(const Deadline& deadline) const {
   return all;
 }
 
-Scanned SearchScan::run(const Deadline& deadline) const {
+Scanned SearchScan::run() const {
   const Level& coarse = levels_.coarse();
-  const Maxima found = maxima(deadline);
+  const Maxima found = maxima();
   Scanned scanned;
   scanned.poses = found.poses;
   scanned.share = found.share;
   scanned.headings = static_cast<int>(found.headings);
   if (found.poses > 0) {
     const double sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
-    scanned.sd = finer_spread(deadline).value_or(sd);
+    scanned.sd = finer_spread().value_or(sd);
   }
   const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
     return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);

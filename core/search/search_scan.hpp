@@ -27,7 +27,7 @@ class SearchScan {
   SearchScan(const SearchLevels& levels, const SearchOptions& options);
 
   /// At the deadline it ends with what it has.
-  Scanned run(const Deadline& deadline) const;
+  Scanned run() const;
 
   /// Places nearer than this are one.
   double separation_m() const { return separation_m_; }
@@ -47,8 +47,8 @@ class SearchScan {
   PoseRegion enlarged() const;
   ScanRequest request() const;
   std::shared_ptr<const ScanMap> map_below(const GridGeometry& positions) const;
-  Maxima maxima(const Deadline& deadline) const;
-  std::optional<double> finer_spread(const Deadline& deadline) const;
+  Maxima maxima() const;
+  std::optional<double> finer_spread() const;
 
   const SearchLevels& levels_;
   const SearchOptions& options_;

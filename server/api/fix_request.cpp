@@ -87,23 +87,13 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   options.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(0.0);
   const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
   options.proof_time = milliseconds_of(proof_s);
-  if (const auto limit_s = fields.optional_number("time_limit_s", {0.0, 3600.0, true})) {
-    options.time_limit = milliseconds_of(*limit_s);
-  }
   return options;
 }
 
-void shorten(FixOptions& options, http::Clock::time_point deadline) {
-  constexpr double kShare = 0.95;
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(kShare * time_left(deadline));
-  options.time_limit = std::min(left, options.time_limit.value_or(left));
-}
-
-std::chrono::milliseconds time_left(http::Clock::time_point deadline) {
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - http::Clock::now());
-  if (left.count() <= 0)
-    throw Interrupted("request-deadline", "the time limit ended before the answer was ready; try again");
-  return left;
+std::optional<std::chrono::milliseconds> parse_time_limit(const Fields& fields) {
+  const auto limit_s = fields.optional_number("time_limit_s", {0.0, 3600.0, true});
+  if (!limit_s) return std::nullopt;
+  return milliseconds_of(*limit_s);
 }
 
 std::vector<GeoPose> parse_poses(const Fields& fields, const Limits& limits) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/locate/fix.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/limits.hpp"
-#include "server/http/message.hpp"
 
 namespace roadfix::api {
 
@@ -18,14 +18,10 @@ const std::vector<std::string>& prior_fields();
 Prior parse_prior(const Fields& fields);
 
 const std::vector<std::string>& fix_option_fields();
-/// Those, and the limit of the search area.
+/// Those but the time limit, and the limit of the search area.
 FixOptions parse_fix_options(const Fields& fields, const Limits& limits);
-
-/// Ends the search early enough before the deadline to answer with what it has. Throws as time_left().
-void shorten(FixOptions& options, http::Clock::time_point deadline);
-
-/// Throws Interrupted ("request-deadline") when nothing is left.
-std::chrono::milliseconds time_left(http::Clock::time_point deadline);
+/// From where the search begins; nullopt where none is asked for.
+std::optional<std::chrono::milliseconds> parse_time_limit(const Fields& fields);
 
 /// "poses": objects with lat, lon, heading_deg. Throws InvalidField with the place ("poses[3].lat") or LimitExceeded
 /// ("too-many-poses").

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/units/error.hpp"
+
 namespace roadfix::api {
 namespace {
 
@@ -23,5 +25,13 @@ TimeLimit::TimeLimit(http::Clock::time_point deadline, std::function<bool()> aba
           wake_.wait_until(lock, ended, look, [&] { return ended.stop_requested(); });
         }
       }) {}
+
+Deadline search_end(http::Clock::time_point deadline, std::stop_token stop, double share) {
+  const Deadline end(std::move(stop), deadline);
+  if (http::Clock::now() >= deadline) {
+    throw Interrupted("request-deadline", "the time limit ended before the answer was ready; try again");
+  }
+  return end.after(share);
+}
 
 }  // namespace roadfix::api

@@ -1,4 +1,5 @@
-// A stop token that is requested at a deadline, or when the client hangs up, for work that knows tokens and no clock.
+// What ends work in time for the answer: a stop token that is requested at a deadline, or when the client hangs up, for
+// work that knows tokens and no clock; a deadline for searches.
 #pragma once
 
 #include <condition_variable>
@@ -8,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/match/deadline.hpp"
 #include "server/http/message.hpp"
 
 namespace roadfix::api {
@@ -34,5 +36,9 @@ class HangUp {
  private:
   TimeLimit watch_;
 };
+
+/// After this share of the time that is left: early enough to answer with what was found. Throws Interrupted
+/// ("request-deadline") when none is left.
+Deadline search_end(http::Clock::time_point deadline, std::stop_token stop, double share = 0.95);
 
 }  // namespace roadfix::api

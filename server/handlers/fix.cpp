@@ -41,15 +41,15 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
+  const auto time_limit = api::parse_time_limit(content.fields);
   search_region(map->view, prior, options);  // before the frame, which costs a turn among the searches
   const api::Features features = features_of(service, request, content, map->view);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
-  api::shorten(options, request.deadline);
   const api::HangUp hang_up(request.abandoned);
-  options.stop = hang_up.token();
   const SearchThreads::Share share(service.search_threads);
   options.threads = share.threads();
+  options.deadline = api::search_end(request.deadline, hang_up.token()).within(time_limit);
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features);
   const std::string status = answer.at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", status));

@@ -28,11 +28,11 @@ constexpr int kTilesDrawn = 1;            ///< at a time
 constexpr std::size_t kPlaceBytes = 160;  // that one takes beside its key and a copy of it
 constexpr std::size_t kPlacesBytes = std::size_t{16} << 20;
 
-FixOptions fix_options(const Service& service, const http::Request& request) {
+FixOptions fix_options(const Service& service, const http::Request& request, std::stop_token stop = {}) {
   FixOptions options;
   options.max_search_km2 = service.limits.search_km2;
   options.calibration = service.calibration;
-  api::shorten(options, request.deadline);
+  options.deadline = api::search_end(request.deadline, std::move(stop));
   return options;
 }
 
@@ -43,11 +43,10 @@ http::Response get_localizability(const Service& service, const http::Request& r
   query.position = {fields.number("lat", api::kLatitude), fields.number("lon", api::kLongitude)};
   query.footprint_m = fields.number("footprint_m", kFootprint);
   query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
-  query.fix = fix_options(service, request);
+  const api::HangUp hang_up(request.abandoned);
+  query.fix = fix_options(service, request, hang_up.token());
   const SearchThreads::Share share(service.search_threads);
   query.fix.threads = share.threads();
-  const api::HangUp hang_up(request.abandoned);
-  query.fix.stop = hang_up.token();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = api::map_json(map->name, map->view.version);
   return json_response(answer);

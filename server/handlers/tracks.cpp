@@ -143,9 +143,8 @@ http::Response take_step(const Service& service, const http::Request& request, P
   StepLimits limits;
   const SearchThreads::Share share(service.search_threads);
   limits.threads = share.threads();
-  constexpr int kRestOfStep = 10;  // a tenth of the time
-  limits.searches_end = request.deadline - api::time_left(request.deadline) / kRestOfStep;
-  limits.stop = limit.token();
+  constexpr double kSearchShare = 0.9;
+  limits.deadline = api::search_end(request.deadline, limit.token(), kSearchShare);
   return step_response(service, step,
                        service.steps.take(track.id, input, digest, limits, request.received, detector_used));
 }

@@ -213,7 +213,7 @@ TEST_F(NoFix, RefusesWhatItCannotUse) {
 
 TEST_F(NoFix, EndsAtItsTimeLimitAndSaysWhatItHas) {
   FixOptions options;
-  options.time_limit = std::chrono::milliseconds(1);
+  options.deadline = Deadline().within(std::chrono::milliseconds(1));
   const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 160, 160, 2.0);
   const Fix fix = locate(view_, window, {}, options);
   EXPECT_EQ(fix.status, FixStatus::kNoFix);

@@ -152,7 +152,7 @@ TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   StepInput late = flight.step();
   late.time_us += 700'000'000;  // the belief is thrown away, and a search shall find it anew
   StepLimits limits;
-  limits.searches_end = std::chrono::steady_clock::now();
+  limits.deadline = Deadline({}, std::chrono::steady_clock::now());
   ASSERT_NO_THROW(state_ = tracker.advance(state_, late, limits).state);
   EXPECT_EQ(state_.last_search, state_.measured) << "it was tried";
   EXPECT_EQ(state_.sequence, late.sequence);
@@ -207,7 +207,7 @@ TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
   bool recovered = false;
   for (int i = 0; i < 40 && !recovered; ++i) {
     StepLimits limits;
-    limits.searches_end = steady_clock::now() + time;
+    limits.deadline = Deadline({}, steady_clock::now() + time);
     slow_until = steady_clock::now() + time / 3;
     StepResult result = tracker.advance(state_, flight.step(), limits);
     state_ = std::move(result.state);

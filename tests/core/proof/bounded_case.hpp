@@ -135,7 +135,7 @@ inline void expect_brute_force_agrees(const BoundedCase& given) {
   const LatticePose best = given.brute_force();
   BoundedSearch search = given.search;
   search.known = std::nextafter(best.score, 0.0);
-  const BoundedResult found = search_with_bound(search, Deadline({}, {}));
+  const BoundedResult found = search_with_bound(search, Deadline());
   EXPECT_TRUE(found.complete);
   EXPECT_EQ(found.bound, best.score);
   ASSERT_EQ(found.better.has_value(), best.score > 0.0);

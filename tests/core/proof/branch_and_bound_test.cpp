@@ -28,7 +28,7 @@ TEST(BranchAndBound, HoldsWherePositionsOfABlockDifferInHowSureTheirRoadsAre) {
 TEST(BranchAndBound, NeedsNoPoseToBeginWith) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const BoundedCase given(seed);
-    const BoundedResult found = search_with_bound(given.search, Deadline({}, {}));
+    const BoundedResult found = search_with_bound(given.search, Deadline());
     EXPECT_EQ(found.bound, given.brute_force().score);
   }
 }
@@ -36,7 +36,7 @@ TEST(BranchAndBound, NeedsNoPoseToBeginWith) {
 TEST(BranchAndBound, ProvesThatTheBestPoseIsTheBest) {
   BoundedCase given(3);
   given.search.known = given.brute_force().score;
-  const BoundedResult found = search_with_bound(given.search, Deadline({}, {}));
+  const BoundedResult found = search_with_bound(given.search, Deadline());
   EXPECT_FALSE(found.better.has_value());
   EXPECT_TRUE(found.complete);
   EXPECT_EQ(found.bound, given.search.known);
@@ -56,9 +56,9 @@ TEST(BranchAndBound, ManyThreadsFindWhatOneFinds) {
   for (std::uint64_t seed = 1; seed < 40; seed += 4) {
     SCOPED_TRACE(seed);
     BoundedCase given(seed);
-    const BoundedResult one = search_with_bound(given.search, Deadline({}, {}));
+    const BoundedResult one = search_with_bound(given.search, Deadline());
     given.search.threads = 4;
-    const BoundedResult four = search_with_bound(given.search, Deadline({}, {}));
+    const BoundedResult four = search_with_bound(given.search, Deadline());
     EXPECT_EQ(one.bound, four.bound);
     EXPECT_EQ(one.complete, four.complete);
     ASSERT_EQ(one.better.has_value(), four.better.has_value());

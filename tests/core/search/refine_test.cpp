@@ -12,7 +12,7 @@
 namespace roadfix {
 namespace {
 
-const Deadline kUnlimited({}, std::nullopt);
+const Deadline kUnlimited;
 
 struct RefinedTown : testing::SeenTown {
   explicit RefinedTown(std::uint64_t seed) : SeenTown(seed, 600, 500, 200.0, 90, 80) {}

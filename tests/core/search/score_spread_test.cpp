@@ -7,7 +7,7 @@
 namespace roadfix {
 namespace {
 
-const Deadline kNoDeadline({}, std::nullopt);
+const Deadline kNoDeadline;
 
 struct Question : testing::SeenTown {
   Question(std::uint64_t seed, int cells) : SeenTown(seed, 800, 700, 300.0, cells, cells) {}

@@ -46,7 +46,7 @@ TEST(SearchProof, ReadsNoMapWhenTimeIsOver) {
   };
   SearchOptions options;
   options.proof_time = std::chrono::minutes(5);
-  options.deadline = std::chrono::steady_clock::now();
+  options.deadline = Deadline({}, std::chrono::steady_clock::now());
   const SearchResult found = search(counting, 2.0, seen, all_poses_in(map.geometry.box()), options);
   EXPECT_EQ(read, 0);
   ASSERT_TRUE(found.proof.has_value());

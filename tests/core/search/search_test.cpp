@@ -243,7 +243,7 @@ TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   const PoseRegion region = all_poses_in(map.geometry.box());
   const FeatureMap window = cut_out(map, pose_within(region.box, 200.0, random), 128, 128, 2.0);
   SearchOptions options;
-  options.deadline = std::chrono::steady_clock::now();
+  options.deadline = Deadline({}, std::chrono::steady_clock::now());
   const SearchResult nothing = search(reader_of(map), 2.0, window, region, options);
   EXPECT_EQ(nothing.scanned_share, 0.0);
   EXPECT_FALSE(nothing.complete());
@@ -251,7 +251,7 @@ TEST(Search, HasSeenNothingAtItsDeadlineAndEndsWhenStopped) {
   std::stop_source source;
   source.request_stop();
   options = {};
-  options.stop = source.get_token();
+  options.deadline = Deadline(source.get_token());
   EXPECT_EQ(testing::code_of([&] { search(reader_of(map), 2.0, window, region, options); }), "search-stopped");
 }
 

@@ -91,7 +91,7 @@ TEST(FixOptionsRequest, SearchesWithoutProofOrLimitUnlessItIsAskedTo) {
   EXPECT_EQ(options.max_modes, 8);
   EXPECT_EQ(options.scale_range, 0.0);
   EXPECT_EQ(options.proof_time, milliseconds(0));
-  EXPECT_FALSE(options.time_limit);
+  EXPECT_FALSE(parse_time_limit(fields_of(json::object(), fix_option_fields())));
   EXPECT_EQ(options.max_search_km2, 12.5) << "which is the operator's to say";
 }
 
@@ -112,24 +112,12 @@ TEST(FixOptionsRequest, RoundsTimesUpSoThatALittleIsNotNone) {
   EXPECT_EQ(proof(0.0), milliseconds(0));
   EXPECT_EQ(proof(1e-6), milliseconds(1));
   EXPECT_EQ(proof(1.5), milliseconds(1500));
-  EXPECT_EQ(options_of({{"time_limit_s", 1e-6}}).time_limit, milliseconds(1));
-  EXPECT_EQ(options_of({{"time_limit_s", 2}}).time_limit, milliseconds(2000));
-  EXPECT_EQ(refused([] { options_of({{"time_limit_s", 0}}); }), "parameter-out-of-range time_limit_s");
-}
-
-TEST(FixOptionsRequest, EndsItsSearchBeforeTheRequestHasToBeAnswered) {
-  const auto deadline = http::Clock::now() + std::chrono::seconds(1000);
-  FixOptions options;
-  shorten(options, deadline);
-  EXPECT_LE(options.time_limit.value(), milliseconds(950'000));
-  EXPECT_GT(options.time_limit.value(), milliseconds(850'000));
-  options.time_limit = std::chrono::hours(1);
-  shorten(options, deadline);
-  EXPECT_LE(options.time_limit.value(), milliseconds(950'000)) << "though the client would wait";
-  options.time_limit = milliseconds(200);
-  shorten(options, deadline);
-  EXPECT_EQ(options.time_limit, milliseconds(200)) << "as the client asks";
-  EXPECT_EQ(testing::code_of([&] { shorten(options, http::Clock::now() - milliseconds(1)); }), "request-deadline");
+  const auto limit = [](double seconds) {
+    return parse_time_limit(fields_of({{"time_limit_s", seconds}}, fix_option_fields()));
+  };
+  EXPECT_EQ(limit(1e-6), milliseconds(1));
+  EXPECT_EQ(limit(2.0), milliseconds(2000));
+  EXPECT_EQ(refused([&] { limit(0.0); }), "parameter-out-of-range time_limit_s");
 }
 
 std::vector<GeoPose> poses_of(const json& poses, const Limits& limits = {}) {

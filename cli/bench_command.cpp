@@ -153,7 +153,7 @@ void run_bench(BenchArguments& arguments) {
       arguments.cache.empty() ? default_cache() : std::filesystem::path(arguments.cache),
       [&](const std::string& name, std::int64_t done, std::int64_t total) { building.update(name, done, total); },
       stop_on_signals()};
-  options.fix.deadline = Deadline(options.maps.stop);
+  options.fix.search.deadline = Deadline(options.maps.stop);
   if (!arguments.calibration_file.empty()) options.fix.calibration = read_calibration(arguments.calibration_file);
   options.progress = [&](const std::string& task, std::int64_t done, std::int64_t total) {
     asking.update(task, done, total);

@@ -91,8 +91,8 @@ Search search_of(const FixArguments& options) {
 Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
   FixOptions options = search.options;
   options.own_frame = std::move(input.own_frame);
-  options.deadline = Deadline(stop_on_signals()).within(search.time_limit);
-  options.progress = std::move(progress);
+  options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
+  options.search.progress = std::move(progress);
   return locate(search.view, input.map, search.prior, options);
 }
 
@@ -177,12 +177,12 @@ void add_fix_command(CLI::App& app) {
       ->capture_default_str()
       ->check(between(0.5, 0.999999));
   add_calibration_option(*command, o->calibration);
-  command->add_option("--modes", o->fix.max_modes, "Maximum number of places to report")
+  command->add_option("--modes", o->fix.search.max_modes, "Maximum number of places to report")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command
       ->add_option(
-          "--scale-range", o->fix.scale_range,
+          "--scale-range", o->fix.search.scale_range,
           "The ground may be smaller or larger by this share: roughly known altitude, or a lens that --exif knows "
           "from FocalLengthIn35mmFilm alone (0.1)")
       ->capture_default_str()
@@ -200,8 +200,8 @@ void add_fix_command(CLI::App& app) {
                    "--agl: 0.5, and what errors of roll and pitch do to the ground that a leaning camera sees; "
                    "otherwise 0)")
       ->check(not_negative(180.0));
-  add_threads_option(*command, "--threads", o->fix.threads, "Threads of the search");
-  add_seconds_option(*command, "--proof", o->fix.proof_time,
+  add_threads_option(*command, "--threads", o->fix.search.threads, "Threads of the search");
+  add_seconds_option(*command, "--proof", o->fix.search.proof_time,
                      "Search this many seconds for a better place than the best candidate")
       ->check(positive());
   add_seconds_option(*command, "--time-limit", o->time_limit,

@@ -67,7 +67,7 @@ void run_localizability(const LocalizabilityArguments& arguments) {
   const MapView view = view_with_notes(arguments.map, kSearchCacheBytes);
   SurveyOptions options = arguments.survey;
   if (!arguments.calibration.empty()) options.query.fix.calibration = read_calibration(arguments.calibration);
-  options.query.fix.deadline = Deadline(stop_on_signals());
+  options.query.fix.search.deadline = Deadline(stop_on_signals());
   MapSurvey found;
   {
     Progress progress("searching", "places");

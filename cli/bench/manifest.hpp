@@ -56,7 +56,7 @@ struct QuerySet {
   std::optional<double> prior_radius_m;      ///< nullopt = the whole map
   std::optional<double> prior_beyond_m;      ///< the truth is so far outside of that circle; nullopt = it is inside
   std::optional<Angle> prior_heading_range;  ///< on both sides of a heading that is told, and holds the true one
-  double prior_scale_range = 0.0;            ///< how well the size of the ground is known: FixOptions::scale_range
+  double prior_scale_range = 0.0;            ///< how well the size of the ground is known: SearchOptions::scale_range
 };
 
 struct Manifest {

@@ -30,7 +30,7 @@ struct Query {
   std::optional<FeatureMap> features;  ///< instead of a view where the query is simulated
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
-  double scale_range = 0.0;           ///< FixOptions::scale_range
+  double scale_range = 0.0;           ///< SearchOptions::scale_range
   std::vector<EarlierFrame> earlier;  ///< to be laid together with `view`
   std::string unasked;                ///< code of why it is not asked but counts as not found; empty = it is
 };

@@ -72,7 +72,7 @@ class RoadsMethod : public Method {
       return answer;
     }
     FixOptions options = options_.fix;
-    options.scale_range = query.scale_range;
+    options.search.scale_range = query.scale_range;
     if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
     const Fix fix = locate(map_, *features, query.prior, options);
     answer.status = fix.status;

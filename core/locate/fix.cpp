@@ -67,16 +67,9 @@ void refuse_contradicting_frames(Fix& fix) {
 }
 
 SearchOptions search_options_of(const FixOptions& options, const MapView& map) {
-  SearchOptions result;
-  result.max_modes = options.max_modes;
-  result.scale_range = options.scale_range;
+  SearchOptions result = options.search;
   result.cache = map.searches;
   if (options.looks_beyond_prior) result.surroundings = map.extent;
-  result.straight_roads = options.straight_roads;
-  result.threads = options.threads;
-  result.progress = options.progress;
-  result.deadline = options.deadline;
-  result.proof_time = options.proof_time;
   return result;
 }
 
@@ -122,7 +115,7 @@ PoseRegion search_region(const MapView& map, const Prior& prior, const FixOption
     throw InvalidInput("confidence-out-of-range",
                        fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
   }
-  require_scale_range(options.scale_range);
+  require_scale_range(options.search.scale_range);
   require_searchable(region.area_km2(), options.max_search_km2);
   return region;
 }
@@ -142,7 +135,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
   const Decision decision = decide(found, calibration, options.confidence);
   Fix fix = fix_of(map, found, decision);
-  const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.max_modes)));
+  const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.search.max_modes)));
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }

@@ -14,32 +14,20 @@
 #include "core/locate/calibration.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/prior.hpp"
-#include "core/match/deadline.hpp"
-#include "core/units/progress.hpp"
+#include "core/search/search.hpp"
 
 namespace roadfix {
 
 struct FixOptions {
-  double confidence = 0.99;      ///< status is `fix` only if the probability of the best mode reaches it
-  int max_modes = kRankedModes;  ///< told at most; fewer change nothing else
-  /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly); in
-  /// [0, kMaxScaleRange].
-  double scale_range = 0.0;
+  double confidence = 0.99;                ///< status is `fix` only if the probability of the best mode reaches it
   std::optional<double> max_search_km2{};  ///< beyond it LimitExceeded
-  Deadline deadline{};                     ///< at it the search ends as it is: no_fix with what it has
-  /// How long to look for a better pose than the best candidate in all of the region; 0 = no proof.
-  std::chrono::milliseconds proof_time{0};
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
-  /// So many straight roads tell no place: two, since junctions look alike; one where a place is known and has to be
-  /// borne out.
-  int straight_roads = 2;
   /// Where several frames were laid together: the one whose nadir is asked for. It alone has to bear a likely place
   /// out.
   std::optional<FeatureMap> own_frame{};
-  int threads = 1;
-  OnProgress progress{};                             ///< see SearchOptions
   std::shared_ptr<const Calibration> calibration{};  ///< nullptr = the one that is shipped
+  SearchOptions search{};                            ///< all but the cache and the surroundings, which the map gives
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };

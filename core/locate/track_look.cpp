@@ -82,7 +82,8 @@ Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap
   const auto around = prior_near(map, belief.mean, radius_m, kLookHeading);
   if (!around) return {};
   const FeatureMap seen = at_scale_of(belief, frame);
-  const std::optional<Fix> fix = search.find(seen, *around, {.looks_beyond_prior = false, .straight_roads = 1});
+  const std::optional<Fix> fix =
+      search.find(seen, *around, {.looks_beyond_prior = false, .search = {.straight_roads = 1}});
   if (!fix) return {};
   Look look{outcome_of(*fix, belief, map.zone), {}};
   if (look.outcome == Look::Outcome::kBeside || look.outcome == Look::Outcome::kTurned) {

@@ -14,8 +14,8 @@ constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for e
 std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& prior, FixOptions options,
                                      double time_share) const {
   if (settings_.max_search_km2 && region_of(map_, prior).area_km2() > *settings_.max_search_km2) return std::nullopt;
-  options.threads = limits_.threads;
-  options.deadline = limits_.deadline.after(time_share);
+  options.search.threads = limits_.threads;
+  options.search.deadline = limits_.deadline.after(time_share);
   options.calibration = settings_.calibration;
   return locate(map_, features, prior, options);
 }
@@ -33,7 +33,7 @@ std::optional<bool> TrackSearch::has_no_rival(const Fix& fix, const FeatureMap& 
                                               double time_share) const {
   constexpr double kMaxRivalShare = 0.3;  // of the weight of the place
   const std::optional<Fix> other =
-      find(features, prior, {.scale_range = kUntoldScaleRange, .looks_beyond_prior = false}, time_share);
+      find(features, prior, {.looks_beyond_prior = false, .search = {.scale_range = kUntoldScaleRange}}, time_share);
   if (!other || !other->complete) return std::nullopt;
   const GridPose place = on_grid(fix.modes.front().pose, map_.zone);
   double here = 0.0;

@@ -126,8 +126,8 @@ void Tracker::Step::confirm(const Fix& fix) {
 /// takes longer. At its beginning that is an error, as a smaller prior helps.
 std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen, double time_share) {
   state_.last_search = state_.measured;
-  std::optional<Fix> fix =
-      search_.find(seen, prior, {.scale_range = settings_.vehicle.scale_range, .own_frame = features_}, time_share);
+  std::optional<Fix> fix = search_.find(
+      seen, prior, {.own_frame = features_, .search = {.scale_range = settings_.vehicle.scale_range}}, time_share);
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
   if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);

@@ -37,21 +37,23 @@ inline constexpr double kMaxScaleRange = 0.3;
 inline constexpr int kRankedModes = 8;
 
 struct SearchOptions {
-  int max_modes = kRankedModes;  ///< more of them follow those that are compared
-  /// The ground in the feature map may be smaller by this share, or larger by as much, in [0, kMaxScaleRange].
+  int max_modes = kRankedModes;  ///< more of them follow those that are compared; fewer change nothing else
+  /// The ground in the feature map may be smaller by this share, or larger by as much (altitude known roughly), in
+  /// [0, kMaxScaleRange].
   double scale_range = 0.0;
   int threads = 1;
   /// Of the map: within it the ground around the region is searched as well, half a footprint beyond and 4 km^2 in all
   /// at least, and headings a little beside, to tell what chance gives and whether another place fits better. nullopt =
   /// no farther than it takes to tell anything of chance.
-  std::optional<GridBox> surroundings;
-  /// So many of the longest straight lines do not count in SearchMode::other_roads_m.
+  std::optional<GridBox> surroundings{};
+  /// So many of the longest straight lines do not count in SearchMode::other_roads_m: two, since junctions look alike;
+  /// one where a place is known and has to be borne out.
   int straight_roads = 2;
-  std::shared_ptr<SearchCache> cache;  ///< of this map; nullptr = what is built is not kept
-  Deadline deadline;
+  std::shared_ptr<SearchCache> cache{};  ///< of this map; nullptr = what is built is not kept
+  Deadline deadline{};                   ///< at it the search ends with what it has; Interrupted when asked to stop
   /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
   /// at a time.
-  OnProgress progress;
+  OnProgress progress{};
   /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.
   std::chrono::milliseconds proof_time{0};
 };

@@ -48,8 +48,8 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   options.own_frame = features.own_frame;
   const api::HangUp hang_up(request.abandoned);
   const SearchThreads::Share share(service.search_threads);
-  options.threads = share.threads();
-  options.deadline = api::search_end(request.deadline, hang_up.token()).within(time_limit);
+  options.search.threads = share.threads();
+  options.search.deadline = api::search_end(request.deadline, hang_up.token()).within(time_limit);
   const auto answer = api::to_json(locate(map->view, features.map, prior, options), features);
   const std::string status = answer.at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", status));

@@ -32,7 +32,7 @@ FixOptions fix_options(const Service& service, const http::Request& request, std
   FixOptions options;
   options.max_search_km2 = service.limits.search_km2;
   options.calibration = service.calibration;
-  options.deadline = api::search_end(request.deadline, std::move(stop));
+  options.search.deadline = api::search_end(request.deadline, std::move(stop));
   return options;
 }
 
@@ -46,7 +46,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   const api::HangUp hang_up(request.abandoned);
   query.fix = fix_options(service, request, hang_up.token());
   const SearchThreads::Share share(service.search_threads);
-  query.fix.threads = share.threads();
+  query.fix.search.threads = share.threads();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = api::map_json(map->name, map->view.version);
   return json_response(answer);

@@ -180,7 +180,7 @@ void fix_in_region(benchmark::State& state, const RoadGrid& map, int side) {
     prior.circle = GeoCircle{view.zone.unproject(centre), static_cast<double>(state.range(0))};
   }
   FixOptions options;
-  if (state.range(1) > 0) options.proof_time = std::chrono::minutes(10);
+  if (state.range(1) > 0) options.search.proof_time = std::chrono::minutes(10);
   Fix fix;
   for (auto _ : state) fix = locate(view, window, prior, options);
   state.counters["km2"] = fix.searched_km2;

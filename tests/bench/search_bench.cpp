@@ -80,8 +80,8 @@ void search_city(benchmark::State& state) {
   MapView view = city()->view;
   const bool warm = state.range(1) != 0;
   FixOptions options;
-  options.proof_time = std::chrono::seconds(state.range(2));
-  options.scale_range = static_cast<double>(state.range(3)) / 100.0;
+  options.search.proof_time = std::chrono::seconds(state.range(2));
+  options.search.scale_range = static_cast<double>(state.range(3)) / 100.0;
   int asked = 0;
   int right = 0;
   int fixes = 0;
@@ -145,7 +145,7 @@ void search_misjudged(benchmark::State& state) {
   quality.scale = static_cast<double>(state.range(0)) / 100.0;
   quality.tilt_deg = static_cast<double>(state.range(1));
   FixOptions options;
-  options.scale_range = static_cast<double>(state.range(2)) / 100.0;
+  options.search.scale_range = static_cast<double>(state.range(2)) / 100.0;
   std::uint64_t seed = 0;
   int right = 0;
   int fixes = 0;

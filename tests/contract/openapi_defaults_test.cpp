@@ -62,9 +62,9 @@ TEST_F(OpenApiDefaults, OfAFixAreTaken) {
   const FixOptions told = api::parse_fix_options(fields, {});
   const FixOptions untold = api::parse_fix_options({}, {});
   EXPECT_EQ(told.confidence, untold.confidence);
-  EXPECT_EQ(told.max_modes, untold.max_modes);
-  EXPECT_EQ(told.scale_range, untold.scale_range);
-  EXPECT_EQ(told.proof_time, untold.proof_time);
+  EXPECT_EQ(told.search.max_modes, untold.search.max_modes);
+  EXPECT_EQ(told.search.scale_range, untold.search.scale_range);
+  EXPECT_EQ(told.search.proof_time, untold.search.proof_time);
 }
 
 TEST_F(OpenApiDefaults, OfATrackAreTaken) {

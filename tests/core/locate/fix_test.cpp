@@ -34,7 +34,7 @@ TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
   Prior prior;
   prior.circle = GeoCircle{on_earth(truth, view_.zone).position, 200.0};
   FixOptions options;
-  options.proof_time = std::chrono::minutes(5);
+  options.search.proof_time = std::chrono::minutes(5);
   const FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.2, 0.2}, random_);
   const Fix alone = locate(view_, features, prior, options);
   view_.searches = std::make_shared<SearchCache>(std::size_t{1} << 30);
@@ -53,7 +53,7 @@ TEST_F(Locate, TellsWhatWasProvenWhereAProofIsAskedFor) {
   FixOptions options;
   const FeatureMap features = observed_at(map_, truth, 150, 150, 2.0, {0.1, 0.1}, random_);
   EXPECT_FALSE(locate(view_, features, prior, options).proof.has_value());
-  options.proof_time = std::chrono::minutes(5);
+  options.search.proof_time = std::chrono::minutes(5);
   const Fix fix = locate(view_, features, prior, options);
   ASSERT_TRUE(fix.proof.has_value());
   EXPECT_TRUE(fix.proof->complete);
@@ -78,7 +78,7 @@ TEST_F(Locate, CountsHowWellTheNadirIsKnownInTheSizeThatTheGroundHas) {
   FeatureMap features = observed_at(map_, truth, 200, 200, 2.0, {0.1, 0.1}, random_);
   features.cell_m = 1.8;
   FixOptions options;
-  options.scale_range = 0.15;
+  options.search.scale_range = 0.15;
   const Fix exact = locate(view_, features, {}, options);
   features.nadir_sigma_m = 7.0;
   const Fix fix = locate(view_, features, {}, options);

@@ -47,7 +47,7 @@ TEST_F(LocateAlike, IsAsSureHoweverManyPlacesItIsToTell) {
     const Fix usual = locate(view_, frame, prior, {});
     for (const int count : {1, 3, 40}) {
       FixOptions options;
-      options.max_modes = count;
+      options.search.max_modes = count;
       const Fix asked = locate(view_, frame, prior, options);
       EXPECT_EQ(asked.status, usual.status) << count;
       EXPECT_EQ(asked.probability, usual.probability) << count;

@@ -74,7 +74,7 @@ TEST(MapSurvey, StopsWhereItIsAskedTo) {
   std::stop_source stop;
   stop.request_stop();
   SurveyOptions stopped = options();
-  stopped.query.fix.deadline = Deadline(stop.get_token());
+  stopped.query.fix.search.deadline = Deadline(stop.get_token());
   EXPECT_EQ(testing::code_of([&] { survey(town_fields_and_unknown_ground(), stopped); }), "search-stopped");
 }
 

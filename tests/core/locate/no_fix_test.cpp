@@ -204,7 +204,7 @@ TEST_F(NoFix, RefusesWhatItCannotUse) {
   options.confidence = 1.5;
   EXPECT_EQ(code(good, {}, options), "confidence-out-of-range");
   options = {};
-  options.scale_range = 0.31;
+  options.search.scale_range = 0.31;
   EXPECT_EQ(code(good, {}, options), "scale-range-out-of-range");
   MapView empty = view_;
   empty.extent = {{1.0, 1.0}, {0.0, 0.0}};
@@ -213,7 +213,7 @@ TEST_F(NoFix, RefusesWhatItCannotUse) {
 
 TEST_F(NoFix, EndsAtItsTimeLimitAndSaysWhatItHas) {
   FixOptions options;
-  options.deadline = Deadline().within(std::chrono::milliseconds(1));
+  options.search.deadline = Deadline().within(std::chrono::milliseconds(1));
   const FeatureMap window = cut_out(map_, pose_within(view_.extent, 300.0, random_), 160, 160, 2.0);
   const Fix fix = locate(view_, window, {}, options);
   EXPECT_EQ(fix.status, FixStatus::kNoFix);

@@ -200,7 +200,7 @@ TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
   Prior around;
   around.circle = GeoCircle{view_.zone.unproject(start_.position), TrackSearch::kAroundM};
   const auto begin = steady_clock::now();
-  ASSERT_TRUE(searches.find(*flight.step().features, around, {.scale_range = 0.15}));
+  ASSERT_TRUE(searches.find(*flight.step().features, around, {.search = {.scale_range = 0.15}}));
   const auto time = 10 * (steady_clock::now() - begin);
 
   flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});

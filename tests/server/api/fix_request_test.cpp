@@ -88,9 +88,9 @@ TEST(FixOptionsRequest, SearchesWithoutProofOrLimitUnlessItIsAskedTo) {
   limits.search_km2 = 12.5;
   const FixOptions options = options_of(json::object(), limits);
   EXPECT_EQ(options.confidence, 0.99);
-  EXPECT_EQ(options.max_modes, 8);
-  EXPECT_EQ(options.scale_range, 0.0);
-  EXPECT_EQ(options.proof_time, milliseconds(0));
+  EXPECT_EQ(options.search.max_modes, 8);
+  EXPECT_EQ(options.search.scale_range, 0.0);
+  EXPECT_EQ(options.search.proof_time, milliseconds(0));
   EXPECT_FALSE(parse_time_limit(fields_of(json::object(), fix_option_fields())));
   EXPECT_EQ(options.max_search_km2, 12.5) << "which is the operator's to say";
 }
@@ -100,15 +100,15 @@ TEST(FixOptionsRequest, TakesWhatItIsToldWithinTheLimits) {
   limits.modes = 16;
   const FixOptions options = options_of({{"confidence", 0.9}, {"max_modes", 16}, {"scale_range", 0.15}}, limits);
   EXPECT_EQ(options.confidence, 0.9);
-  EXPECT_EQ(options.max_modes, 16);
-  EXPECT_EQ(options.scale_range, 0.15);
+  EXPECT_EQ(options.search.max_modes, 16);
+  EXPECT_EQ(options.search.scale_range, 0.15);
   EXPECT_EQ(refused([&] { options_of({{"max_modes", 17}}, limits); }), "parameter-out-of-range max_modes");
   EXPECT_EQ(refused([&] { options_of({{"max_modes", 2.5}}, limits); }), "bad-parameter max_modes");
   EXPECT_EQ(refused([&] { options_of({{"confidence", 1}}, limits); }), "parameter-out-of-range confidence");
 }
 
 TEST(FixOptionsRequest, RoundsTimesUpSoThatALittleIsNotNone) {
-  const auto proof = [](double seconds) { return options_of({{"proof_s", seconds}}).proof_time; };
+  const auto proof = [](double seconds) { return options_of({{"proof_s", seconds}}).search.proof_time; };
   EXPECT_EQ(proof(0.0), milliseconds(0));
   EXPECT_EQ(proof(1e-6), milliseconds(1));
   EXPECT_EQ(proof(1.5), milliseconds(1500));

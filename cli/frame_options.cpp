@@ -12,6 +12,7 @@
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "server/api/frame_scale.hpp"
 
 namespace roadfix::cli {
 namespace {

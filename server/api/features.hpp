@@ -12,7 +12,6 @@
 #include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
 #include "core/units/planar.hpp"
-#include "server/api/frame_scale.hpp"
 
 namespace roadfix::api {
 
@@ -23,6 +22,13 @@ struct Features {
   std::optional<FrameCamera> camera_in_file{};  ///< of a frame whose file tells it
   std::string detector{};                       ///< of frames: RoadDetector::describe()
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
+};
+
+/// What the pixels of a frame measure on the ground.
+struct FrameScale {
+  double gsd_m = 0.0;                 ///< of a frame seen from straight above; 0 = by the camera
+  std::optional<FrameCamera> camera;  ///< where there is no gsd_m
+  bool in_file = false;               ///< the camera was read from the picture's file
 };
 
 /// A decoded frame and what is told of it.

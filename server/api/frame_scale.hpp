@@ -4,24 +4,17 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "core/detect/frame_camera.hpp"
+#include "server/api/features.hpp"
 #include "server/api/fields.hpp"
 #include "tiles/sources/drone_picture.hpp"
 
 namespace roadfix::api {
 
 const std::vector<std::string>& frame_scale_fields();
-
-struct FrameScale {
-  double gsd_m = 0.0;                 ///< of a frame seen from straight above; 0 = by the camera
-  std::optional<FrameCamera> camera;  ///< where there is no gsd_m
-  bool in_file = false;               ///< the camera was read from the picture's file
-};
 
 /// `picture` are the bytes of the frame's file. Throws InvalidField, and what camera_of(DronePicture) throws.
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);

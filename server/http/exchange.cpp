@@ -86,7 +86,6 @@ std::string new_id() {
 }  // namespace
 
 void take_over(httplib::Request& head, Exchange& exchange) {
-  exchange.head_read = true;
   exchange.connection->begin_body(lower_case(head.get_header_value("Transfer-Encoding")) == "chunked");
   head.ranges.clear();
   exchange.content_type = head.get_header_value("Content-Type");

@@ -31,8 +31,7 @@ struct Exchange {
   std::string problem;  ///< code of the error that is answered
   std::string answer;   ///< Response::answer
   Clock::time_point started = Clock::now();
-  bool head_read = false;
-  bool must_close = false;  ///< bytes of the request were left unread
+  bool must_close = true;  ///< bytes of the request may be left unread
   bool asked_to_close = false;
   bool logged = false;
 };

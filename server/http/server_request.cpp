@@ -84,9 +84,8 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
     end_request(exchange, std::current_exception());
   }
   exchange.thread.give_back();
-  const bool unread = exchange.must_close || !exchange.head_read;
-  if (unread) connection.linger([this] { return threads_are_wanted(); });
-  return written && !last && !closed_by_client && !exchange.asked_to_close && !unread;
+  if (exchange.must_close) connection.linger([this] { return threads_are_wanted(); });
+  return written && !last && !closed_by_client && !exchange.asked_to_close && !exchange.must_close;
 }
 
 /// By what was thrown outside of handlers: mostly that there is no memory.
@@ -116,13 +115,11 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
   exchange.request = translated(head, exchange, settings_.proxies);
   Request& request = exchange.request;
   request.received = Clock::now();
-  exchange.must_close =
-      announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
-                                  head.method != "POST" && head.method != "DELETE");
   try {
-    const bool close = std::exchange(exchange.must_close, true);
     check_headers(head);
-    exchange.must_close = close;
+    exchange.must_close =
+        announces_body(request) || (head.method != "GET" && head.method != "HEAD" && head.method != "OPTIONS" &&
+                                    head.method != "POST" && head.method != "DELETE");
     if (head.target.size() > kTargetBytes) throw url_too_long();
     exchange.target = parse_target(head.target);
     request.path = exchange.target.path;
@@ -142,7 +139,6 @@ HandlerResponse Server::Impl::before_body(const httplib::Request& head, httplib:
     hold_thread(exchange);
     if (request.method == "POST") {
       check_body_headers(request, settings_.body_bytes);
-      exchange.must_close = false;
       return HandlerResponse::Unhandled;
     }
   } catch (...) {
@@ -157,8 +153,8 @@ void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, co
   Exchange& exchange = *t_exchange;
   try {
     read_body(exchange, reader, {settings_.body_bytes, settings_.connection.body, &body_memory_});
+    exchange.must_close = false;
   } catch (...) {
-    exchange.must_close = true;
     reply(exchange, out, failed(exchange, std::current_exception()));
     return;
   }
@@ -230,7 +226,6 @@ HandlerResponse Server::Impl::complete_error(httplib::Response& out) {
   if (!out.body.empty() || t_exchange == nullptr) return HandlerResponse::Unhandled;
   Exchange& exchange = *t_exchange;
   identify(exchange);
-  exchange.must_close = true;
   reply(exchange, out, failed(exchange, refusal_of_head(exchange, out.status)));
   return HandlerResponse::Handled;
 }

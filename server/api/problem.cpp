@@ -62,46 +62,28 @@ const std::map<std::string, int, std::less<>>& statuses() {
 }
 
 const char* title_of(int status) {
-  switch (status) {
-    case 400:
-      return "Bad request";
-    case 403:
-      return "Forbidden";
-    case 404:
-      return "Not found";
-    case 405:
-      return "Method not allowed";
-    case 406:
-      return "Not acceptable";
-    case 408:
-      return "Request timeout";
-    case 409:
-      return "Conflict";
-    case 410:
-      return "Gone";
-    case 411:
-      return "Length required";
-    case 413:
-      return "Content too large";
-    case 414:
-      return "URI too long";
-    case 415:
-      return "Unsupported media type";
-    case 421:
-      return "Misdirected request";
-    case 422:
-      return "Unprocessable content";
-    case 429:
-      return "Too many requests";
-    case 431:
-      return "Request header fields too large";
-    case 499:
-      return "Client closed request";
-    case 503:
-      return "Service unavailable";
-    default:
-      return "Internal error";
-  }
+  static const std::map<int, const char*> kTitles{
+      {400, "Bad request"},
+      {403, "Forbidden"},
+      {404, "Not found"},
+      {405, "Method not allowed"},
+      {406, "Not acceptable"},
+      {408, "Request timeout"},
+      {409, "Conflict"},
+      {410, "Gone"},
+      {411, "Length required"},
+      {413, "Content too large"},
+      {414, "URI too long"},
+      {415, "Unsupported media type"},
+      {421, "Misdirected request"},
+      {422, "Unprocessable content"},
+      {429, "Too many requests"},
+      {431, "Request header fields too large"},
+      {499, "Client closed request"},
+      {503, "Service unavailable"},
+  };
+  const auto title = kTitles.find(status);
+  return title != kTitles.end() ? title->second : "Internal error";
 }
 
 http::Response rendered(int status, json members) {

@@ -19,17 +19,22 @@ using nlohmann::json;
 /// A pose is three numbers in an object: four values, and something for the rest of the request.
 std::size_t json_values(const Limits& limits) { return static_cast<std::size_t>(limits.poses) * 4 + 1000; }
 
-void add_picture(Content& content, std::vector<std::uint8_t> bytes) {
+void add_picture(Content& content, std::span<const std::uint8_t> bytes) {
   if (content.has_picture) throw http::given_twice("image");
-  content.image = std::move(bytes);
+  content.image = bytes;
   content.has_picture = true;
 }
 
-std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
 
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {
   content.fields.add(parse_json(text, json_values(limits)), known);
-  if (content.fields.has("image")) add_picture(content, bytes_of_base64("image", content.fields.take_text("image")));
+  if (!content.fields.has("image")) return;
+  content.decoded =
+      std::make_shared<const std::vector<std::uint8_t>>(bytes_of_base64("image", content.fields.take_text("image")));
+  add_picture(content, *content.decoded);
 }
 
 void add_part(Content& content, const Part& part, const std::vector<std::string>& known, const Limits& limits) {
@@ -49,7 +54,7 @@ void add_part(Content& content, const Part& part, const std::vector<std::string>
 }  // namespace
 
 Content read_content(const http::Request& request, const std::vector<std::string>& known, const Limits& limits) {
-  Content content{.fields = Fields(request.query), .image = {}, .has_picture = false};
+  Content content{.fields = Fields(request.query)};
   const std::string type = request.media_type();
   if (type == "image/png" || type == "image/jpeg") {
     add_picture(content, bytes_of(request.body));

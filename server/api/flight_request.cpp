@@ -75,7 +75,8 @@ Features flight_features_of(const Content& content, const Detection& detection, 
       throw InvalidField("bad-parameter", place, "a frame is an object with image, forward_m, right_m and turn_deg");
     }
     const BodyOffset offset = offset_of(frame, place);
-    other.image = picture_of(frame, place);
+    const std::vector<std::uint8_t> picture = picture_of(frame, place);
+    other.image = picture;
     others.push_back({named(place, [&] { return features_of(other, detection, limits); }), offset});
   }
   return together(std::move(first), std::move(others), static_cast<double>(limits.cells));

@@ -149,10 +149,11 @@ http::Response take_step(const Service& service, const http::Request& request, P
                        service.steps.take(track.id, input, digest, limits, request.received, detector_used));
 }
 
-/// Reads the step and gives those that it overtook the time to be taken first, while it is held in memory once.
+/// Reads the step and gives those that it overtook the time to be taken first, while its picture is held once.
 std::function<http::Response()> post_step(const Service& service, http::Request& request) {
   PostedStep step = read_step(service, request);
-  std::string().swap(request.body);
+  const bool in_body = step.content.has_picture && !step.content.decoded;
+  if (!in_body) std::string().swap(request.body);
   service.steps.await_predecessor(step.track.id, step.input.sequence);
   return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };
 }

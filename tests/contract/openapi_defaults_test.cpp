@@ -37,7 +37,8 @@ class OpenApiDefaults : public ::testing::Test {
 
 FeatureMap seen(const json& request) {
   const TreeRoadDetector detector;
-  api::Content content{{}, encode_feature_map(CellArray(64, 64, 100)), true};
+  const std::vector<std::uint8_t> picture = encode_feature_map(CellArray(64, 64, 100));
+  api::Content content{{}, picture, true};
   content.fields.add(request, api::feature_fields());
   return api::features_of(content, {detector, 2.0}, api::Limits{}).map;
 }

@@ -20,7 +20,7 @@ namespace {
 FeatureMap map_of(const nlohmann::json& request) {
   Content content;
   content.fields.add(request, feature_fields());
-  content.image = encode_feature_map(CellArray(20, 20, kNoRoad));
+  give_picture(content, encode_feature_map(CellArray(20, 20, kNoRoad)));
   return features_of(content, {NoRoads(), 2.0}, Limits{}).map;
 }
 
@@ -63,7 +63,7 @@ TEST(FeatureRequest, TakesPlaceAndHeadingOfTheNadirInOtherPicturesForExact) {
 
 TEST(FeatureRequest, SaysOfAPictureWithoutAWordHowAFrameIsSent) {
   Content content;
-  content.image = testing::encoded(".png", cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(90)));
+  give_picture(content, testing::encoded(".png", cv::Mat(20, 20, CV_8UC3, cv::Scalar::all(90))));
   EXPECT_THAT(testing::message_of([&] {
                 features_of(content, {NoRoads(), 2.0}, Limits{});
               }),
@@ -90,7 +90,7 @@ TEST(FeatureRequest, TakesABlackBorderForGroundThatWasNotSeenWhereItIsToldSo) {
     Content content;
     content.fields.add({{"kind", "frame"}, {"gsd_m", 1}}, feature_fields());
     content.fields.add(told, feature_fields());
-    content.image = testing::encoded(".png", frame);
+    give_picture(content, testing::encoded(".png", frame));
     const Watching detector;
     features_of(content, {detector, 2.0}, Limits{});
     return detector.observed_share;
@@ -114,7 +114,7 @@ TEST(FeatureRequest, TakesCellSizeAndNadirFromAFeatureMapThatTellsThem) {
   const auto read = [&](const nlohmann::json& request) {
     Content content;
     content.fields.add(request, feature_fields());
-    content.image = encode_feature_map(map);
+    give_picture(content, encode_feature_map(map));
     return features_of(content, {NoRoads(), 2.0}, Limits{}).map;
   };
   EXPECT_EQ(read(nlohmann::json::object()), map);
@@ -129,6 +129,7 @@ std::string part(const std::string& name, const std::string& value) {
   return "--b\r\nContent-Disposition: form-data; name=\"" + name + "\"\r\n\r\n" + value + "\r\n";
 }
 
+/// Its picture only in base64, since the body ends here.
 Content content_of(const std::string& type, const std::string& body) {
   http::Request request;
   request.headers["content-type"] = type;
@@ -177,7 +178,7 @@ Content photo(const nlohmann::json& request, const std::string& tags = kDrone) {
   Content content;
   content.fields.add({{"kind", "frame"}}, feature_fields());
   content.fields.add(request, feature_fields());
-  content.image = testing::drone_jpeg(cv::Mat(20, 30, CV_8UC1, cv::Scalar(128)), tags);
+  give_picture(content, testing::drone_jpeg(cv::Mat(20, 30, CV_8UC1, cv::Scalar(128)), tags));
   return content;
 }
 
@@ -213,9 +214,9 @@ TEST(FeatureRequest, RefusesACameraThatIsToldTwiceOrNotAtAll) {
   EXPECT_EQ(code(photo({{"exif", true}}, "")), "camera-not-in-file");
   EXPECT_EQ(code(photo({{"exif", true}}, "drone-dji:CalibratedFocalLength=\"30\"")), "camera-not-in-file");
   Content png = photo({{"exif", true}});
-  png.image = encode_feature_map(CellArray(20, 20, kNoRoad));
+  give_picture(png, encode_feature_map(CellArray(20, 20, kNoRoad)));
   EXPECT_EQ(code(png), "camera-not-in-file");
-  png.image = {'n', 'o', 'n', 'e'};
+  give_picture(png, {'n', 'o', 'n', 'e'});
   EXPECT_EQ(code(png), "image-format") << "which is the mistake to mend first";
 }
 

@@ -31,7 +31,9 @@ json another(const std::vector<std::uint8_t>& picture, const BodyOffset& offset)
 }
 
 Content content_of(std::vector<std::uint8_t> picture, const json& request) {
-  return {fields_of(request, joined({feature_fields(), flight_members()})), std::move(picture), true};
+  Content content{fields_of(request, joined({feature_fields(), flight_members()}))};
+  give_picture(content, std::move(picture));
+  return content;
 }
 
 Features read(const Content& content, const Limits& limits = {}) {

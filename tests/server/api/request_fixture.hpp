@@ -1,13 +1,15 @@
 // What the tests of requests share.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/detect/road_detector.hpp"
-#include "server/api/fields.hpp"
+#include "server/api/content.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -26,6 +28,11 @@ inline Fields fields_of(nlohmann::json body, const std::vector<std::string>& kno
   Fields fields;
   fields.add(std::move(body), known);
   return fields;
+}
+
+inline void give_picture(Content& content, std::vector<std::uint8_t> bytes) {
+  content.decoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
+  content.image = *content.decoded;
 }
 
 /// The complaint and the field that it is about: "missing-parameter lat".

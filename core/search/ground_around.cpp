@@ -30,12 +30,12 @@ std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step) {
   return places;
 }
 
-GroundAround::GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
+GroundAround::GroundAround(const Level& level, GroundUse use, const Deadline& deadline,
                            const std::vector<LatticePose>& poses) {
   std::vector<GridGeometry> windows;
   std::int64_t apart = 0;
   for (const LatticePose& pose : poses) {
-    windows.push_back(window_around(level, pose, cells));
+    windows.push_back(window_around(level, pose, use.cells));
     apart += cells_of(windows.back());
   }
   bool rotated = false;
@@ -44,7 +44,7 @@ GroundAround::GroundAround(const Level& level, int cells, int headings, const De
     if (cells_of(all) <= apart) {
       // Three in four headings need no footprint of their own then.
       const bool in_quarters = level.bins.count() % 4 == 0;
-      rotated = in_quarters && worth_rotating(all, level.reach(level.scales.reach()), 0.75 * headings);
+      rotated = in_quarters && worth_rotating(all, level.reach(level.scales.reach()), 0.75 * use.headings);
       windows.assign(1, all);
     }
   }

@@ -19,13 +19,17 @@ GridGeometry window_around(const Level& level, const LatticePose& pose, int cell
 /// The places up to `reach` steps of so many cells away along either axis, row by row.
 std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
+/// What ground around poses will be matched with: footprints up to so many cells away, turned to so many headings.
+struct GroundUse {
+  int cells = 0;
+  int headings = 0;
+};
+
 class GroundAround {
  public:
-  /// The ground of the footprint at each pose, at the next larger scale too, and up to `cells` away. Where footprints
-  /// will be turned to many `headings`, those a quarter turn apart share one. `complete()` is false, and the rest must
-  /// not be used, if time was over before.
-  GroundAround(const Level& level, int cells, int headings, const Deadline& deadline,
-               const std::vector<LatticePose>& poses);
+  /// The ground of the footprint at each pose, at the next larger scale too. Where it is turned to many headings, those
+  /// a quarter turn apart share one. `complete()` is false, and the rest must not be used, if time was over before.
+  GroundAround(const Level& level, GroundUse use, const Deadline& deadline, const std::vector<LatticePose>& poses);
 
   bool complete() const { return complete_; }
   /// Whether match() takes quarters beyond 0.

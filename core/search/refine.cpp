@@ -133,9 +133,10 @@ std::vector<LatticePose> best_of(const std::vector<RefineFamily>& families, std:
 
 }  // namespace
 
-bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates) {
-  const CandidatesOf asked = by_scale_and_bin(level, bins, candidates);
-  const GroundAround ground(level, cells, static_cast<int>(asked.size()), deadline, candidates);
+bool refine(const Level& level, RefineReach reach, const Deadline& deadline, std::vector<LatticePose>& candidates) {
+  const CandidatesOf asked = by_scale_and_bin(level, reach.bins, candidates);
+  const GroundAround ground(level, {.cells = reach.cells, .headings = static_cast<int>(asked.size())}, deadline,
+                            candidates);
   if (!ground.complete()) return false;
   std::map<int, LevelFeatures> at_scale;
   std::vector<RefineFamily> families = families_of(level, asked, ground.rotated(), candidates, at_scale);
@@ -144,7 +145,7 @@ bool refine(const Level& level, int cells, int bins, const Deadline& deadline, s
     if (deadline.over()) {
       complete = false;
     } else {
-      climb(families[static_cast<std::size_t>(i)], cells, ground, candidates);
+      climb(families[static_cast<std::size_t>(i)], reach.cells, ground, candidates);
     }
   });
   if (!complete) return false;

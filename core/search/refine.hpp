@@ -9,8 +9,13 @@
 
 namespace roadfix {
 
-/// Replaces each candidate by the best pose within +- `cells`, +- `bins` and +- 1 of the scales around it, as far as
-/// the score rises towards it at one of these headings. False if time was over before: then they are left as they were.
-bool refine(const Level& level, int cells, int bins, const Deadline& deadline, std::vector<LatticePose>& candidates);
+struct RefineReach {
+  int cells;
+  int bins;
+};
+
+/// Replaces each candidate by the best pose within the reach and +- 1 of the scales around it, as far as the score
+/// rises towards it at one of these headings. False if time was over before: then they are left as they were.
+bool refine(const Level& level, RefineReach reach, const Deadline& deadline, std::vector<LatticePose>& candidates);
 
 }  // namespace roadfix

@@ -67,7 +67,7 @@ Squares squares_at(const Level& level, int bin, const GroundAround& ground, cons
 
 std::optional<double> score_spread(const Level& level, const PoseRegion& region, const Deadline& deadline) {
   const std::vector<LatticePose> places = places_within(level, region);
-  const GroundAround ground(level, 0, 0, deadline, places);
+  const GroundAround ground(level, {}, deadline, places);
   if (!ground.complete()) return std::nullopt;
   std::vector<Squares> of_heading(kHeadings);
   parallel_for(kHeadings, level.threads, [&](int i) {

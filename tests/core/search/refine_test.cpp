@@ -13,6 +13,7 @@ namespace roadfix {
 namespace {
 
 const Deadline kUnlimited;
+constexpr RefineReach kReach{.cells = 2, .bins = 2};
 
 struct RefinedTown : testing::SeenTown {
   explicit RefinedTown(std::uint64_t seed) : SeenTown(seed, 600, 500, 200.0, 90, 80) {}
@@ -52,13 +53,13 @@ TEST(Refine, FindsTheBestOfAllPosesWithinReachOfOneNextToAPeak) {
     const SearchLevels levels = town.levels();
     const Level& level = levels.finest();
     std::vector<LatticePose> begin = town.poses(level, 60);
-    for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kUnlimited, begin));
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, kReach, kUnlimited, begin));
     const auto shift = [&] { return static_cast<int>(town.random() % 3) - 1; };
     for (LatticePose& pose : begin) {
       pose = {{pose.cell.col + shift(), pose.cell.row + shift()}, level.bins.wrapped(pose.bin + shift())};
     }
     std::vector<LatticePose> found = begin;
-    ASSERT_TRUE(refine(level, 2, 2, kUnlimited, found));
+    ASSERT_TRUE(refine(level, kReach, kUnlimited, found));
     for (std::size_t i = 0; i < begin.size(); ++i) {
       const double best = best_within_reach(level, begin[i]);
       EXPECT_LE(found[i].score, best + kRounding);
@@ -77,10 +78,10 @@ TEST(Refine, ReachesAPeakTwoCellsAndBinsAway) {
   const SearchLevels levels = town.levels();
   const Level& level = levels.finest();
   std::vector<LatticePose> peak = town.poses(level, 40);
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, 2, 2, kUnlimited, peak));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(refine(level, kReach, kUnlimited, peak));
   const auto top = std::ranges::max_element(peak, {}, &LatticePose::score);
   std::vector<LatticePose> beside{{{top->cell.col + 2, top->cell.row - 2}, level.bins.wrapped(top->bin + 2)}};
-  ASSERT_TRUE(refine(level, 2, 2, kUnlimited, beside));
+  ASSERT_TRUE(refine(level, kReach, kUnlimited, beside));
   EXPECT_EQ(beside.front().cell, top->cell);
   EXPECT_EQ(beside.front().bin, top->bin);
   EXPECT_EQ(beside.front().score, top->score);
@@ -92,8 +93,8 @@ TEST(GroundAround, GivesTheSameSumsForAFootprintThatHeadingsAQuarterTurnApartSha
   const Level& level = levels.finest();
   ASSERT_EQ(level.bins.count() % 4, 0);
   const std::vector<LatticePose> poses = town.poses(level, 50);
-  const GroundAround as_it_is(level, 0, 0, kUnlimited, poses);
-  const GroundAround rotated(level, 0, level.bins.count(), kUnlimited, poses);
+  const GroundAround as_it_is(level, {}, kUnlimited, poses);
+  const GroundAround rotated(level, {.headings = level.bins.count()}, kUnlimited, poses);
   ASSERT_FALSE(as_it_is.rotated());
   ASSERT_TRUE(rotated.rotated());
   std::vector<std::size_t> each(poses.size());

@@ -138,8 +138,8 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   group.mib("--body-memory", http.all_bodies_bytes,
             "Bodies of all requests at once, MiB; further ones get 503. At least --max-body");
   group.seconds("--idle-time", http.idle_time, "Seconds after which an idle connection is closed");
-  group.mib("--map-cache", o.service.map_cache_bytes, "Decoded tiles in memory per map, MiB");
-  group.mib("--search-cache", o.service.search_cache_bytes, "Search data kept for later searches, per map, MiB");
+  group.mib("--map-cache", o.service.map_cache_bytes.tiles, "Decoded tiles in memory per map, MiB");
+  group.mib("--search-cache", o.service.map_cache_bytes.searches, "Search data kept for later searches, per map, MiB");
   group.mib("--picture-cache", o.service.picture_cache_bytes, "Rendered tiles in memory, MiB");
   group.number("--max-tracks", tracks.tracks, "Tracks at the same time");
   group.number("--max-client-tracks", tracks.tracks_per_client, "Tracks per client address");

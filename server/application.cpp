@@ -8,7 +8,6 @@
 
 #include "server/api/problem.hpp"
 #include "server/failure_log.hpp"
-#include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
 #include "server/service.hpp"
 
@@ -45,7 +44,7 @@ struct Application::Parts {
   explicit Parts(Configuration c)
       : configuration(std::move(c)),
         detectors(configuration.detector),
-        maps(configuration.maps, configuration.map_cache_bytes, configuration.search_cache_bytes,
+        maps(configuration.maps, configuration.map_cache_bytes,
              [this](const ServedMap& map) { warn_of_another_reader(map, detectors); }),
         pictures(configuration.picture_cache_bytes),
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,

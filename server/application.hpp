@@ -10,6 +10,7 @@
 #include "core/locate/calibration.hpp"
 #include "server/api/limits.hpp"
 #include "server/http/server.hpp"
+#include "server/maps/map_registry.hpp"
 #include "server/tracks/track_registry.hpp"
 
 namespace roadfix::server {
@@ -17,8 +18,7 @@ namespace roadfix::server {
 struct Configuration {
   std::filesystem::path maps;
   std::chrono::milliseconds watch_interval{1000};
-  std::size_t map_cache_bytes = std::size_t{256} << 20;     ///< decoded tiles, for each map
-  std::size_t search_cache_bytes = std::size_t{512} << 20;  ///< what searches build, for each map
+  MapCacheBytes map_cache_bytes;
   std::size_t picture_cache_bytes = std::size_t{64} << 20;
   int search_threads = 1;                          ///< of all searches
   std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped

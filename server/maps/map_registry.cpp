@@ -74,11 +74,8 @@ bool says_the_same(const MapInfo& a, const MapInfo& b) {
 
 std::string ServedMap::edition() const { return fmt::format("{}-{}", view.version, reader->info().pending); }
 
-MapRegistry::MapRegistry(fs::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes, OnServing on_serving)
-    : folder_(std::move(folder)),
-      cache_bytes_(cache_bytes),
-      search_cache_bytes_(search_cache_bytes),
-      on_serving_(std::move(on_serving)) {
+MapRegistry::MapRegistry(fs::path folder, MapCacheBytes cache_bytes, OnServing on_serving)
+    : folder_(std::move(folder)), cache_bytes_(cache_bytes), on_serving_(std::move(on_serving)) {
   std::error_code unseen;
   const fs::file_type type = fs::status(folder_, unseen).type();
   if (type != fs::file_type::directory && type != fs::file_type::none) {  // none: refresh() says why it is not seen
@@ -144,8 +141,8 @@ MapRegistry::Entry MapRegistry::seen(const Entry& known, const fs::path& path, c
 MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp) const {
   const std::string name = path.stem();
   try {
-    const auto reader = std::make_shared<const MapReader>(path, cache_bytes_, kLockPatience);
-    auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, search_cache_bytes_)});
+    const auto reader = std::make_shared<const MapReader>(path, cache_bytes_.tiles, kLockPatience);
+    auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, cache_bytes_.searches)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     const std::string missing = missing_of(reader->info());
     if (!missing.empty()) spdlog::warn("map {} lacks what an ingest has not brought yet ({})", name, missing);

@@ -39,15 +39,19 @@ struct UnreadableMap {
   std::string reason;
 };
 
+/// In memory, for each map.
+struct MapCacheBytes {
+  std::size_t tiles = std::size_t{256} << 20;     ///< decoded
+  std::size_t searches = std::size_t{512} << 20;  ///< what they have built for the next ones
+};
+
 class MapRegistry {
  public:
   using OnServing = std::function<void(const ServedMap&)>;
 
-  /// `cache_bytes` bounds the decoded tiles of each map, `search_cache_bytes` what its searches build. `on_serving` is
-  /// called of each map that is served from then on, by whoever looks at the folder. Throws NotFound
+  /// `on_serving` is called of each map that is served from then on, by whoever looks at the folder. Throws NotFound
   /// ("maps-folder-not-found") and IoFailure ("maps-folder-unreadable").
-  MapRegistry(std::filesystem::path folder, std::size_t cache_bytes, std::size_t search_cache_bytes = 0,
-              OnServing on_serving = {});
+  MapRegistry(std::filesystem::path folder, MapCacheBytes cache_bytes, OnServing on_serving = {});
   ~MapRegistry();
   MapRegistry(const MapRegistry&) = delete;
   MapRegistry& operator=(const MapRegistry&) = delete;
@@ -93,8 +97,7 @@ class MapRegistry {
   void forget_missing(const std::map<std::string, std::filesystem::path>& present);
 
   const std::filesystem::path folder_;
-  const std::size_t cache_bytes_;
-  const std::size_t search_cache_bytes_;
+  const MapCacheBytes cache_bytes_;
   const OnServing on_serving_;
   std::mutex refresh_mutex_;
   std::set<std::filesystem::path> left_out_;  ///< files of which it was said; changed holding `refresh_mutex_`

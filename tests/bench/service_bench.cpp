@@ -32,7 +32,7 @@ class RunningService {
     configuration.detector.name = "tree";
     configuration.http.port = 0;
     if (!keeps) {
-      configuration.map_cache_bytes = 0;
+      configuration.map_cache_bytes.tiles = 0;
       configuration.picture_cache_bytes = 0;
     }
     spdlog::set_level(spdlog::level::warn);

@@ -33,7 +33,7 @@ class OpenApi : public ::testing::Test {
  protected:
   const json document_ = json::parse(schema::openapi_json());
   const testing::TemporaryFolder folder_{};
-  server::MapRegistry maps_{folder_.path(), 1 << 20};
+  server::MapRegistry maps_{folder_.path(), {.tiles = 1 << 20, .searches = 0}};
   const Detectors detectors_{{"tree", {}, 1, {}}};
   const api::Limits limits_{};
   const http::ServerSettings http_{};

@@ -28,7 +28,7 @@ using roadfix::testing::CapturedLog;
 using roadfix::testing::code_of;
 using roadfix::testing::TemporaryFolder;
 
-constexpr std::size_t kCache = std::size_t{1} << 20;
+constexpr MapCacheBytes kCache{.tiles = std::size_t{1} << 20, .searches = 0};
 
 void make_map(const fs::path& path, std::uint64_t seed, bool replace = false) {
   MapWriter writer(path, roadfix::testing::settings_37n());
@@ -61,7 +61,7 @@ TEST(MapRegistry, TellsOfEachMapThatItServesFromNowOn) {
   const TemporaryFolder folder;
   make_map(folder / "there.gpkg", 1);
   std::vector<std::string> told;
-  MapRegistry registry(folder.path(), kCache, 0, [&](const ServedMap& map) { told.push_back(map.name); });
+  MapRegistry registry(folder.path(), kCache, [&](const ServedMap& map) { told.push_back(map.name); });
   EXPECT_EQ(told, std::vector<std::string>{"there"});
   make_map(folder / "later.gpkg", 1);
   make_map(folder / "there.gpkg", 2, true);

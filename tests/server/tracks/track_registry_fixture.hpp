@@ -54,7 +54,7 @@ class TrackRegistryTest : public ::testing::Test {
   const RoadGrid town_ = testing::street_map(3, {2.0, {300'100, -3'200'050}, 300, 300});
   const testing::TemporaryFolder folder_;
   const api::Limits limits_;
-  MapRegistry maps_{folder_.path(), 1 << 20};
+  MapRegistry maps_{folder_.path(), {.tiles = 1 << 20, .searches = 0}};
 };
 
 }  // namespace roadfix::server

@@ -13,7 +13,7 @@ void print_mode(const FixMode& mode) {
   fmt::print(
       "  lat {:.6f} lon {:.6f}  heading {:.1f} +- {:.1f} deg  1 sigma {:.1f} x {:.1f} m  weight {:.3f}  rho {:.3f}\n",
       mode.pose.position.lat_deg, mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(),
-      mode.heading_sigma.degrees(), mode.sigma_m[0], mode.sigma_m[1], mode.weight, mode.rho);
+      mode.heading_sigma.degrees(), mode.ellipse.sigma_m[0], mode.ellipse.sigma_m[1], mode.weight, mode.rho);
 }
 
 /// By RFC 4180: a name may hold commas, quotes and line breaks.
@@ -65,8 +65,8 @@ std::string row_of(const std::filesystem::path& picture, const Fix& fix) {
   if (fix.status == FixStatus::kFix) {
     const FixMode& mode = fix.modes.front();
     place = fmt::format("{:.8f},{:.8f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f}", mode.pose.position.lat_deg,
-                        mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(), mode.sigma_m[0],
-                        mode.sigma_m[1], mode.ellipse_heading.degrees(), mode.heading_sigma.degrees());
+                        mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(), mode.ellipse.sigma_m[0],
+                        mode.ellipse.sigma_m[1], mode.ellipse.heading.degrees(), mode.heading_sigma.degrees());
   }
   return fmt::format("{},{},{},{:.4f},{},{},{}\n", csv_cell(picture.string()), api::to_string(fix.status), place,
                      fix.probability, fix.reason, csv_cell(fix.map_name), fix.map_version);

@@ -41,8 +41,8 @@ json keypoints_json(const std::optional<KeypointCounts>& counts) {
 /// What position_nees is reckoned with.
 json ellipse_json(const std::optional<FixMode>& mode) {
   if (!mode) return nullptr;
-  return {{"sigma_m", mode->sigma_m},
-          {"heading_deg", mode->ellipse_heading.degrees()},
+  return {{"sigma_m", mode->ellipse.sigma_m},
+          {"heading_deg", mode->ellipse.heading.degrees()},
           {"heading_sigma_deg", mode->heading_sigma.degrees()}};
 }
 
@@ -65,9 +65,9 @@ json outcome_json(const Outcome& outcome) {
           {"time_ms", answer.time_ms}};
 }
 
-evaluation::GridEllipse ellipse_of(const FixMode& mode, const UtmZone& zone) {
+double position_nees(const FixMode& mode, LatLon truth, const UtmZone& zone) {
   const GridPoint at = zone.project(mode.pose.position);
-  return {at, zone.grid_from_true(mode.ellipse_heading, at), mode.sigma_m};
+  return evaluation::nees(at, on_grid(mode.ellipse, zone, at), zone.project(truth));
 }
 
 std::string cell(const std::optional<double>& value, int digits) {
@@ -92,7 +92,7 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
     outcome.heading_error_deg = angular_distance(best->heading, truth->heading).degrees();
   }
   if (const auto& mode = outcome.answer.mode) {
-    outcome.position_nees = truth ? nees(ellipse_of(*mode, zone), zone.project(truth->position)) : kNowhere;
+    outcome.position_nees = truth ? position_nees(*mode, truth->position, zone) : kNowhere;
     if (truth) outcome.heading_nees = evaluation::heading_nees(mode->pose.heading, mode->heading_sigma, truth->heading);
   }
   return outcome;

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 
-#include "core/units/planar.hpp"
+#include "core/locate/ellipse.hpp"
 
 namespace roadfix::evaluation {
 
@@ -14,18 +13,13 @@ inline constexpr double kChiSquare95 = 5.991;
 /// The same with one degree of freedom.
 inline constexpr double kChiSquare95OfHeading = 3.841;
 
-struct GridEllipse {
-  GridPoint centre;
-  Angle major_axis;               ///< from grid north
-  std::array<double, 2> sigma_m;  ///< along the major and minor axis
-};
-
-inline double nees(const GridEllipse& ellipse, GridPoint truth) {
+/// `ellipse` is on_grid().
+inline double nees(GridPoint centre, const Ellipse& ellipse, GridPoint truth) {
   constexpr double kMinSigmaM = 1e-3;
-  const double east = truth.east_m - ellipse.centre.east_m;
-  const double north = truth.north_m - ellipse.centre.north_m;
-  const double s = sin(ellipse.major_axis);
-  const double c = cos(ellipse.major_axis);
+  const double east = truth.east_m - centre.east_m;
+  const double north = truth.north_m - centre.north_m;
+  const double s = sin(ellipse.heading);
+  const double c = cos(ellipse.heading);
   const double along = (east * s + north * c) / std::max(ellipse.sigma_m[0], kMinSigmaM);
   const double across = (east * c - north * s) / std::max(ellipse.sigma_m[1], kMinSigmaM);
   return along * along + across * across;

@@ -15,19 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-Angle axis_of(const Record& record, const UtmZone& zone) {
-  return zone.grid_from_true(record.estimate.clusters.front().ellipse_heading, record.best.position);
-}
-
-PositionCovariance covariance_of(const TrackCluster& cluster) {
-  const auto& sigma = cluster.sigma_m;
-  return position_covariance({sigma[0] * sigma[0], sigma[1] * sigma[1]}, cluster.ellipse_heading);
+PositionCovariance covariance_of(const Ellipse& ellipse) {
+  const auto& [along, across] = ellipse.sigma_m;
+  return position_covariance({along * along, across * across}, ellipse.heading);
 }
 
 json ellipse(const Record& record, const UtmZone& zone) {
   constexpr int kCorners = 36;
-  const auto& sigma = record.estimate.clusters.front().sigma_m;
-  const Angle axis = axis_of(record, zone);
+  const auto& [sigma, axis] = on_grid(record.estimate.clusters.front().ellipse, zone, record.best.position);
   std::vector<LatLon> ring;
   for (int i = 0; i <= kCorners; ++i) {
     // Against the clock, as GeoJSON wants its outer rings.
@@ -61,14 +56,14 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
   for (const Record& r : run.records) {
     const TrackCluster& best = r.estimate.clusters.front();
     const LatLon truth = zone.unproject(r.truth.position);
-    const PositionCovariance covariance = covariance_of(best);
+    const PositionCovariance covariance = covariance_of(best.ellipse);
     lines += fmt::format(
         "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{:.3f},{:.3f},{:.2f},{:.3f},"
         "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",
         run.seed, filter, r.sequence, r.time_s, truth.lat_deg, truth.lon_deg,
         zone.true_from_grid(r.truth.heading, r.truth.position).compass_degrees(), best.pose.position.lat_deg,
         best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
-        r.estimate.converged ? 1 : 0, best.sigma_m[0], best.sigma_m[1], best.ellipse_heading.degrees(),
+        r.estimate.converged ? 1 : 0, best.ellipse.sigma_m[0], best.ellipse.sigma_m[1], best.ellipse.heading.degrees(),
         best.heading_sigma.degrees(), covariance.east_east, covariance.east_north, covariance.north_north,
         r.estimate.cluster_count, r.estimate.particles, to_string(r.estimate.measurement), r.estimate.doubt,
         r.estimate.resets, best.scale, best.scale_sigma, r.step_ms);

@@ -55,8 +55,7 @@ Record judged(const FlightStep& step, TrackEstimate estimate, const UtmZone& zon
   const GridPoint at = record.best.position;
   record.error_m = distance_m(at, step.truth.position);
   record.heading_error_deg = angular_distance(record.best.heading, step.truth.heading).degrees();
-  record.nees =
-      evaluation::nees({at, zone.grid_from_true(best.ellipse_heading, at), best.sigma_m}, step.truth.position);
+  record.nees = evaluation::nees(at, on_grid(best.ellipse, zone, at), step.truth.position);
   return record;
 }
 

@@ -56,13 +56,13 @@ void draw_estimate(cv::Mat& picture, const Backdrop& backdrop, const UtmZone& zo
   outlined(kBlue, 1, [&](const cv::Scalar& c, int t) {
     cv::circle(picture, fine(at), fine({radius, 0}).x, c, t, cv::LINE_AA, kShift);
   });
-  const double axis_deg = zone.grid_from_true(best.ellipse_heading, record.best.position).degrees();
-  const cv::Size2d half(std::max(kSigmasOf95 * best.sigma_m[0] / backdrop.gsd_m, 2.0),
-                        std::max(kSigmasOf95 * best.sigma_m[1] / backdrop.gsd_m, 2.0));
+  const Ellipse ellipse = on_grid(best.ellipse, zone, record.best.position);
+  const cv::Size2d half(std::max(kSigmasOf95 * ellipse.sigma_m[0] / backdrop.gsd_m, 2.0),
+                        std::max(kSigmasOf95 * ellipse.sigma_m[1] / backdrop.gsd_m, 2.0));
   outlined(kRed, 1, [&](const cv::Scalar& c, int t) {
     // OpenCV turns clockwise from the x axis, headings count from north.
-    cv::ellipse(picture, fine(at), cv::Size(fine({half.width, half.height})), axis_deg - 90.0, 0.0, 360.0, c, t,
-                cv::LINE_AA, kShift);
+    cv::ellipse(picture, fine(at), cv::Size(fine({half.width, half.height})), ellipse.heading.degrees() - 90.0, 0.0,
+                360.0, c, t, cv::LINE_AA, kShift);
   });
   draw_pose(picture, backdrop, record.best, kRed, 18.0);
 }

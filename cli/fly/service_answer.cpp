@@ -18,8 +18,7 @@ TrackCluster cluster_of(const json& value) {
   const json& pose = value.at("pose");
   return {{{pose.at("lat"), pose.at("lon")}, Angle::degrees(pose.at("heading_deg"))},
           value.at("weight"),
-          value.at("sigma_m").get<std::array<double, 2>>(),
-          Angle::degrees(value.at("ellipse_heading_deg")),
+          {value.at("sigma_m").get<std::array<double, 2>>(), Angle::degrees(value.at("ellipse_heading_deg"))},
           Angle::degrees(value.at("heading_sigma_deg")),
           value.at("radius95_m"),
           value.at("scale"),

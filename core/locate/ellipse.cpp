@@ -3,7 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/locate/map_view.hpp"
+
 namespace roadfix {
+
+Ellipse on_grid(const Ellipse& ellipse, const UtmZone& zone, GridPoint at) {
+  return {ellipse.sigma_m, zone.grid_from_true(ellipse.heading, at)};
+}
+
+Ellipse widened(const Ellipse& ellipse, double sigma_m) {
+  return {{std::hypot(ellipse.sigma_m[0], sigma_m), std::hypot(ellipse.sigma_m[1], sigma_m)}, ellipse.heading};
+}
 
 PositionCovariance position_covariance(const std::array<double, 2>& variances, Angle axis) {
   const auto [along, across] = variances;

@@ -3,19 +3,26 @@
 
 #include <array>
 
-#include "core/locate/map_view.hpp"
-#include "core/units/angle.hpp"
+#include "core/geodesy/utm.hpp"
 
 namespace roadfix {
+
+struct MapView;
 
 /// The ellipse of 95 % has axes of this many sigmas: the square root of the 0.95 quantile of chi^2 with two degrees of
 /// freedom.
 inline constexpr double kSigmasOf95 = 2.4477;
 
 struct Ellipse {
-  std::array<double, 2> sigma_m;  ///< 1 sigma along the major and the minor axis
-  Angle heading;                  ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
+  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and the minor axis
+  Angle heading;                    ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
 };
+
+/// The same with its heading from grid north.
+Ellipse on_grid(const Ellipse& ellipse, const UtmZone& zone, GridPoint at);
+
+/// With an error of another kind on both axes.
+Ellipse widened(const Ellipse& ellipse, double sigma_m);
 
 /// Of a position on a plane, m^2.
 struct PositionCovariance {

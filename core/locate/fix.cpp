@@ -9,7 +9,6 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
-#include "core/locate/ellipse.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/other_places.hpp"
@@ -21,17 +20,14 @@ namespace {
 
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
                       const Calibration& calibration) {
-  const Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
-  const double nadir_sigma_m = mode.scale * cells.nadir_sigma_m;
+  Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
+  for (double& sigma_m : ellipse.sigma_m) sigma_m *= calibration.position_sigma_scale;
   FixMode result;
   result.pose = on_earth(mode.pose, map.zone);
   result.scale = mode.scale;
   result.weight = weight;
   result.rho = rho_at(map, resampled(cells, cells.cell_m, mode.scale), mode.pose).value_or(0.0);
-  for (std::size_t axis : {0U, 1U}) {
-    result.sigma_m[axis] = std::hypot(calibration.position_sigma_scale * ellipse.sigma_m[axis], nadir_sigma_m);
-  }
-  result.ellipse_heading = ellipse.heading;
+  result.ellipse = widened(ellipse, mode.scale * cells.nadir_sigma_m);
   result.heading_sigma = Angle::radians(std::hypot(calibration.heading_sigma_scale * std::sqrt(mode.covariance[2][2]),
                                                    cells.nadir_heading_sigma.radians()));
   result.observed_cells = mode.observed_cells;

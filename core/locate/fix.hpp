@@ -1,7 +1,6 @@
 // One feature map against a map: where is the UAV? An honest answer is `fix`, `ambiguous` or `no_fix` with the reason.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "core/geodesy/geo_pose.hpp"
 #include "core/grid/feature_map.hpp"
 #include "core/locate/calibration.hpp"
+#include "core/locate/ellipse.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/prior.hpp"
 #include "core/search/search.hpp"
@@ -34,11 +34,10 @@ enum class FixStatus { kFix, kAmbiguous, kNoFix };
 
 struct FixMode {
   GeoPose pose;
-  double scale = 1.0;               ///< of the feature map's size
-  double weight = 0.0;              ///< share of the posterior of this mode, all modes sum to at most 1
-  double rho = 0.0;                 ///< equation (5), of the cells as they are
-  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
-  Angle ellipse_heading;            ///< of the major axis, clockwise from true north, in [0, 180) degrees
+  double scale = 1.0;   ///< of the feature map's size
+  double weight = 0.0;  ///< share of the posterior of this mode, all modes sum to at most 1
+  double rho = 0.0;     ///< equation (5), of the cells as they are
+  Ellipse ellipse;
   Angle heading_sigma;
   std::int64_t observed_cells = 0;
 };

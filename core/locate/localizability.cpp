@@ -27,7 +27,7 @@ RoadGrid around(const MapView& map, GridPoint centre, double footprint_m) {
 
 /// Within two standard deviations, or four cells where those are more.
 bool is_at(const FixMode& mode, GridPoint place, const UtmZone& zone, double cell_m) {
-  return distance_m(zone.project(mode.pose.position), place) <= std::max(4.0 * cell_m, 2.0 * mode.sigma_m[0]);
+  return distance_m(zone.project(mode.pose.position), place) <= std::max(4.0 * cell_m, 2.0 * mode.ellipse.sigma_m[0]);
 }
 
 }  // namespace

@@ -1,23 +1,22 @@
 // Where a track takes the vehicle to be after a step, and what became of what the step showed.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "core/geodesy/geo_pose.hpp"
+#include "core/locate/ellipse.hpp"
 
 namespace roadfix {
 
 struct TrackCluster {
   GeoPose pose;
-  double weight = 0.0;              ///< share of all particles' weight, 0 to 1
-  std::array<double, 2> sigma_m{};  ///< 1 sigma along the major and minor axis
-  Angle ellipse_heading;            ///< direction of the major axis, clockwise from true north, in [0, 180) degrees
-  Angle heading_sigma;              ///< 1 sigma
-  double radius95_m = 0.0;          ///< holds the vehicle with 95 %, if it is in the cluster at all
+  double weight = 0.0;  ///< share of all particles' weight, 0 to 1
+  Ellipse ellipse;
+  Angle heading_sigma;       ///< 1 sigma
+  double radius95_m = 0.0;   ///< holds the vehicle with 95 %, if it is in the cluster at all
   double scale = 1.0;        ///< how many times larger the ground is than the feature maps say, within the scale range
   double scale_sigma = 0.0;  ///< 1 sigma
 };

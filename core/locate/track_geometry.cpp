@@ -45,9 +45,10 @@ std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const Fea
   std::vector<Proposal> proposals;
   for (const FixMode& mode : fix.modes) {
     const GridPose at = on_grid(mode.pose, map.zone);
-    const auto widened = [&](double sigma_m) { return kWiden * sigma_m * sigma_m + 1.0; };
-    const PositionCovariance place = position_covariance({widened(mode.sigma_m[0]), widened(mode.sigma_m[1])},
-                                                         map.zone.grid_from_true(mode.ellipse_heading, at.position));
+    const Ellipse ellipse = on_grid(mode.ellipse, map.zone, at.position);
+    const auto variance = [&](double sigma_m) { return kWiden * sigma_m * sigma_m + 1.0; };
+    const PositionCovariance place =
+        position_covariance({variance(ellipse.sigma_m[0]), variance(ellipse.sigma_m[1])}, ellipse.heading);
     const double turn2 = kWiden * std::pow(mode.heading_sigma.radians(), 2.0) + 1e-4;
     proposals.push_back(
         {at,
@@ -63,11 +64,9 @@ TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double na
   const double scale = std::exp(cluster.log_scale);
   const double nadir_m = scale * nadir_sigma_m;
   const double told95_m = kSigmasOf95 * std::hypot(map.registration_sigma_m(cluster.mean.position), nadir_m);
-  const Ellipse ellipse = ellipse_of(map, cluster.mean.position, cluster.covariance);
   return {on_earth(cluster.mean, map.zone),
           cluster.weight,
-          {std::hypot(ellipse.sigma_m[0], nadir_m), std::hypot(ellipse.sigma_m[1], nadir_m)},
-          ellipse.heading,
+          widened(ellipse_of(map, cluster.mean.position, cluster.covariance), nadir_m),
           Angle::radians(std::sqrt(cluster.covariance[2][2])),
           std::hypot(cluster.radius95_m, told95_m),
           scale,

@@ -12,8 +12,8 @@ json mode_json(const FixMode& mode) {
   answer.update({{"scale", mode.scale},
                  {"weight", mode.weight},
                  {"rho", mode.rho},
-                 {"sigma_m", mode.sigma_m},
-                 {"ellipse_heading_deg", mode.ellipse_heading.degrees()},
+                 {"sigma_m", mode.ellipse.sigma_m},
+                 {"ellipse_heading_deg", mode.ellipse.heading.degrees()},
                  {"heading_sigma_deg", mode.heading_sigma.degrees()},
                  {"observed_cells", mode.observed_cells}});
   return answer;

@@ -14,8 +14,8 @@ using nlohmann::json;
 json cluster_json(const TrackCluster& cluster) {
   json answer = placed_json(cluster.pose);
   answer.update({{"weight", cluster.weight},
-                 {"sigma_m", cluster.sigma_m},
-                 {"ellipse_heading_deg", cluster.ellipse_heading.degrees()},
+                 {"sigma_m", cluster.ellipse.sigma_m},
+                 {"ellipse_heading_deg", cluster.ellipse.heading.degrees()},
                  {"heading_sigma_deg", cluster.heading_sigma.degrees()},
                  {"radius95_m", cluster.radius95_m},
                  {"scale", cluster.scale},

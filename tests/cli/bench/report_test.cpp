@@ -68,8 +68,8 @@ TEST(Summary, OfNothingHasNoMedian) {
 TEST(Report, GivesTheEllipseThatEachNeesFollowsFrom) {
   FixMode mode;
   mode.pose.position = {37.76, 38.28};
-  mode.sigma_m = {4.0, 2.0};
-  mode.ellipse_heading = Angle::degrees(90.0);
+  mode.ellipse.sigma_m = {4.0, 2.0};
+  mode.ellipse.heading = Angle::degrees(90.0);
   mode.heading_sigma = Angle::degrees(0.5);
   Answer answer;
   answer.best = mode.pose;

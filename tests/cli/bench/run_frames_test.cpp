@@ -46,7 +46,7 @@ TEST_F(BenchRunOfFrames, LaysFramesOfOneSequenceTogetherByTheirPoses) {
   const Outcome& outcome = results[0].outcomes.at(2);
   EXPECT_LT(*outcome.error_m, 3.0);
   EXPECT_LT(*outcome.heading_error_deg, 1.0);
-  EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 70.0 * kToldOffsetShare) << "of offsets that somebody told";
+  EXPECT_GE(outcome.answer.mode.value().ellipse.sigma_m[1], 70.0 * kToldOffsetShare) << "of offsets that somebody told";
 }
 
 class CountingDetector : public BrightnessDetector {
@@ -115,7 +115,7 @@ TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
     EXPECT_LT(outcome.error_m.value(), 3.0) << result.method;
     EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << result.method;
     if (result.method != "roads") continue;
-    EXPECT_GE(outcome.answer.mode.value().sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
+    EXPECT_GE(outcome.answer.mode.value().ellipse.sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
         << "how well the attitude is known is part of the accuracy";
   }
 }

@@ -6,18 +6,19 @@ namespace roadfix::evaluation {
 namespace {
 
 TEST(Nees, CountsTheErrorAlongAndAcrossTheEllipseInItsSigmas) {
-  const GridEllipse to_the_east{{100.0, 200.0}, Angle::degrees(90.0), {10.0, 2.0}};
-  EXPECT_NEAR(nees(to_the_east, {130.0, 200.0}), 9.0, 1e-9);
-  EXPECT_NEAR(nees(to_the_east, {100.0, 196.0}), 4.0, 1e-9);
-  EXPECT_NEAR(nees(to_the_east, {120.0, 206.0}), 4.0 + 9.0, 1e-9);
-  const GridEllipse north_east{{0.0, 0.0}, Angle::degrees(45.0), {10.0, 1.0}};
-  EXPECT_NEAR(nees(north_east, {10.0, 10.0}), 2.0, 1e-9);
-  EXPECT_NEAR(nees(north_east, {-1.0, 1.0}), 2.0, 1e-9);
+  const GridPoint centre{100.0, 200.0};
+  const Ellipse to_the_east{{10.0, 2.0}, Angle::degrees(90.0)};
+  EXPECT_NEAR(nees(centre, to_the_east, {130.0, 200.0}), 9.0, 1e-9);
+  EXPECT_NEAR(nees(centre, to_the_east, {100.0, 196.0}), 4.0, 1e-9);
+  EXPECT_NEAR(nees(centre, to_the_east, {120.0, 206.0}), 4.0 + 9.0, 1e-9);
+  const Ellipse north_east{{10.0, 1.0}, Angle::degrees(45.0)};
+  EXPECT_NEAR(nees({}, north_east, {10.0, 10.0}), 2.0, 1e-9);
+  EXPECT_NEAR(nees({}, north_east, {-1.0, 1.0}), 2.0, 1e-9);
 }
 
 TEST(Nees, OfAnEllipseWithoutAnAreaIsFinite) {
-  EXPECT_EQ(nees({{0.0, 0.0}, Angle(), {0.0, 0.0}}, {0.0, 0.0}), 0.0);
-  EXPECT_NEAR(nees({{0.0, 0.0}, Angle(), {0.0, 0.0}}, {0.0, 1.0}), 1e6, 1e-3);
+  EXPECT_EQ(nees({}, {}, {0.0, 0.0}), 0.0);
+  EXPECT_NEAR(nees({}, {}, {0.0, 1.0}), 1e6, 1e-3);
 }
 
 TEST(Nees, OfAHeadingCountsTheShorterWayRound) {

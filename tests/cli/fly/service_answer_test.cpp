@@ -20,13 +20,12 @@ TrackEstimate estimate() {
   e.converged = true;
   e.clusters = {{{{37.7612345678, 38.2712345678}, Angle::degrees(211.5)},
                  0.9375,
-                 {4.25, 3.5},
-                 Angle::degrees(17.0),
+                 {{4.25, 3.5}, Angle::degrees(17.0)},
                  Angle::degrees(0.75),
                  9.5,
                  1.0625,
                  0.015625},
-                {{{37.77, 38.28}, Angle::degrees(10.0)}, 0.0625, {8.0, 6.0}, Angle(), Angle::degrees(2.0), 20.0}};
+                {{{37.77, 38.28}, Angle::degrees(10.0)}, 0.0625, {{8.0, 6.0}, Angle()}, Angle::degrees(2.0), 20.0}};
   e.cluster_count = 11;
   e.particles = 1234;
   e.resets = 1;

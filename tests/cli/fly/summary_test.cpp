@@ -24,7 +24,7 @@ Run run_with(const std::vector<double>& errors) {
     record.nees = 2.0;
     record.truth = record.best = {{500'000.0, 6'400'000.0}, {}};
     record.estimate.converged = errors[i] < 0.0;
-    record.estimate.clusters = {{{{57.0, 21.0}, {}}, 0.95, {4.0, 2.0}, {}, {}, 10.0}};
+    record.estimate.clusters = {{{{57.0, 21.0}, {}}, 0.95, {{4.0, 2.0}, {}}, {}, 10.0}};
     record.estimate.particles = 100;
     run.records.push_back(record);
   }

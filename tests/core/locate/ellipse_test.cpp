@@ -67,7 +67,7 @@ TEST(Ellipse, TheCircleOfNinetyFivePercentHoldsTheErrorOfTheMapsRegistrationToo)
   cluster.radius95_m = kSigmasOf95 * 3.0;
   EXPECT_NEAR(to_geographic(map_registered_to(0.0), cluster, 0.0).radius95_m, kSigmasOf95 * 3.0, 1e-9);
   const TrackCluster on_earth = to_geographic(map_registered_to(4.0), cluster, 0.0);
-  EXPECT_NEAR(on_earth.sigma_m[0], 5.0, 1e-9);
+  EXPECT_NEAR(on_earth.ellipse.sigma_m[0], 5.0, 1e-9);
   EXPECT_NEAR(on_earth.radius95_m, kSigmasOf95 * 5.0, 1e-9);
 }
 
@@ -77,8 +77,8 @@ TEST(Ellipse, ATrackHoldsTheErrorOfTheNadirToo) {
   cluster.covariance = covariance_of(Angle(), 9.0, 5.0);
   cluster.radius95_m = kSigmasOf95 * 9.0;
   const TrackCluster on_earth = to_geographic(map_registered_to(0.0), cluster, 12.0);
-  EXPECT_NEAR(on_earth.sigma_m[0], 15.0, 1e-9);
-  EXPECT_NEAR(on_earth.sigma_m[1], 13.0, 1e-9);
+  EXPECT_NEAR(on_earth.ellipse.sigma_m[0], 15.0, 1e-9);
+  EXPECT_NEAR(on_earth.ellipse.sigma_m[1], 13.0, 1e-9);
   EXPECT_NEAR(on_earth.radius95_m, kSigmasOf95 * 15.0, 1e-9);
 }
 

@@ -26,7 +26,7 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   EXPECT_LT(angular_distance(fix.modes[0].pose.heading, on_earth(truth, view_.zone).heading).degrees(), 0.5);
   EXPECT_EQ(fix.map_name, view_.name);
   EXPECT_NEAR(fix.searched_km2, 2.4 * 1.8, 1e-6);
-  EXPECT_GE(fix.modes[0].sigma_m[0], fix.modes[0].sigma_m[1]);
+  EXPECT_GE(fix.modes[0].ellipse.sigma_m[0], fix.modes[0].ellipse.sigma_m[1]);
 }
 
 TEST_F(Locate, SaysTheSameWhateverCellsTheSearchesBeforeItHad) {
@@ -68,7 +68,7 @@ TEST_F(Locate, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   const Fix fix = locate(view_, features, {}, {});
   ASSERT_FALSE(fix.modes.empty());
   for (const std::size_t axis : {0U, 1U}) {
-    EXPECT_NEAR(fix.modes[0].sigma_m[axis], std::hypot(exact.modes.at(0).sigma_m[axis], 7.0), 1e-9);
+    EXPECT_NEAR(fix.modes[0].ellipse.sigma_m[axis], std::hypot(exact.modes.at(0).ellipse.sigma_m[axis], 7.0), 1e-9);
   }
   EXPECT_EQ(fix.probability, exact.probability);
 }
@@ -84,7 +84,8 @@ TEST_F(Locate, CountsHowWellTheNadirIsKnownInTheSizeThatTheGroundHas) {
   const Fix fix = locate(view_, features, {}, options);
   ASSERT_FALSE(fix.modes.empty());
   ASSERT_NEAR(fix.modes[0].scale, 2.0 / 1.8, 0.02);
-  EXPECT_NEAR(fix.modes[0].sigma_m[0], std::hypot(exact.modes.at(0).sigma_m[0], fix.modes[0].scale * 7.0), 1e-9);
+  EXPECT_NEAR(fix.modes[0].ellipse.sigma_m[0],
+              std::hypot(exact.modes.at(0).ellipse.sigma_m[0], fix.modes[0].scale * 7.0), 1e-9);
 }
 
 TEST_F(Locate, CountsHowFarTheGroundMayBeTurnedInItsHeading) {
@@ -161,12 +162,12 @@ TEST_F(Locate, TheEllipseHoldsTheErrors) {
     const GridPoint at = view_.zone.project(mode.pose.position);
     const double east = at.east_m - truth.position.east_m;
     const double north = at.north_m - truth.position.north_m;
-    const Angle major = view_.zone.grid_from_true(mode.ellipse_heading, at);
+    const Angle major = view_.zone.grid_from_true(mode.ellipse.heading, at);
     const double along = east * sin(major) + north * cos(major);
     const double across = east * cos(major) - north * sin(major);
     const double turn =
         (mode.pose.heading - on_earth(truth, view_.zone).heading).wrapped().radians() / mode.heading_sigma.radians();
-    nees += std::pow(along / mode.sigma_m[0], 2) + std::pow(across / mode.sigma_m[1], 2) + turn * turn;
+    nees += std::pow(along / mode.ellipse.sigma_m[0], 2) + std::pow(across / mode.ellipse.sigma_m[1], 2) + turn * turn;
   }
   ASSERT_GT(fixes, 4);
   EXPECT_LT(nees / fixes, 6.0);

@@ -71,7 +71,7 @@ TEST_F(LocateAlike, IsAsGoodAsItSaysOfAFrameThatLiesFarFromItsNadir) {
     if (fix.status != FixStatus::kFix) continue;
     ++fixes;
     const FixMode& mode = fix.modes.front();
-    EXPECT_LT(error_m(mode.pose, truth), 4.0 * mode.sigma_m[0] + 2.0);
+    EXPECT_LT(error_m(mode.pose, truth), 4.0 * mode.ellipse.sigma_m[0] + 2.0);
     EXPECT_LT(angular_distance(mode.pose.heading, on_earth(truth, view_.zone).heading).degrees(), 0.5);
   }
   EXPECT_GE(fixes, 3);

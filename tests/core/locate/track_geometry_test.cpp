@@ -42,8 +42,8 @@ TEST_F(TrackGeometry, ProposesPlacesAroundTheEllipsesOfAFixAsTheyLieOnTheGrid) {
   mode.pose = on_earth({place_, Angle::degrees(60.0)}, view_.zone);
   mode.scale = 1.1;
   mode.weight = 0.7;
-  mode.sigma_m = {20.0, 2.0};
-  mode.ellipse_heading = Angle::degrees(40.0);
+  mode.ellipse.sigma_m = {20.0, 2.0};
+  mode.ellipse.heading = Angle::degrees(40.0);
   mode.heading_sigma = Angle::degrees(2.0);
   Fix fix;
   fix.modes = {mode};
@@ -55,7 +55,7 @@ TEST_F(TrackGeometry, ProposesPlacesAroundTheEllipsesOfAFixAsTheyLieOnTheGrid) {
   EXPECT_EQ(place.weight, 0.7);
   EXPECT_NEAR(place.log_scale, std::log(1.1), 1e-12);
 
-  const Direction along = on_plane(mode.ellipse_heading);
+  const Direction along = on_plane(mode.ellipse.heading);
   const Direction across{along.north, -along.east};
   const auto covariance = [&](Direction a, Direction b) {
     const PoseCovariance& c = place.covariance;
@@ -84,9 +84,9 @@ TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadirInTheSize
   cluster.log_scale_sigma = 0.02;
   const TrackCluster told = to_geographic(view_, cluster, 12.0 / std::exp(0.1));
   expect_same(on_plane(told.pose.heading), on_plane_from_grid(cluster.mean.heading));
-  expect_same(on_plane(told.ellipse_heading), on_plane_from_grid(Angle::degrees(90.0)));
-  EXPECT_NEAR(told.sigma_m[0], std::sqrt(900.0 + 25.0 + 144.0), 1e-9);
-  EXPECT_NEAR(told.sigma_m[1], std::sqrt(100.0 + 25.0 + 144.0), 1e-9);
+  expect_same(on_plane(told.ellipse.heading), on_plane_from_grid(Angle::degrees(90.0)));
+  EXPECT_NEAR(told.ellipse.sigma_m[0], std::sqrt(900.0 + 25.0 + 144.0), 1e-9);
+  EXPECT_NEAR(told.ellipse.sigma_m[1], std::sqrt(100.0 + 25.0 + 144.0), 1e-9);
   EXPECT_NEAR(told.heading_sigma.degrees(), 3.0, 1e-9);
   const double told95_m = std::sqrt(-2.0 * std::log(0.05)) * std::hypot(5.0, 12.0);
   EXPECT_NEAR(told.radius95_m, std::hypot(60.0, told95_m), 1e-3);

@@ -42,7 +42,8 @@ TEST_F(Track, CountsHowWellTheNadirIsKnownInItsAccuracy) {
   const TrackEstimate told = fly(Tracker(view_, askew), same, 3);
   EXPECT_EQ(told.clusters.at(0).pose.position.lat_deg, exact.clusters.at(0).pose.position.lat_deg);
   for (const std::size_t axis : {0U, 1U}) {
-    EXPECT_NEAR(told.clusters[0].sigma_m[axis], std::hypot(exact.clusters[0].sigma_m[axis], 12.0), 1e-9);
+    EXPECT_NEAR(told.clusters[0].ellipse.sigma_m[axis], std::hypot(exact.clusters[0].ellipse.sigma_m[axis], 12.0),
+                1e-9);
   }
 }
 
@@ -53,7 +54,7 @@ TEST_F(Track, CountsHowWellTheNadirOfTheLastFrameIsKnownUnlessItIsToldForAll) {
     step.features.reset();
     ++step.sequence;
     ++step.time_us;
-    return Tracker(view_, settings).advance(state_, step).estimate.clusters.at(0).sigma_m[1];
+    return Tracker(view_, settings).advance(state_, step).estimate.clusters.at(0).ellipse.sigma_m[1];
   };
   StepInput step = flight.step();
   step.features->nadir_sigma_m = 300.0;
@@ -103,7 +104,7 @@ TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
   EXPECT_TRUE(seeing.converged);
   EXPECT_FALSE(blind.converged) << "a minute without sight is stale";
   EXPECT_DOUBLE_EQ(blind.since_accepted_s.value(), 61.0);
-  EXPECT_GT(blind.clusters[0].sigma_m[0], 2.0 * seeing.clusters[0].sigma_m[0]);
+  EXPECT_GT(blind.clusters[0].ellipse.sigma_m[0], 2.0 * seeing.clusters[0].ellipse.sigma_m[0]);
 }
 
 TEST_F(Track, GrowsLessSureByAMeasurementThatSpeaksAgainstIt) {
@@ -111,12 +112,12 @@ TEST_F(Track, GrowsLessSureByAMeasurementThatSpeaksAgainstIt) {
   Flight flight(map_, start_, 4);
   fly(tracker, flight, 10);
   StepInput next = flight.step(false);
-  const double unseeing_m = tracker.advance(state_, next).estimate.clusters[0].sigma_m[0];
+  const double unseeing_m = tracker.advance(state_, next).estimate.clusters[0].ellipse.sigma_m[0];
   std::mt19937_64 random(2);
   next.features = testing::observed_at(map_, {{600'300.0, 6'399'100.0}, Angle()}, 128, 128, 2.0, {0.1, 0.1}, random);
   const TrackEstimate contradicted = tracker.advance(state_, next).estimate;
   EXPECT_EQ(contradicted.measurement, Measurement::kRejected);
-  EXPECT_GT(contradicted.clusters[0].sigma_m[0], std::hypot(unseeing_m, 3.0));
+  EXPECT_GT(contradicted.clusters[0].ellipse.sigma_m[0], std::hypot(unseeing_m, 3.0));
 }
 
 TEST_F(Track, CountsLostStepsAndWidensForThem) {
@@ -124,11 +125,11 @@ TEST_F(Track, CountsLostStepsAndWidensForThem) {
   Flight flight(map_, start_, 7);
   fly(tracker, flight, 6);
   StepInput next = flight.step(false);
-  const double sure = tracker.advance(state_, next).estimate.clusters[0].sigma_m[0];
+  const double sure = tracker.advance(state_, next).estimate.clusters[0].ellipse.sigma_m[0];
   next.sequence += 2;
   const TrackEstimate late = advance(tracker, next);
   EXPECT_EQ(late.missed_steps, 2);
-  EXPECT_GT(late.clusters[0].sigma_m[0], sure + 5.0);
+  EXPECT_GT(late.clusters[0].ellipse.sigma_m[0], sure + 5.0);
 }
 
 TEST_F(Track, TakesAFrameThatShowsNothingNeitherForNorAgainstItsPlace) {

@@ -13,8 +13,8 @@ FixMode mode() {
   mode.scale = 1.05;
   mode.weight = 0.996;
   mode.rho = 0.31;
-  mode.sigma_m = {2.1, 1.7};
-  mode.ellipse_heading = Angle::degrees(40.0);
+  mode.ellipse.sigma_m = {2.1, 1.7};
+  mode.ellipse.heading = Angle::degrees(40.0);
   mode.heading_sigma = Angle::degrees(0.8);
   mode.observed_cells = 9812;
   return mode;

@@ -31,7 +31,7 @@ TEST(MapFileView, AMapFileAnswersWhereAFootprintWasSeen) {
   const Fix fix = locate(view, testing::observed_at(town, truth, 170, 170, 2.0, {0.1, 0.1}, random), {}, {});
   ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason;
   EXPECT_LT(distance_m(view.zone.project(fix.modes[0].pose.position), truth.position), 1.5);
-  EXPECT_GT(fix.modes[0].sigma_m[1], 1.5) << "the registration error of the map is part of the answer's";
+  EXPECT_GT(fix.modes[0].ellipse.sigma_m[1], 1.5) << "the registration error of the map is part of the answer's";
   EXPECT_EQ(fix.map_version, view.version);
 }
 

@@ -150,7 +150,7 @@ TEST(MapRegistry, LogsWhichMapsLackBlocksOfAnIngestThatWasInterrupted) {
 
 TEST(MapRegistry, LogsThatItsFolderHoldsNoMapYet) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "imagery.tif");
+  const std::ofstream imagery(folder / "imagery.tif");
   const CapturedLog log;
   const MapRegistry registry(folder.path(), kCache);
   EXPECT_EQ(log.count("no map (*.gpkg) is in " + folder.path().string() + " yet"), 1);

@@ -137,6 +137,28 @@ class Latenesses(Folder):
                                        ("photo.jpg", 300.0, False)):
             self.assertEqual(self.late_number(lateness, name, written), is_late, name)
 
+    def test_of_a_stream_are_told_also_after_a_picture_that_comes_out_of_order(self):
+        for again in (2, 3):
+            lateness = Lateness(1.0)
+            for number, written, is_late in ((1, 100.0, False), (2, 101.0, False), (3, 104.0, True),
+                                             (again, 104.1, True), (4, 104.2, True), (5, 105.2, True),
+                                             (6, 105.1, False)):
+                self.assertEqual(self.late_number(lateness, f"f{number:04}.jpg", written), is_late, (again, number))
+
+    def test_of_a_stream_that_begins_anew_are_measured_from_its_first_picture(self):
+        for first in (0, 1, 50):  # a ring of names goes on anywhere
+            lateness = Lateness(1.0)
+            self.assertFalse(self.late_number(lateness, "f0100.jpg", 200.0))
+            self.assertFalse(self.late_number(lateness, f"f{first:04}.jpg", 300.0), first)
+            self.assertTrue(self.late_number(lateness, f"f{first + 1:04}.jpg", 302.0), first)
+
+    def test_of_two_cameras_in_one_folder_are_told_by_the_numbers_of_each(self):
+        lateness = Lateness(1.0)
+        for number in range(1, 6):
+            for camera, begin in (("a", 100.0), ("b", 200.0)):
+                self.assertEqual(self.late_number(lateness, f"{camera}{number:04}.jpg", begin + 1.2 * number),
+                                 number > 2, (camera, number))
+
     def test_keep_pictures_of_a_folder_back(self):
         clock = types.SimpleNamespace(monotonic=lambda date_s: date_s - NOON_S, was_set=False)
         pictures = NewPictures(self.path.parent, clock)

@@ -19,22 +19,28 @@ def check(url, request, frame_fields):
             raise ValueError(f"--frame {name}: no such field of a step; there are {', '.join(PICTURE_FIELDS)}, and of "
                              f"positions {', '.join(POSITION_FIELDS)}")
     service = Service(url, PATIENCE_S)
+    unchecked = "nothing"
     try:
-        found = service.ask_object(("status",), "GET", "/v1/maps/" + urllib.parse.quote(request["map"], safe=""))
+        _check_map(request, service)
+        unchecked = "nothing more"
         ready = service.ask_object(("status",), "GET", "/readyz")
     except Silent as silent:
-        print(f"nothing is checked before the flight: {silent}", file=sys.stderr)
+        print(f"{unchecked} is checked before the flight: {silent}", file=sys.stderr)
         return False
     finally:
         service.close()
+    if ready.get("tracks", "ready") != "ready":
+        print(f"no track can be flown now: {ready.get('tracks_problem')}", file=sys.stderr)
+    return True
+
+
+def _check_map(request, service):
+    found = service.ask_object(("status",), "GET", "/v1/maps/" + urllib.parse.quote(request["map"], safe=""))
     if not found.get("bbox"):
         raise ValueError(f"the map '{request['map']}' shows nothing: its status is '{found['status']}'")
     _require_near(request, found["bbox"])
     status = "" if found["status"] == "ready" else f", {found['status']}"
     print(f"the map '{request['map']}' has version {found.get('version')}{status}", file=sys.stderr)
-    if ready.get("tracks", "ready") != "ready":
-        print(f"no track can be flown now: {ready.get('tracks_problem')}", file=sys.stderr)
-    return True
 
 
 def _require_near(request, bbox):

@@ -33,7 +33,7 @@ class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
     taken, "pay" or "hello" where something in between answers, "still at it" where it takes the one before that it had
     not told of; then 200. A step takes `delay_s` when it comes first, and messages say that it took `told_s`. A track
-    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem."""
+    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem. `readiness` None: no answer."""
 
     TIME_OF_SILENCE_S = 3600.0
 
@@ -76,6 +76,9 @@ class FakeService:
                     self.answer(status, json.dumps(content).encode())
                     return
                 if self.path == "/readyz":
+                    if fake.readiness is None:
+                        self.close_connection = True
+                        return
                     self.answer(200, json.dumps(fake.readiness).encode())
                     return
                 if fake.gone:

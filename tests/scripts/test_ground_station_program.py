@@ -73,6 +73,14 @@ class BeforeTheFlight(unittest.TestCase):
             self.assertEqual(status, expected)
             self.assertIn("nothing is checked before the flight: no answer of 127.0.0.1 within 3 s", words)
 
+    def test_a_place_beside_the_map_is_refused_also_where_the_service_then_falls_silent(self):
+        with FakeService() as fake:
+            fake.readiness = None
+            status, words = self.checked(fake, "--track", "lat=38.25", "lon=37.75", "radius_m=2000")
+            self.assertEqual(status, 1)
+            self.assertIn("the track would begin at least 47.7 km beside the map", words)
+            self.assertRegex(self.checked(fake)[1], f"^{BEFORE}.*Z nothing more is checked before the flight: ")
+
     def test_tracks_that_cannot_be_kept_are_told(self):
         with FakeService() as fake:
             fake.readiness = {"status": "ready", "tracks": "unavailable", "tracks_problem": "the disk is full"}

@@ -67,9 +67,13 @@ bool looks_like_numbers(const std::string& extent) {
          !std::filesystem::exists(extent, none);
 }
 
-bool lies_on_earth(const GeoBox& box) {
-  const auto on_earth = [](LatLon at) { return std::abs(at.lat_deg) <= 90.0 && std::abs(at.lon_deg) <= 360.0; };
-  return on_earth(box.south_west) && on_earth(box.north_east);
+/// Of west, south, east and north, as they are told: longitudes may be counted from 0 to 360 degrees, too.
+std::optional<GeoBox> box_of(std::span<const double, 4> sides_deg) {
+  for (const std::size_t longitude : {0U, 2U}) {
+    if (std::abs(sides_deg[longitude]) > 360.0 || std::abs(sides_deg[longitude + 1]) > 90.0) return std::nullopt;
+  }
+  const GeoBox box = geo_box_of(sides_deg);
+  return box.empty() ? std::nullopt : std::optional(box);
 }
 
 }  // namespace
@@ -78,8 +82,8 @@ std::optional<GeoBox> box_in_degrees(const std::string& extent) {
   const std::optional<std::vector<double>> sides = numbers_in(extent, ',');
   const bool four = sides && sides->size() == 4;
   if (!four && !looks_like_numbers(extent)) return std::nullopt;
-  const GeoBox box = four ? geo_box_of(std::span<const double, 4>(*sides)) : GeoBox{};
-  if (box.empty() || !lies_on_earth(box)) {
+  const std::optional<GeoBox> box = four ? box_of(std::span<const double, 4>(*sides)) : std::nullopt;
+  if (!box) {
     throw InvalidInput(
         "extent-unreadable",
         fmt::format("--extent {}: write west,south,east,north in degrees, west and south first", extent));

@@ -10,6 +10,7 @@
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/sources/vector_roads_fixture.hpp"
 #include "tiles/sources/gdal_session.hpp"
+#include "tiles/sources/stated_extent.hpp"
 
 namespace roadfix {
 namespace {
@@ -118,6 +119,18 @@ TEST_F(StatedExtent, OfTooFewNumbersIsNoFileThatIsMissing) {
                 HasSubstr("write west,south,east,north"))
         << extent;
   }
+}
+
+TEST_F(StatedExtent, CrossesGreenwichInLongitudesFrom0To360) {
+  const std::optional<GeoBox> box = box_in_degrees("350,45,10,46");
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->south_west.lon_deg, 350.0);
+  EXPECT_EQ(box->north_east.lon_deg, 370.0);
+  const UtmZone zone = UtmZone::from_epsg(32631).value();
+  const GridBox ground = read_extent("359.99,45,0.01,45.01", zone).front().box();
+  const GridBox same = read_extent("-0.01,45,0.01,45.01", zone).front().box();
+  EXPECT_NEAR(distance_m(ground.min, same.min), 0.0, 0.01);
+  EXPECT_NEAR(distance_m(ground.max, same.max), 0.0, 0.01);
 }
 
 TEST_F(StatedExtent, OfNumbersThatAreNoPlacesOnEarthIsRefusedAsSuch) {

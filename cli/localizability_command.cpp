@@ -24,37 +24,31 @@ struct LocalizabilityArguments {
   bool as_json = false;
 };
 
-double ground_km2(const MapSurvey& survey, std::int64_t places) {
-  return static_cast<double>(places) * survey.every_m * survey.every_m / 1e6;
-}
-
 double share(const MapSurvey& survey, std::int64_t places) {
   return survey.places() > 0 ? static_cast<double>(places) / static_cast<double>(survey.places()) : 0.0;
 }
 
 void print_json(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
-  const nlohmann::json answer{{"map", api::map_json(map.name, map.version)},
-                              {"made_by", api::made_by()},
-                              {"footprint_m", options.query.footprint_m},
-                              {"every_m", found.every_m},
-                              {"places", found.places()},
-                              {"ground_km2", ground_km2(found, found.places())},
-                              {"distinct", share(found, found.distinct)},
-                              {"sparse", share(found, found.sparse)},
-                              {"bare", share(found, found.bare)}};
+  const nlohmann::json answer{{"map", api::map_json(map.name, map.version)}, {"made_by", api::made_by()},
+                              {"footprint_m", options.query.footprint_m},    {"places", found.places()},
+                              {"ground_km2", found.ground_m2 / 1e6},         {"distinct", share(found, found.distinct)},
+                              {"sparse", share(found, found.sparse)},        {"bare", share(found, found.bare)}};
   fmt::print("{}\n", json_text(answer, 2));
 }
 
 void print_text(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
+  constexpr std::int64_t kFewPlaces = 20;
   if (found.places() == 0) {
     fmt::print("{}: nowhere is half of a footprint of {:g} m observed\n", map.name, options.query.footprint_m);
     return;
   }
-  fmt::print("{}: {:.1f} km2 of ground, asked every {:g} m for frames that show {:g} m of it\n", map.name,
-             ground_km2(found, found.places()), found.every_m, options.query.footprint_m);
+  const double ground_km2 = found.ground_m2 / 1e6;
+  fmt::print("{}: {:.1f} km2 of ground, for frames that show {:g} m of it; asked at places: {}{}\n", map.name,
+             ground_km2, options.query.footprint_m, found.places(),
+             found.places() < kFewPlaces ? ", too few for more than a rough idea" : "");
   const auto line = [&](const char* word, std::int64_t places, const char* meaning) {
-    fmt::print("  {:<9} {:3.0f} %  {:6.1f} km2  {}\n", word, 100.0 * share(found, places), ground_km2(found, places),
-               meaning);
+    const double part = share(found, places);
+    fmt::print("  {:<9} {:3.0f} %  {:6.1f} km2  {}\n", word, 100.0 * part, part * ground_km2, meaning);
   };
   line("distinct", found.distinct, "a frame gives a fix");
   line("sparse", found.sparse,

@@ -16,9 +16,9 @@ struct SurveyOptions {
   OnProgress progress{};  ///< in places; from any thread, one call at a time
 };
 
-/// Places of which the map has observed half of the footprint or more; of others it cannot say.
+/// Of the places of whose footprint the map has observed half or more; of others it cannot say.
 struct MapSurvey {
-  double every_m = 0.0;       ///< from one place to the next: each speaks for a square of that side
+  double ground_m2 = 0.0;     ///< observed ground that the places stand for, each for an equal part of it
   std::int64_t distinct = 0;  ///< a frame would give a fix
   std::int64_t sparse = 0;    ///< it shows roads, but they fit elsewhere, too, or are too few to be sure
   std::int64_t bare = 0;      ///< it shows less road than a single one across it
@@ -26,8 +26,8 @@ struct MapSurvey {
   std::int64_t places() const { return distinct + sparse + bare; }
 };
 
-/// Asks localizability() at the places of a square lattice over the map's extent, a footprint from each other or, where
-/// those are more than `max_places`, that distance doubled until they are not. Throws what localizability() throws.
+/// Asks localizability() at places about a footprint from each other all over the map's observed ground or, where those
+/// are more than `max_places`, at so many of them, evenly spread. Throws what localizability() throws.
 MapSurvey survey(const MapView& map, const SurveyOptions& options);
 
 }  // namespace roadfix

@@ -138,7 +138,7 @@ FeatureMap observed_at(const RoadGrid& map, const GridPose& pose, int cols, int 
 std::function<RoadGrid(const GridGeometry&)> reader_of(const RoadGrid& map) {
   auto levels = std::make_shared<std::vector<RoadGrid>>();
   levels->push_back(map);
-  while (levels->back().geometry.cell_m < 64.0) levels->push_back(halved(levels->back()));
+  while (levels->back().geometry.cell_m < 4096.0) levels->push_back(halved(levels->back()));
   return [levels](const GridGeometry& geometry) {
     for (const RoadGrid& level : *levels) {
       if (level.geometry.cell_m != geometry.cell_m) continue;

@@ -36,15 +36,14 @@ TEST(MapSurvey, TellsGroundThatGivesAFixFromBareAndUnknownGround) {
   std::int64_t told = 0;
   all.progress = [&](std::int64_t done, std::int64_t total) {
     EXPECT_EQ(done, ++told);
-    EXPECT_EQ(total, 6);
+    EXPECT_EQ(total, 4);
   };
   const MapSurvey found = survey(map, all);
-  EXPECT_EQ(found.every_m, 400.0);
-  EXPECT_EQ(told, 6);
+  EXPECT_EQ(told, 4);
   EXPECT_EQ(found.distinct, 2);
   EXPECT_EQ(found.sparse, 0);
   EXPECT_EQ(found.bare, 2);
-  EXPECT_EQ(found.places(), 4);
+  EXPECT_NEAR(found.ground_m2, 800.0 * 800.0, 1.0);
 }
 
 TEST(MapSurvey, CallsGroundSparseWhoseRoadsFitElsewhere) {
@@ -56,12 +55,44 @@ TEST(MapSurvey, CallsGroundSparseWhoseRoadsFitElsewhere) {
   EXPECT_EQ(found.bare, 0);
 }
 
-TEST(MapSurvey, AsksFewerPlacesFartherApartWhereThoseWouldBeTooMany) {
+TEST(MapSurvey, AsksAtFewerPlacesThatStandForMoreGroundWhereItWouldBeTooMany) {
   SurveyOptions few = options();
-  few.max_places = 4;
+  few.max_places = 2;
   const MapSurvey found = survey(town_fields_and_unknown_ground(), few);
-  EXPECT_EQ(found.every_m, 800.0);
-  EXPECT_LE(found.places(), 2);
+  EXPECT_EQ(found.distinct, 1);
+  EXPECT_EQ(found.bare, 1);
+  EXPECT_NEAR(found.ground_m2, 800.0 * 800.0, 1.0);
+}
+
+/// A town and, 8 km from it, fields; each of 800 x 800 m.
+MapView town_and_far_fields() {
+  constexpr int kSide = 400;
+  RoadGrid ground = RoadGrid::unobserved({2.0, {300'000, -3'200'000}, 4000 + kSide, 4000 + kSide});
+  paste(testing::street_map(22, {2.0, {}, kSide, kSide}).cells, ground.cells, 0, 4000);
+  paste(CellArray(kSide, kSide, kNoRoad), ground.cells, 4000, 0);
+  return view_of(ground);
+}
+
+TEST(MapSurvey, AsksAtObservedGroundOnlyHoweverFarApartItLies) {
+  const MapView map = town_and_far_fields();
+  for (const std::int64_t places : {8, 4, 2}) {
+    SurveyOptions few = options();
+    few.max_places = places;
+    const MapSurvey found = survey(map, few);
+    EXPECT_EQ(found.distinct + found.sparse, places / 2);
+    EXPECT_GT(found.distinct, 0);
+    EXPECT_EQ(found.bare, places / 2);
+    EXPECT_NEAR(found.ground_m2, 2.0 * 800.0 * 800.0, 1.0);
+  }
+}
+
+TEST(MapSurvey, CountsNoGroundBeyondTheMapWhereAFootprintIsLarger) {
+  RoadGrid ground = testing::street_map(22, {2.0, {300'000, -3'200'000}, 450, 450});
+  SurveyOptions large = options();
+  large.query.footprint_m = 1200.0;
+  const MapSurvey found = survey(view_of(ground), large);
+  EXPECT_EQ(found.places(), 1);
+  EXPECT_NEAR(found.ground_m2, 900.0 * 900.0, 1.0);
 }
 
 TEST(MapSurvey, OfAnEmptyMapAsksNothing) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/grid/cell_moments.hpp"
+#include "core/locate/footprint_refusal.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -55,6 +56,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   prior.circle = GeoCircle{query.position, query.radius_m};
   const Fix fix = locate(map, seen, prior, query.fix);
   Localizability result;
+  result.bare = shows_less_than_a_road_across(seen);
   result.road_share = moments_of(as_mapped.cells).mean();
   result.observed_share =
       static_cast<double>(as_mapped.cells.observed_count()) / static_cast<double>(as_mapped.cells.cells().size());

@@ -28,6 +28,7 @@ struct Localizability {
   std::string explanation;               ///< the reason as a sentence for an operator
   bool complete = true;         ///< false where the time limit ended the search: whatever it found, it is no fix
   double probability = 0.0;     ///< that the frame would be placed rightly; 0 where the best place is another one
+  bool bare = false;            ///< the frame would show less road than a single one across it, whatever is found
   double road_share = 0.0;      ///< how much of the observed part of the footprint is road, 0 to 1
   double observed_share = 0.0;  ///< how much of the footprint the map has observed, 0 to 1
   std::vector<FixMode> alike;   ///< other places that fit, best first

@@ -25,7 +25,7 @@ void count(MapSurvey& survey, const Localizability& place) {
   if (place.observed_share < kMinObservedShare) return;  // overviews show ground with gaps as whole
   if (place.status == FixStatus::kFix) {
     ++survey.distinct;
-  } else if (place.reason == "too-few-roads") {
+  } else if (place.bare) {
     ++survey.bare;
   } else {
     ++survey.sparse;

@@ -59,6 +59,7 @@ TEST(Localizability, IsNoneAtACrossingAlone) {
   const MapView view = view_of(country);
   const Localizability place = localizability(view, centre_of(view, 400.0));
   EXPECT_EQ(place.status, FixStatus::kNoFix);
+  EXPECT_FALSE(place.bare);
   EXPECT_EQ(place.reason, "not-above-chance") << "another crossing looks like it";
   EXPECT_LE(place.probability, 0.5);
 }
@@ -80,10 +81,37 @@ TEST(Localizability, SaysInWordsThatAFrameFitsBetterElsewhere) {
   EXPECT_GT(elsewhere, 0);
 }
 
+TEST(Localizability, TellsABarePlaceAlsoWhereItsPieceOfRoadFitsBetterElsewhere) {
+  constexpr int kCells = 800;
+  RoadGrid country{square(kCells), CellArray(kCells, kCells, kNoRoad)};
+  for (int piece = 0; piece < 16; ++piece) {  // of 120 m, in each square of 400 m
+    for (int along = 0; along < 60; ++along) {
+      for (int width = 0; width < 3; ++width) {
+        const int across = along * (piece - 8) / 8;
+        country.cells.at(200 * (piece % 4) + 70 + along, 200 * (piece / 4) + 100 + across + width) = kRoad;
+      }
+    }
+  }
+  const MapView view = view_of(country);
+  LocalizabilityQuery query = centre_of(view, 400.0);
+  int elsewhere = 0;
+  for (const double east_m : {-200.0, 200.0}) {
+    for (const double north_m : {-200.0, 200.0}) {
+      const GridPoint centre = view.extent.centre();
+      query.position = view.zone.unproject({centre.east_m + east_m, centre.north_m + north_m});
+      const Localizability place = localizability(view, query);
+      EXPECT_TRUE(place.bare);
+      elsewhere += place.reason == "wrong-place" ? 1 : 0;
+    }
+  }
+  EXPECT_GT(elsewhere, 0);
+}
+
 TEST(Localizability, SaysWhyABareOrUnobservedPlaceGivesNoFix) {
   RoadGrid bare{square(400), CellArray(400, 400, kNoRoad)};
   const MapView view = view_of(bare);
   EXPECT_EQ(localizability(view, centre_of(view, 200.0)).reason, "too-few-roads");
+  EXPECT_TRUE(localizability(view, centre_of(view, 200.0)).bare);
   RoadGrid unseen{square(400), CellArray(400, 400)};
   const MapView nothing = view_of(unseen);
   const Localizability place = localizability(nothing, centre_of(nothing, 200.0));

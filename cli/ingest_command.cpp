@@ -123,7 +123,8 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
-    print_plan(json, planned.blocks, arguments.map, arguments.json);
+    const std::int64_t held = std::ssize(MapWriter::blocks_of(arguments.map, record));
+    print_plan(json, planned.blocks - held, arguments.map, arguments.json);
     return;
   }
   if (!writer) writer.emplace(arguments.map, settings);

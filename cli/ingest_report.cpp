@@ -48,9 +48,9 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
   return json;
 }
 
-void print_plan(nlohmann::json json, std::int64_t blocks, const std::filesystem::path& map, bool as_json) {
+void print_plan(nlohmann::json json, std::int64_t new_blocks, const std::filesystem::path& map, bool as_json) {
   constexpr double kBytesPerMb = 1e6;
-  const std::int64_t expected = expected_bytes(blocks, map);
+  const std::int64_t expected = expected_bytes(new_blocks, map);
   const std::optional<std::int64_t> room = free_bytes_beside(map);
   json["expected_bytes"] = expected;
   if (room) json["free_bytes"] = *room;

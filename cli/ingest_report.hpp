@@ -16,9 +16,9 @@ namespace roadfix::cli {
 nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& summary, std::int64_t blocks,
                             const MapSettings& settings);
 
-/// What a dry run prints, with the room that the map will take and has; nothing is read but headers (all features, of
-/// vectors), nothing is written.
-void print_plan(nlohmann::json json, std::int64_t blocks, const std::filesystem::path& map, bool as_json);
+/// What a dry run prints, with the room that so many new blocks will take and the disk has; nothing is read but headers
+/// (all features, of vectors), nothing is written.
+void print_plan(nlohmann::json json, std::int64_t new_blocks, const std::filesystem::path& map, bool as_json);
 
 /// Of a cell, in megapixels of the source, which is none of lines.
 double cell_mp(const SourceSummary& summary, const MapSettings& settings);

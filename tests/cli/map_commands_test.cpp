@@ -314,6 +314,16 @@ TEST_F(MapCommands, ADryRunSaysWhatRoomTheMapWillTakeAndHas) {
   EXPECT_THAT(roadfix(plan + "/proc/n.gpkg").err, HasSubstr("its disk has 0 MB free"));
 }
 
+TEST_F(MapCommands, ADryRunAsksForNoRoomForWhatTheMapHolds) {
+  const std::string lines = folder / "roads.geojson";
+  std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.201, 37.701]]})";
+  const std::string ingest = "ingest " + lines + " --json --map " + (folder / "n.gpkg").string();
+  ASSERT_EQ(roadfix(ingest).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(roadfix(ingest + " --dry-run").out)["expected_bytes"], 0);
+  const auto other = nlohmann::json::parse(roadfix(ingest + " --dry-run --replace --width 9").out);
+  EXPECT_EQ(other["expected_bytes"], 50'000 * other["blocks"].get<int>()) << "the old one is there until it is done";
+}
+
 TEST_F(MapCommands, IngestSaysThatNothingIsReplacedWhereTheNewerVersionHasAnotherName) {
   const std::string lines = folder / "roads.geojson";
   std::ofstream(lines) << R"({"type": "LineString", "coordinates": [[38.2, 37.7], [38.21, 37.71]]})";

@@ -141,6 +141,17 @@ std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, cons
   return entry ? sources.done_blocks(entry->id) : std::set<TileIndex>();
 }
 
+std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, const SourceRecord& record) {
+  if (!is_there(path)) return {};
+  Connection map = open_map(path, Access::kRead);
+  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
+  for (const bool in_force : {true, false}) {
+    const auto entry = sources.find(record.name, in_force);
+    if (entry && entry->fingerprint == record.fingerprint) return sources.done_blocks(entry->id);
+  }
+  return {};
+}
+
 void MapWriter::require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
                                    const SourceRecord& record, bool replace) {
   if (!is_there(path)) return;

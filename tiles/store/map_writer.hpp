@@ -45,6 +45,9 @@ class MapWriter {
   /// What the map holds of the source of this name in force; nothing where no file or no such source is.
   static std::set<TileIndex> blocks_of(const std::filesystem::path& path, const std::string& source);
 
+  /// What the map holds of this very source, whole or interrupted: begin_source() would not ask for these blocks.
+  static std::set<TileIndex> blocks_of(const std::filesystem::path& path, const SourceRecord& record);
+
   /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
   /// writes nothing: for a plan.
   static void require_acceptable(const std::filesystem::path& path, const MapSettings& settings,

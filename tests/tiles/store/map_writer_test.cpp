@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
@@ -46,6 +47,21 @@ TEST(MapWriter, WhatWasPutCanBeRead) {
   EXPECT_FALSE(status.ingested_at.empty());
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-journal"));
   EXPECT_FALSE(std::filesystem::exists(path.string() + "-writer"));
+}
+
+TEST(MapWriter, TellsWhichBlocksOfASourceItHoldsWholeOrInterrupted) {
+  const TemporaryFolder folder;
+  const auto path = folder / "m.gpkg";
+  const TestSource older{"a", 1, some_blocks(2)};
+  const TestSource newer{"a", 2, some_blocks(2)};
+  EXPECT_TRUE(MapWriter::blocks_of(path, older.record()).empty());
+  MapWriter writer(path, settings_37n());
+  ingest(writer, older);
+  writer.begin_source(newer.record(), newer.blocks, true);
+  EXPECT_TRUE(MapWriter::blocks_of(path, newer.record()).empty());
+  put_block(writer, "a", newer.blocks[3], random_cells(2, newer.blocks[3]));
+  EXPECT_EQ(MapWriter::blocks_of(path, newer.record()), std::set{newer.blocks[3]});
+  EXPECT_EQ(MapWriter::blocks_of(path, older.record()).size(), 4U);
 }
 
 TEST(MapWriter, SeveralBlocksAreOneTransaction) {

@@ -19,6 +19,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/picture_files.hpp"
+#include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
@@ -31,8 +32,8 @@ namespace {
 
 struct DetectOptions {
   DetectorChoice detector;
-  ComparedWith compared = ComparedWith::kImagery;
-  std::vector<std::string> names;  ///< pictures, then the target
+  std::optional<ComparedWith> compared;  ///< nullopt = imagery
+  std::vector<std::string> names;        ///< pictures, then the target
   FrameOptions frame;
   double cell_m = 2.0;
   std::uint64_t seed = 1;
@@ -133,6 +134,16 @@ std::string text_of(const Job& job, double cell_m, const FeatureMap& map, const 
       detector);
 }
 
+std::unique_ptr<RoadDetector> detector_of(const DetectOptions& options) {
+  if (options.compared && is_one_for_both(options.detector)) {
+    throw InvalidInput(
+        "option-without-effect",
+        "--compare-with does nothing where one detector reads for both: the tree, the network of --model "
+        "or ROADFIX_MODEL, or the only one that is installed: leave it out");
+  }
+  return make_detector(options.detector, options.compared.value_or(ComparedWith::kImagery));
+}
+
 void detect(const DetectOptions& options, const Job& job, const RoadDetector& detector) {
   require_apart({job.target}, {job.image});
   require_own_world_file(job);
@@ -183,7 +194,7 @@ void detect_all(const DetectOptions& options, const std::vector<std::string>& pi
   const auto images = picture_files(pictures, kPictureEndings);
   require_own_targets(target, images);
   std::filesystem::create_directories(target);
-  const auto detector = make_detector(options.detector, options.compared);
+  const auto detector = detector_of(options);
   const std::size_t left_out = for_each_picture(images, "detecting", true, [&](const std::filesystem::path& image) {
     detect(options, {image.string(), target_in(target, image)}, *detector);
   });
@@ -200,7 +211,7 @@ void run_detect(const DetectOptions& options) {
   }
   require_apart({target}, {pictures.front()});
   require_png_name(target);
-  detect(options, {pictures.front(), target}, *make_detector(options.detector, options.compared));
+  detect(options, {pictures.front(), target}, *detector_of(options));
 }
 
 }  // namespace
@@ -233,12 +244,14 @@ void add_detect_command(CLI::App& app) {
       ->check(seed());
   command->add_flag("--json", options->json, "Answer as JSON");
   command
-      ->add_option("--compare-with", options->compared,
-                   "What the map shows that the feature map is for: imagery (default) or roads, that is road data. "
-                   "Each has its network")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ComparedWith>{{std::string(kComparedWithNames[0]), ComparedWith::kImagery},
-                                              {std::string(kComparedWithNames[1]), ComparedWith::kRoads}}));
+      ->add_option_function<std::string>(
+          "--compare-with",
+          [options](const std::string& word) {
+            options->compared = word == kComparedWithNames[0] ? ComparedWith::kImagery : ComparedWith::kRoads;
+          },
+          "What the map shows that the feature map is for: imagery (default) or roads, that is road data. Each has its "
+          "network")
+      ->check(CLI::IsMember(std::vector<std::string>(kComparedWithNames.begin(), kComparedWithNames.end())));
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });
 }

@@ -10,12 +10,12 @@ namespace {
 /// Kind, name and checksum of a network: frames are read in one orientation where the map was read in several.
 std::string_view network_in(std::string_view description) { return description.substr(0, description.find(" gsd_m=")); }
 
+}  // namespace
+
 bool is_one_for_both(const DetectorChoice& choice) {
   return choice.name == "tree" || !choice.model.empty() ||
          default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
 }
-
-}  // namespace
 
 Detectors::Detectors(const DetectorChoice& choice)
     : for_imagery_(make_detector(choice, ComparedWith::kImagery)), for_roads_(for_imagery_) {

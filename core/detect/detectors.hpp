@@ -9,6 +9,9 @@
 
 namespace roadfix {
 
+/// Whether the choice makes one detector for all that frames are compared with.
+bool is_one_for_both(const DetectorChoice& choice);
+
 class Detectors {
  public:
   /// Throws what make_detector() does.

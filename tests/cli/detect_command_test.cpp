@@ -72,6 +72,14 @@ TEST_F(DetectCommand, WritesNoPngUnderTheNameOfAnotherFormat) {
   }
 }
 
+TEST_F(DetectCommand, SaysThatOneDetectorForAllMapsDoesNotCareWhatTheyShow) {
+  EXPECT_THAT(detect("--gsd 1 --compare-with roads").err, HasSubstr("[option-without-effect]"));
+  EXPECT_EQ(detect("--gsd 1").code, 0);
+  const ProgramResult number = detect("--gsd 1 --compare-with 1");
+  EXPECT_EQ(number.code, 2);
+  EXPECT_THAT(number.err, HasSubstr("1 not in {imagery,roads}"));
+}
+
 TEST_F(DetectCommand, WritesNothingButThePngToStandardOutput) {
   const std::string frame = "detect --detector tree " + (folder / "frame.png").string() + " --gsd 0.5 ";
   const ProgramResult result = run_program(folder.path(), frame + "/dev/stdout");

@@ -16,6 +16,7 @@
 
 #include "cli/detector_options.hpp"
 #include "cli/frame_options.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/picture_files.hpp"
@@ -141,6 +142,7 @@ std::unique_ptr<RoadDetector> detector_of(const DetectOptions& options) {
         "--compare-with does nothing where one detector reads for both: the tree, the network of --model "
         "or ROADFIX_MODEL, or the only one that is installed: leave it out");
   }
+  note_missing_network(options.detector);
   return make_detector(options.detector, options.compared.value_or(ComparedWith::kImagery));
 }
 

@@ -17,6 +17,7 @@
 #include "cli/ingest_options.hpp"
 #include "cli/ingest_report.hpp"
 #include "cli/ingest_zone.hpp"
+#include "cli/map_notes.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
@@ -179,6 +180,7 @@ void run(const IngestArguments& arguments) {
   }
   const bool imagery =
       std::ranges::any_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; });
+  if (imagery) note_missing_network(arguments.detector);
   const std::unique_ptr<RoadDetector> detector =
       imagery ? make_detector(arguments.detector, ComparedWith::kImagery) : nullptr;
   const MapSettings settings = settings_of(arguments, requests.front(), detector.get());

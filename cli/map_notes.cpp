@@ -31,7 +31,12 @@ MapView view_with_notes(const std::filesystem::path& file, std::size_t search_ca
   return view_of(reader, file.stem().string(), search_cache_bytes);
 }
 
+void note_missing_network(const DetectorChoice& choice) {
+  if (const auto note = note_on_missing_network(choice)) fmt::print(stderr, "note: {}\n", *note);
+}
+
 std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice) {
+  note_missing_network(choice);
   const Detectors detectors(choice);
   auto detector = detectors.for_map(map.imagery_reader);
   if (!detectors.include_reader(map.imagery_reader)) {

@@ -17,7 +17,10 @@ void note_unfinished(const std::filesystem::path& file, const MapInfo& info);
 /// view_of_file(), with that note.
 MapView view_with_notes(const std::filesystem::path& file, std::size_t search_cache_bytes = 0);
 
-/// For frames over the map; with a note on standard error where another one read the map.
+/// On standard error, where a network is missing that the choice would take.
+void note_missing_network(const DetectorChoice& choice);
+
+/// For frames over the map; with that note, and another where another detector read the map.
 std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice);
 
 }  // namespace roadfix::cli

@@ -100,6 +100,7 @@ int Application::start() {
   parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detectors.describe());
+  if (const auto note = note_on_missing_network(parts_->configuration.detector)) spdlog::warn(*note);
   return port;
 }
 

@@ -9,6 +9,10 @@
 
 namespace roadfix {
 
+std::optional<std::string> note_on_missing_network(const DetectorChoice& choice) {
+  return choice.name == "tree" || !choice.model.empty() ? std::nullopt : note_on_missing_network();
+}
+
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared) {
   if (std::ranges::find(kDetectorNames, choice.name) == kDetectorNames.end()) {
     throw InvalidInput("unknown-detector", fmt::format("\"{}\" is not a detector: choose one of {}.", choice.name,

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/detect/model_files.hpp"
@@ -24,6 +25,9 @@ struct DetectorChoice {
 
 /// "auto": neural where `model` is named or default_model() finds one, else the tree.
 inline constexpr std::array<const char*, 3> kDetectorNames{"auto", "neural", "tree"};
+
+/// note_on_missing_network(), where the choice is left to what is shipped.
+std::optional<std::string> note_on_missing_network(const DetectorChoice& choice);
 
 /// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network",
 /// "option-without-effect" (of the other detector) and those of the detectors' constructors.

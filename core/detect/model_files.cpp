@@ -15,6 +15,11 @@ namespace {
 /// In the order of ComparedWith.
 constexpr std::array<const char*, 2> kShipped{"roadnet-imagery.onnx", "roadnet.onnx"};
 
+std::optional<fs::path> named_by_environment() {
+  const char* named = std::getenv("ROADFIX_MODEL");
+  return named != nullptr && *named != '\0' ? std::optional<fs::path>(named) : std::nullopt;
+}
+
 std::vector<fs::path> shipped_in(const fs::path& folder, ComparedWith compared) {
   const auto own = static_cast<std::size_t>(compared);
   return {folder / kShipped.at(own), folder / kShipped.at(1 - own)};
@@ -23,10 +28,10 @@ std::vector<fs::path> shipped_in(const fs::path& folder, ComparedWith compared) 
 }  // namespace
 
 std::optional<fs::path> default_model(ComparedWith compared) {
-  if (const char* named = std::getenv("ROADFIX_MODEL"); named != nullptr && *named != '\0') {
-    if (fs::is_regular_file(named)) return named;
+  if (auto named = named_by_environment()) {
+    if (fs::is_regular_file(*named)) return named;
     throw InvalidInput("model-missing",
-                       fmt::format("The environment's ROADFIX_MODEL names {}, which is no file.", named));
+                       fmt::format("The environment's ROADFIX_MODEL names {}, which is no file.", named->string()));
   }
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
@@ -37,6 +42,23 @@ std::optional<fs::path> default_model(ComparedWith compared) {
   // Of another user, perhaps, who built this and keeps the sources to himself.
   for (const fs::path& source : shipped_in(ROADFIX_SOURCE_MODELS, compared)) {
     if (fs::is_regular_file(source, ignored)) return source;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> stood_in_for(const fs::path& model, ComparedWith compared) {
+  const auto own = static_cast<std::size_t>(compared);
+  return model.filename() == kShipped.at(1 - own) ? std::optional<std::string>(kShipped.at(own)) : std::nullopt;
+}
+
+std::optional<std::string> note_on_missing_network() {
+  if (named_by_environment()) return std::nullopt;
+  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+    const auto model = default_model(compared);
+    const auto missing = model ? stood_in_for(*model, compared) : std::nullopt;
+    if (!missing) continue;
+    return fmt::format("the network {} is missing, and {} reads in its place: fixes are fewer. Put it there", *missing,
+                       model->string());
   }
   return std::nullopt;
 }

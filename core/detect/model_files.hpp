@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,12 @@ inline constexpr std::array<std::string_view, 2> kComparedWithNames{"imagery", "
 /// InvalidInput "model-missing" when ROADFIX_MODEL names no file, or when the folders of the program or of the
 /// installation cannot be looked into.
 std::optional<std::filesystem::path> default_model(ComparedWith compared);
+
+/// The file name of the network for what is compared, where `model` is the other one of the two that are shipped.
+std::optional<std::string> stood_in_for(const std::filesystem::path& model, ComparedWith compared);
+
+/// What to tell where default_model() finds one of the two shipped networks only, which is for both then.
+std::optional<std::string> note_on_missing_network();
 
 /// The first of `places` that is a file. InvalidInput "model-missing" at one that cannot be looked at: whoever
 /// installed a network is not to get the answers of the tree instead.

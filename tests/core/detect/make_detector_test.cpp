@@ -78,6 +78,14 @@ TEST_F(MakeDetector, TheFirstModelThatIsThereIsTaken) {
   EXPECT_EQ(first_model({folder_ / "none.onnx", folder_}), std::nullopt);
 }
 
+TEST_F(MakeDetector, AShippedNetworkInPlaceOfTheOtherOneIsTold) {
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", ComparedWith::kImagery), "roadnet-imagery.onnx");
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", ComparedWith::kRoads), "roadnet.onnx");
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", ComparedWith::kRoads), std::nullopt);
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", ComparedWith::kImagery), std::nullopt);
+  EXPECT_EQ(stood_in_for(model(), ComparedWith::kRoads), std::nullopt) << "somebody's own";
+}
+
 TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
   fs::permissions(folder_, fs::perms{0700});
   const testing::AsAnotherUser reader;

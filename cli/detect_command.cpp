@@ -156,7 +156,7 @@ void detect(const DetectOptions& options, const Job& job, const RoadDetector& de
   if (map.cells.observed_count() == 0) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", job.image));
   }
-  const std::vector<std::uint8_t> png = encode_feature_map(map);
+  const std::vector<std::uint8_t> png = encode_feature_map(map, detector.describe());
   write_file(job.target, {reinterpret_cast<const char*>(png.data()), png.size()});
   if (std::filesystem::is_regular_file(job.target) && !is_standard_output(job.target)) {
     remove_side_files(job.target);

@@ -45,22 +45,6 @@ Another parse_also(const std::string& text) {
   return {std::string(rest), {values[0], values[1], Angle::degrees(values[2])}};
 }
 
-/// `detector` is null for feature maps.
-api::Features features_in(const std::string& path, const FeatureInputOptions& options, const RoadDetector* detector,
-                          double map_cell_m) {
-  api::Features features;
-  if (detector != nullptr) {
-    features = api::detected(ground_seen(options.frame, path, *detector), {*detector, map_cell_m, {}, options.seed});
-  } else {
-    ToldScale told{options.cell_m, {}, {}};
-    if (!options.nadir.empty()) told = {options.cell_m, options.nadir[0], options.nadir[1]};
-    features.map = feature_map_in(path, told);
-  }
-  if (options.nadir_sigma_m) features.map.nadir_sigma_m = *options.nadir_sigma_m;
-  if (const auto told = options.nadir_heading_sigma_deg) features.map.nadir_heading_sigma = Angle::degrees(*told);
-  return features;
-}
-
 }  // namespace
 
 void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
@@ -92,14 +76,13 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
   add_detector_options(command, o.detector);
 }
 
-FeatureInput::FeatureInput(const FeatureInputOptions& options, const MapView& map)
-    : options_(options), map_cell_m_(map.cell_m) {
+FeatureInput::FeatureInput(const FeatureInputOptions& options, const MapView& map) : options_(options), map_(map) {
   require_frame_for(options.frame);
   if (options.frame.given()) detector_ = detector_for(map, options.detector);
 }
 
-api::Features FeatureInput::read(const std::string& path) const {
-  api::Features first = features_in(path, options_, detector_.get(), map_cell_m_);
+api::Features FeatureInput::read(const std::string& path) {
+  api::Features first = features_in(path);
   if (options_.also.empty()) return first;
   if (options_.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
@@ -108,9 +91,32 @@ api::Features FeatureInput::read(const std::string& path) const {
   std::vector<api::OtherFeatures> others;
   for (const std::string& text : options_.also) {
     const Another another = parse_also(text);
-    others.push_back({features_in(another.path, options_, detector_.get(), map_cell_m_), another.offset});
+    others.push_back({features_in(another.path), another.offset});
   }
   return api::together(std::move(first), std::move(others), kMaxCells);
+}
+
+api::Features FeatureInput::features_in(const std::string& path) {
+  api::Features features;
+  if (detector_ != nullptr) {
+    features =
+        api::detected(ground_seen(options_.frame, path, *detector_), {*detector_, map_.cell_m, {}, options_.seed});
+  } else {
+    features.map = feature_map_with_note(path);
+  }
+  if (options_.nadir_sigma_m) features.map.nadir_sigma_m = *options_.nadir_sigma_m;
+  if (const auto told = options_.nadir_heading_sigma_deg) features.map.nadir_heading_sigma = Angle::degrees(*told);
+  return features;
+}
+
+FeatureMap FeatureInput::feature_map_with_note(const std::string& path) {
+  ToldScale told{options_.cell_m, {}, {}};
+  if (!options_.nadir.empty()) told = {options_.cell_m, options_.nadir[0], options_.nadir[1]};
+  FoundFeatureMap found = feature_map_in(path, told);
+  if (!found.reader.empty() && readers_.insert(found.reader).second) {
+    note_other_reader(path, found.reader, map_, options_.detector);
+  }
+  return std::move(found.map);
 }
 
 }  // namespace roadfix::cli

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,13 +38,18 @@ class FeatureInput {
   FeatureInput(const FeatureInputOptions& options, const MapView& map);
 
   /// Roads of a frame come in the map's cells; several frames (--also) are laid together. Throws InvalidInput
-  /// "input-kind-missing" where a feature map does not say so itself and no option does.
-  api::Features read(const std::string& path) const;
+  /// "input-kind-missing" where a feature map does not say so itself and no option does. Says on standard error where
+  /// another detector than reads frames found the roads of feature maps, once of each.
+  api::Features read(const std::string& path);
 
  private:
+  api::Features features_in(const std::string& path);
+  FeatureMap feature_map_with_note(const std::string& path);
+
   const FeatureInputOptions& options_;
-  const double map_cell_m_;
+  const MapView& map_;
   std::shared_ptr<const RoadDetector> detector_;  ///< null for feature maps
+  std::set<std::string> readers_;                 ///< of the feature maps
 };
 
 }  // namespace roadfix::cli

@@ -114,7 +114,7 @@ void fix_all(const FixArguments& options) {
   for (const auto& file : files) require_apart({options.csv}, {file});
   require_writable({options.csv});
   const Search search = search_of(options);
-  const FeatureInput inputs(options.input, search.view);
+  FeatureInput inputs(options.input, search.view);
   std::string table = fix_columns();
   const auto save = [&] {
     if (!options.csv.empty()) write_file(options.csv, table);

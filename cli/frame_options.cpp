@@ -120,7 +120,7 @@ api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path,
   return said_of(path, [&] { return api::seen_frame(frame, detector, kMaxPixels); });
 }
 
-FeatureMap feature_map_in(const std::string& path, const ToldScale& told) {
+FoundFeatureMap feature_map_in(const std::string& path, const ToldScale& told) {
   return decoded(path, [&](const auto& bytes) {
     if (!told.cell_m && !is_feature_map(bytes)) {
       throw InvalidInput(
@@ -128,7 +128,9 @@ FeatureMap feature_map_in(const std::string& path, const ToldScale& told) {
           "say what the input is: --cell for a feature map that does not tell its cell size itself; --gsd, "
           "--exif or --agl with --fov or --focal-px for a frame");
     }
-    return feature_map_of(decode_feature_map(bytes, kMaxPixels), told);
+    FeatureMapPicture picture = decode_feature_map(bytes, kMaxPixels);
+    std::string reader = picture.scale ? picture.scale->reader : "";
+    return FoundFeatureMap{feature_map_of(std::move(picture), told), std::move(reader)};
   });
 }
 

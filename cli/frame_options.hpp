@@ -33,9 +33,14 @@ void require_frame_for(const FrameOptions& options);
 /// all about the file name it. options.given() must hold.
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
 
+struct FoundFeatureMap {
+  FeatureMap map;
+  std::string reader;  ///< of FeatureMapScale
+};
+
 /// The feature map in a file, as told where it does not say so itself: see decode_feature_map and
 /// feature_map_of; what they throw names the file here. Also throws InvalidInput "not-a-file", "input-kind-missing"
 /// where neither tells the cell size, and NotFound "file-not-found".
-FeatureMap feature_map_in(const std::string& path, const ToldScale& told);
+FoundFeatureMap feature_map_in(const std::string& path, const ToldScale& told);
 
 }  // namespace roadfix::cli

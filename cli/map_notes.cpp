@@ -35,6 +35,18 @@ void note_missing_network(const DetectorChoice& choice) {
   if (const auto note = note_on_missing_network(choice)) fmt::print(stderr, "note: {}\n", *note);
 }
 
+void note_other_reader(const std::string& feature_map, const std::string& reader, const MapView& map,
+                       const DetectorChoice& choice) {
+  const bool of_roads = map.imagery_reader.empty();
+  const std::string best = of_roads ? make_detector(choice, ComparedWith::kRoads)->describe() : map.imagery_reader;
+  if (is_same_reader(reader, best)) return;
+  fmt::print(stderr,
+             "note: the roads of {} were found by {}, and {} suits {} best: fixes are fewer. Detect them again with "
+             "{}\n",
+             feature_map, reader, best, map.name,
+             of_roads ? "--compare-with roads" : "--compare-with imagery, or with that network by --model");
+}
+
 std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice) {
   note_missing_network(choice);
   const Detectors detectors(choice);

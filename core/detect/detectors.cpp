@@ -12,6 +12,10 @@ std::string_view network_in(std::string_view description) { return description.s
 
 }  // namespace
 
+bool is_same_reader(std::string_view description, std::string_view other) {
+  return network_in(description) == network_in(other);
+}
+
 bool is_one_for_both(const DetectorChoice& choice) {
   return choice.name == "tree" || !choice.model.empty() ||
          default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
@@ -30,12 +34,12 @@ std::shared_ptr<const RoadDetector> Detectors::compared_with(ComparedWith compar
 }
 
 std::shared_ptr<const RoadDetector> Detectors::for_map(std::string_view imagery_reader) const {
-  const bool by_the_other = network_in(imagery_reader) == network_in(for_roads_->describe());
+  const bool by_the_other = is_same_reader(imagery_reader, for_roads_->describe());
   return imagery_reader.empty() || by_the_other ? for_roads_ : for_imagery_;
 }
 
 bool Detectors::include_reader(std::string_view imagery_reader) const {
-  return imagery_reader.empty() || network_in(imagery_reader) == network_in(for_map(imagery_reader)->describe());
+  return imagery_reader.empty() || is_same_reader(imagery_reader, for_map(imagery_reader)->describe());
 }
 
 std::string Detectors::describe() const {

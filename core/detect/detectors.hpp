@@ -12,6 +12,9 @@ namespace roadfix {
 /// Whether the choice makes one detector for all that frames are compared with.
 bool is_one_for_both(const DetectorChoice& choice);
 
+/// Whether two describe() tell of one network, or are equal: a picture is read in more orientations or not.
+bool is_same_reader(std::string_view description, std::string_view other);
+
 class Detectors {
  public:
   /// Throws what make_detector() does.

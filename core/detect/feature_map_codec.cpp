@@ -53,14 +53,18 @@ CellArray cells_of(const cv::Mat& image) {
   return cells;
 }
 
-std::string text_of(const FeatureMap& map) {
-  return nlohmann::json{{"cols", map.cells.cols()},
-                        {"rows", map.cells.rows()},
-                        {"cell_m", map.cell_m},
-                        {"nadir_cell", {map.nadir.col, map.nadir.row}},
-                        {"nadir_sigma_m", map.nadir_sigma_m},
-                        {"nadir_heading_sigma_rad", map.nadir_heading_sigma.radians()}}
-      .dump();
+constexpr std::size_t kLongestReader = 500;
+
+std::string text_of(const FeatureMap& map, const std::string& reader) {
+  nlohmann::json text{{"cols", map.cells.cols()},
+                      {"rows", map.cells.rows()},
+                      {"cell_m", map.cell_m},
+                      {"nadir_cell", {map.nadir.col, map.nadir.row}},
+                      {"nadir_sigma_m", map.nadir_sigma_m},
+                      {"nadir_heading_sigma_rad", map.nadir_heading_sigma.radians()}};
+  if (!reader.empty()) text["reader"] = reader.substr(0, kLongestReader);
+  constexpr bool kInAscii = true;
+  return text.dump(-1, ' ', kInAscii, nlohmann::json::error_handler_t::replace);
 }
 
 [[noreturn]] void refuse_altered(const CellArray& cells) {
@@ -82,16 +86,17 @@ bool is_sound(const FeatureMapScale& scale) {
 }
 
 FeatureMapScale scale_of(const std::string& text, const CellArray& cells) {
-  constexpr std::size_t kLongest = 1000;
+  constexpr std::size_t kLongest = 500 + 6 * kLongestReader;  // of which JSON escapes each character
   if (text.size() > kLongest) refuse_altered(cells);
   try {
     const auto json = nlohmann::json::parse(text);
     const auto number = [](const nlohmann::json& value) { return value.get<double>(); };
     const auto& nadir = json.at("nadir_cell");
-    const FeatureMapScale scale{number(json.at("cell_m")),
-                                {number(nadir.at(0)), number(nadir.at(1))},
-                                number(json.at("nadir_sigma_m")),
-                                Angle::radians(number(json.at("nadir_heading_sigma_rad")))};
+    FeatureMapScale scale{number(json.at("cell_m")),
+                          {number(nadir.at(0)), number(nadir.at(1))},
+                          number(json.at("nadir_sigma_m")),
+                          Angle::radians(number(json.at("nadir_heading_sigma_rad"))),
+                          json.value("reader", "")};
     if (json.at("cols") != cells.cols() || json.at("rows") != cells.rows() || !is_sound(scale)) refuse_altered(cells);
     return scale;
   } catch (const nlohmann::json::exception&) {
@@ -149,8 +154,8 @@ cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels, const std::stop_token
                      "that it says it is, without what describes a frame");
 }
 
-std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map) {
-  return with_text(encode_feature_map(map.cells), kKeyword, text_of(map));
+std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map, const std::string& reader) {
+  return with_text(encode_feature_map(map.cells), kKeyword, text_of(map, reader));
 }
 
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/detect/image_codec.hpp"
@@ -16,6 +17,7 @@ struct FeatureMapScale {
   GridGeometry::CellPosition nadir;
   double nadir_sigma_m = 0.0;
   Angle nadir_heading_sigma{};
+  std::string reader{};  ///< RoadDetector::describe() of what found the roads; empty where that is not told
 };
 
 struct FeatureMapPicture {
@@ -48,9 +50,10 @@ FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told);
 /// that says of itself that it shows roads and no ground.
 cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop = {});
 
-/// Grey and alpha PNG that decode_feature_map turns back into exactly this. At least one cell; LimitExceeded
+/// Grey and alpha PNG that decode_feature_map turns back into exactly this. `reader`: of FeatureMapScale. At least one
+/// cell; LimitExceeded
 /// ("too-many-cells") for more in a row or column than a PNG holds.
-std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map);
+std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map, const std::string& reader = {});
 /// The cells alone, as other programs write them.
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);
 

@@ -37,7 +37,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
     answer["detector"] = detector->describe();
     response = json_response(answer);
   } else {
-    const auto png = encode_feature_map(features.map);
+    const auto png = encode_feature_map(features.map, detector->describe());
     response = {200, "image/png", std::string(png.begin(), png.end())};
   }
   const auto& [col, row] = features.map.nadir;

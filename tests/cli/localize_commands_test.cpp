@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/detect/feature_map_codec.hpp"
+#include "core/detect/tree_detector.hpp"
 #include "core/grid/resample.hpp"
 #include "tests/support/drone_jpeg.hpp"
 #include "tests/support/map_file.hpp"
@@ -163,6 +164,15 @@ TEST_F(LocalizeCommands, LocalizabilitySaysHowMuchOfTheGroundGivesAFix) {
   const std::string few = roadfix(ask + " --places 2").out;
   EXPECT_THAT(few, HasSubstr("town: 0.9 km2 of ground, for frames that show 400 m of it; asked at places: 2, too few"));
   EXPECT_EQ(roadfix("localizability " + map.string()).code, 2) << "of which footprint?";
+}
+
+TEST_F(LocalizeCommands, FixSaysThatAnotherDetectorThanReadsFramesFoundTheRoads) {
+  const std::string fix = "fix --detector tree " + map.string() + " " + window.string();
+  save(encode_feature_map(what_is_seen(truth, 160), "neural roadnet-8 fnv1a64=1 gsd_m=1 orientations=1"), window);
+  EXPECT_THAT(roadfix(fix).err, ::testing::AllOf(HasSubstr("window.png were found by neural roadnet-8"),
+                                                 HasSubstr("again with --compare-with roads")));
+  save(encode_feature_map(what_is_seen(truth, 160), TreeRoadDetector(TreeDetectorOptions()).describe()), window);
+  EXPECT_EQ(roadfix(fix).err, "");
 }
 
 TEST_F(LocalizeCommands, FixIsAsAccurateAsTheNadirIsKnown) {

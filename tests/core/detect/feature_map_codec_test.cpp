@@ -81,6 +81,13 @@ TEST(FeatureMapCodec, AFeatureMapComesBackWithItsCellSizeAndNadir) {
   EXPECT_EQ(feature_map_of(decode_feature_map(png, kEnough), {1.7, 6.25, 20.125}), leaning());
 }
 
+TEST(FeatureMapCodec, AFeatureMapSaysWhatFoundItsRoads) {
+  const auto told = [](const std::vector<std::uint8_t>& png) { return decode_feature_map(png, kEnough).scale->reader; };
+  EXPECT_EQ(told(encode_feature_map(leaning(), "neural roadnet-8 fnv1a64=1")), "neural roadnet-8 fnv1a64=1");
+  EXPECT_EQ(told(encode_feature_map(leaning())), "");
+  EXPECT_EQ(told(encode_feature_map(leaning(), std::string(10'000, '\x1f'))), std::string(500, '\x1f'));
+}
+
 TEST(FeatureMapCodec, APictureOfAnotherProgramIsCentredInTheCellsThatAreTold) {
   const auto png = encode_feature_map(leaning().cells);
   EXPECT_FALSE(is_feature_map(png));

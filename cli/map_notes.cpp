@@ -51,6 +51,13 @@ std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const Detec
   note_missing_network(choice);
   const Detectors detectors(choice);
   auto detector = detectors.for_map(map.imagery_reader);
+  if (map.imagery_and_roads && !is_one_for_both(choice)) {
+    fmt::print(
+        stderr,
+        "note: {} holds imagery and road data, and frames are read by {}, which suits what has more tiles: fixes "
+        "are fewer where only the other was ingested\n",
+        map.name, detector->describe());
+  }
   if (!detectors.include_reader(map.imagery_reader)) {
     fmt::print(stderr,
                "note: {} was read by {}, and frames are by {}: they find other roads, and fixes are fewer. Name the "

@@ -29,6 +29,8 @@ struct MapView {
   std::function<RoadGrid(const GridGeometry& geometry)> read;
   /// What searches build of this version of the map, as compared_cells() gives it; nullptr = nothing is kept.
   std::shared_ptr<SearchCache> searches = nullptr;
+  /// Some of it is imagery and some road data, so that `imagery_reader` suits a part of the ground only.
+  bool imagery_and_roads = false;
 };
 
 }  // namespace roadfix

@@ -71,4 +71,13 @@ std::string imagery_reader_of(const MapInfo& info) {
   return most != of_readers.end() && most->second >= of_roads ? most->first : "";
 }
 
+bool shows_imagery_and_roads(const MapInfo& info) {
+  const auto has = [&](bool imagery) {
+    return std::ranges::any_of(info.sources, [&](const SourceStatus& source) {
+      return source.complete && (source.record.kind == "imagery") == imagery;
+    });
+  };
+  return has(true) && has(false);
+}
+
 }  // namespace roadfix

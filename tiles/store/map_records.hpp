@@ -117,4 +117,7 @@ std::string credits_of(const MapInfo& info);
 /// empty where road data has more tiles than imagery.
 std::string imagery_reader_of(const MapInfo& info);
 
+/// Whether complete sources are imagery and others road data.
+bool shows_imagery_and_roads(const MapInfo& info);
+
 }  // namespace roadfix

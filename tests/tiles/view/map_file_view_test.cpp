@@ -82,7 +82,7 @@ TEST(MapFileView, CountsTheErrorOfASourceThatWasReplacedWhereTilesStillShowIt) {
 }
 
 /// Sources "kind method tiles" of the map, one south of the other.
-std::string imagery_reader(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
+MapView view_of_sources(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
   const testing::TemporaryFolder folder;
   MapWriter writer(folder / "m.gpkg", testing::settings_37n());
   int row = -8165;
@@ -98,7 +98,11 @@ std::string imagery_reader(std::initializer_list<std::tuple<const char*, const c
     writer.finish_source(record.name);
     ++row;
   }
-  return view_of_file(folder / "m.gpkg").imagery_reader;
+  return view_of_file(folder / "m.gpkg");
+}
+
+std::string imagery_reader(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
+  return view_of_sources(sources).imagery_reader;
 }
 
 TEST(MapFileView, NamesTheDetectorThatReadMostOfTheImagery) {
@@ -108,6 +112,12 @@ TEST(MapFileView, NamesTheDetectorThatReadMostOfTheImagery) {
                             {"imagery", "neural b; pixels of 1 m", 3},
                             {"imagery", "neural a; pixels of 0.5 m", 2}}),
             "neural a");
+}
+
+TEST(MapFileView, TellsWhetherImageryAndRoadDataAreInIt) {
+  EXPECT_FALSE(view_of_sources({{"imagery", "neural a; 1", 2}, {"imagery", "neural b; 1", 1}}).imagery_and_roads);
+  EXPECT_FALSE(view_of_sources({{"roads", "drawn", 1}}).imagery_and_roads);
+  EXPECT_TRUE(view_of_sources({{"roads", "drawn", 1}, {"imagery", "neural a; 1", 5}}).imagery_and_roads);
 }
 
 TEST(MapFileView, NamesNoDetectorWhereMoreTilesShowRoadDataThanImagery) {

@@ -36,7 +36,7 @@ void count(MapSurvey& survey, const Localizability& place) {
 
 MapSurvey survey(const MapView& map, const SurveyOptions& options) {
   const ObservedPlaces observed =
-      observed_places(map, options.query.footprint_m, kMinObservedShare, options.query.fix.stop);
+      observed_places(map, options.query.footprint_m, kMinObservedShare, options.query.fix.search.deadline.stop());
   const std::vector<GridPoint> places = thinned(observed.places, options.max_places);
   MapSurvey result;
   std::int64_t done = 0;

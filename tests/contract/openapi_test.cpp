@@ -197,6 +197,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
         api::joined({api::prior_fields(), api::fix_option_fields(), {"nadir_sigma_m", "nadir_heading_sigma_deg"}}));
     api::parse_prior(fields);
     api::parse_fix_options(fields, limits_);
+    api::parse_time_limit(fields);
     api::told_nadir_sigma_m(fields);
     api::told_nadir_heading_sigma(fields);
   });

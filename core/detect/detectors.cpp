@@ -17,8 +17,7 @@ bool is_same_reader(std::string_view description, std::string_view other) {
 }
 
 bool is_one_for_both(const DetectorChoice& choice) {
-  return choice.name == "tree" || !choice.model.empty() ||
-         default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
+  return !is_left_to_default(choice) || default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
 }
 
 Detectors::Detectors(const DetectorChoice& choice)
@@ -34,8 +33,8 @@ std::shared_ptr<const RoadDetector> Detectors::compared_with(ComparedWith compar
 }
 
 std::shared_ptr<const RoadDetector> Detectors::for_map(std::string_view imagery_reader) const {
-  const bool by_the_other = is_same_reader(imagery_reader, for_roads_->describe());
-  return imagery_reader.empty() || by_the_other ? for_roads_ : for_imagery_;
+  const bool by_the_one_for_roads = is_same_reader(imagery_reader, for_roads_->describe());
+  return imagery_reader.empty() || by_the_one_for_roads ? for_roads_ : for_imagery_;
 }
 
 bool Detectors::include_reader(std::string_view imagery_reader) const {

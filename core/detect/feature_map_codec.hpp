@@ -51,8 +51,7 @@ FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told);
 cv::Mat decode_frame(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop = {});
 
 /// Grey and alpha PNG that decode_feature_map turns back into exactly this. `reader`: of FeatureMapScale. At least one
-/// cell; LimitExceeded
-/// ("too-many-cells") for more in a row or column than a PNG holds.
+/// cell; LimitExceeded ("too-many-cells") for more in a row or column than a PNG holds.
 std::vector<std::uint8_t> encode_feature_map(const FeatureMap& map, const std::string& reader = {});
 /// The cells alone, as other programs write them.
 std::vector<std::uint8_t> encode_feature_map(const CellArray& cells);

@@ -9,8 +9,10 @@
 
 namespace roadfix {
 
+bool is_left_to_default(const DetectorChoice& choice) { return choice.name != "tree" && choice.model.empty(); }
+
 std::optional<std::string> note_on_missing_network(const DetectorChoice& choice) {
-  return choice.name == "tree" || !choice.model.empty() ? std::nullopt : note_on_missing_network();
+  return is_left_to_default(choice) ? note_on_missing_network() : std::nullopt;
 }
 
 std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared) {

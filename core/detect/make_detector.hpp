@@ -26,7 +26,10 @@ struct DetectorChoice {
 /// "auto": neural where `model` is named or default_model() finds one, else the tree.
 inline constexpr std::array<const char*, 3> kDetectorNames{"auto", "neural", "tree"};
 
-/// note_on_missing_network(), where the choice is left to what is shipped.
+/// Whether it is left to default_model() which network reads.
+bool is_left_to_default(const DetectorChoice& choice);
+
+/// note_on_missing_network(), where that matters to the choice.
 std::optional<std::string> note_on_missing_network(const DetectorChoice& choice);
 
 /// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network",

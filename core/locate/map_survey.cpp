@@ -50,8 +50,9 @@ MapSurvey survey(const MapView& map, const SurveyOptions& options) {
     ++done;
     if (options.progress) options.progress(done, static_cast<std::int64_t>(places.size()));
   });
-  if (done > 0)
+  if (done > 0) {
     result.ground_m2 = observed.ground_m2 * static_cast<double>(result.places()) / static_cast<double>(done);
+  }
   return result;
 }
 

@@ -42,6 +42,7 @@ struct BenchArguments {
   std::string calibrate_headings_file;
   std::string calibration_file;
   DetectorChoice detector;
+  std::optional<int> map_orientations;
   double cell_m = 2.0;
   bench::BenchOptions options;
 };
@@ -76,14 +77,25 @@ class TaskProgress {
   std::optional<Progress> progress_;
 };
 
-nlohmann::json document(const BenchArguments& arguments, const std::string& detector,
+/// Who read the pictures.
+struct Readers {
+  std::string maps;
+  std::string frames;
+};
+
+nlohmann::json document(const BenchArguments& arguments, const Readers& readers,
                         const std::vector<bench::SetResult>& results, const std::vector<std::string>& left_out) {
   nlohmann::json sets = nlohmann::json::array();
   for (const auto& result : results) sets.push_back(to_json(result));
-  return {{"roadfix", ROADFIX_VERSION},     {"manifest", arguments.manifest},
-          {"seed", arguments.options.seed}, {"cell_m", arguments.cell_m},
-          {"detector", detector},           {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
-          {"left_out", left_out},           {"results", sets}};
+  return {{"roadfix", ROADFIX_VERSION},
+          {"manifest", arguments.manifest},
+          {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m},
+          {"detector", readers.frames},
+          {"map_detector", readers.maps},
+          {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
+          {"left_out", left_out},
+          {"results", sets}};
 }
 
 /// What the calibration was learned from, for those who read the file.
@@ -142,17 +154,21 @@ void run_bench(BenchArguments& arguments) {
   require_writable(outputs);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const Detectors detectors(arguments.detector);
+  DetectorChoice of_maps = arguments.detector;
+  of_maps.orientations = arguments.map_orientations.value_or(of_maps.orientations);
+  const std::unique_ptr<RoadDetector> map_detector = make_detector(of_maps, ComparedWith::kImagery);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
   bench::BenchOptions& options = arguments.options;
   options.maps = {
-      &detectors,
+      map_detector.get(),
       arguments.cell_m,
       options.seed,
       options.jobs,
       arguments.cache.empty() ? default_cache() : std::filesystem::path(arguments.cache),
       [&](const std::string& name, std::int64_t done, std::int64_t total) { building.update(name, done, total); },
       stop_on_signals()};
+  options.detectors = &detectors;
   options.fix.search.deadline = Deadline(options.maps.stop);
   if (!arguments.calibration_file.empty()) options.fix.calibration = read_calibration(arguments.calibration_file);
   options.progress = [&](const std::string& task, std::int64_t done, std::int64_t total) {
@@ -161,14 +177,15 @@ void run_bench(BenchArguments& arguments) {
   std::vector<std::string> left_out;
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
+  const Readers readers{map_detector->describe(), detectors.describe()};
   std::FILE* out = printed_beside(outputs);
-  fmt::print(out, "detector {}\nseed {}, cells of {} m\n\n{}", detectors.describe(), options.seed, arguments.cell_m,
-             bench::to_table(results));
+  fmt::print(out, "detector {}, of maps {}\nseed {}, cells of {} m\n\n{}", readers.frames, readers.maps, options.seed,
+             arguments.cell_m, bench::to_table(results));
   const std::vector<bench::Outcome> outcomes = bench::road_outcomes(results);
   const bench::Honesty honesty = bench::honesty_of(outcomes);
   fmt::print(out, "\n{}", bench::to_text(honesty));
   if (!arguments.json_file.empty()) {
-    write_json(document(arguments, detectors.describe(), results, left_out), arguments.json_file);
+    write_json(document(arguments, readers, results, left_out), arguments.json_file);
   }
   if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
   const nlohmann::json origin = origin_of(arguments, manifest, left_out);
@@ -215,6 +232,8 @@ void add_bench_command(CLI::App& app) {
                      "Blocks or queries in progress at a time; 1 to measure times");
   command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");
   add_detector_options(*command, a->detector);
+  command->add_option("--map-orientations", a->map_orientations, "As --orientations, for maps; default: the same")
+      ->check(CLI::IsMember({1, 4, 8}));
   command->callback([a] { run_bench(*a); });
 }
 

@@ -56,7 +56,7 @@ struct OpenedSource {
 
 OpenedSource open(const SourceRequest& request, int number, const MapSettings& settings, const MapBuilding& building) {
   OpenedSource source;
-  source.cells = open_source(request, settings, building.detectors->compared_with(ComparedWith::kImagery).get());
+  source.cells = open_source(request, settings, building.detector);
   source.record = record_of(request.files, source.cells->summary(), building.seed);
   // Numbered, since files of several folders may share a stem.
   source.record.name = fmt::format("{} {}", number, request.files.name);
@@ -79,7 +79,7 @@ std::filesystem::path file_of(const ManifestMap& map, const MapSettings& setting
 MapView build_map(const ManifestMap& map, const MapBuilding& building) {
   std::filesystem::create_directories(building.cache);
   const MapSettings settings = settings_of_new_map(request_of(map.sources.front(), building.cache), building.cell_m,
-                                                   building.detectors->compared_with(ComparedWith::kImagery).get());
+                                                   building.detector);
   std::vector<OpenedSource> sources;
   for (const ManifestSource& source : map.sources) {
     sources.push_back(

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "cli/bench/manifest.hpp"
-#include "core/detect/detectors.hpp"
 #include "core/detect/orthoimage.hpp"
+#include "core/detect/road_detector.hpp"
 #include "core/locate/map_view.hpp"
 
 namespace roadfix::bench {
 
 struct MapBuilding {
-  const Detectors* detectors = nullptr;
+  const RoadDetector* detector = nullptr;  ///< of imagery
   double cell_m = 2.0;
   std::uint64_t seed = 1;
   int jobs = 1;

@@ -34,7 +34,7 @@ std::vector<Orthoimage> imagery_for(const Manifest& manifest, const ManifestMap&
 std::unique_ptr<Method> make_method(const std::string& name, const std::vector<Orthoimage>& imagery, const MapView& map,
                                     const BenchOptions& options) {
   if (name == "roads")
-    return make_roads_method(map, options.maps.detectors->for_map(map.imagery_reader),
+    return make_roads_method(map, options.detectors->for_map(map.imagery_reader),
                              {options.maps.cell_m, options.seed, options.fix});
   if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
   return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
@@ -102,7 +102,7 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
                                      describe(set), set.map));
         continue;
       }
-      const auto detector = options.maps.detectors->for_map(map.imagery_reader);
+      const auto detector = options.detectors->for_map(map.imagery_reader);
       const auto [queries, why_none] =
           make_queries(set, map, maps.at(set.from), *detector, {options.seed, i, options.limit});
       if (!why_none.empty()) options.left_out(why_none);  // the other sets are worth asking all the same

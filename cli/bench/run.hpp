@@ -7,6 +7,7 @@
 #include "cli/bench/map_builder.hpp"
 #include "cli/bench/report.hpp"
 #include "cli/bench/roads_method.hpp"
+#include "core/detect/detectors.hpp"
 
 namespace roadfix::bench {
 
@@ -15,6 +16,7 @@ struct BenchOptions {
   int limit = 0;  ///< at most so many queries of each set; 0 = all
   int jobs = 1;   ///< queries answered at a time; times of one query then include waiting for processors
   MapBuilding maps;
+  const Detectors* detectors = nullptr;  ///< of frames
   FixOptions fix;
   std::filesystem::path pictures;  ///< folder for a picture of every query and method; empty = none
   std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;

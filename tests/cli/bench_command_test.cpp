@@ -12,6 +12,7 @@ namespace roadfix {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 using testing::ProgramResult;
 using testing::run_program;
 using testing::text_of;
@@ -46,6 +47,21 @@ TEST(BenchCommand, WritesNothingButItsFiguresToStandardOutput) {
                                      (folder / "cache").string() + " --json /dev/stdout");
   ASSERT_EQ(bench.code, 0) << bench.err;
   EXPECT_TRUE(nlohmann::json::accept(bench.out)) << bench.out;
+}
+
+TEST(BenchCommand, ReadsMapsInMoreOrientationsThanFramesWhereItIsTold) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 1, "footprint_m": [300, 300], "prior": {"radius_m": 200}}]})";
+  const std::string command = "bench " + (folder / "town.json").string() + " --detector neural --map-cache " +
+                              (folder / "cache").string() + " --json /dev/stdout";
+  const auto readers = [&](const std::string& options) {
+    const auto document = nlohmann::json::parse(run_program(folder.path(), command + options).out, nullptr, false);
+    return document.value("map_detector", "") + " and " + document.value("detector", "");
+  };
+  EXPECT_THAT(readers(" --map-orientations 4"), MatchesRegex("neural .*=4 and neural .*=1"));
+  EXPECT_THAT(readers(" --orientations 4"), MatchesRegex("neural .*=4 and neural .*=4"));
 }
 
 TEST(BenchCommand, RunsNoMethodWhereAnEmptyTextNamesThem) {

@@ -68,7 +68,9 @@ class BenchRun : public ::testing::Test {
                                          << std::to_string(centre.lat_deg) << ',' << std::to_string(centre.lon_deg)
                                          << ',' << zone.true_from_grid({}, {400350.0, 3999550.0}).degrees() << ",1\n";
     options.jobs = 2;
-    options.maps = {&detectors, 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
+    options.detectors = &detectors;
+    options.maps = {
+        detector.get(), 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
     options.progress = [](const std::string&, std::int64_t, std::int64_t) {};
   }
 
@@ -80,7 +82,8 @@ class BenchRun : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder;
-  Detectors detectors{std::make_shared<BrightnessDetector>()};
+  std::shared_ptr<const RoadDetector> detector = std::make_shared<BrightnessDetector>();
+  Detectors detectors{detector};
   BenchOptions options;
 };
 

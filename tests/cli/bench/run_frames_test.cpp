@@ -62,12 +62,12 @@ class CountingDetector : public BrightnessDetector {
 
 TEST_F(BenchRunOfFrames, LooksForRoadsOnceInAFrameThatIsPartOfSeveralQueries) {
   take_flight(folder.path());
-  const auto detector = std::make_shared<CountingDetector>();
-  const Detectors counting(detector);
-  options.maps.detectors = &counting;
+  const auto counter = std::make_shared<CountingDetector>();
+  const Detectors counting(counter);
+  options.detectors = &counting;
   options.jobs = 1;
   const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 3})", R"("roads")");
-  EXPECT_EQ(detector->frames, 3);
+  EXPECT_EQ(counter->frames, 3);
   for (const Outcome& outcome : results.at(0).outcomes) EXPECT_GT(outcome.answer.time_ms, 0.0);
 }
 

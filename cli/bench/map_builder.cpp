@@ -78,8 +78,8 @@ std::filesystem::path file_of(const ManifestMap& map, const MapSettings& setting
 
 MapView build_map(const ManifestMap& map, const MapBuilding& building) {
   std::filesystem::create_directories(building.cache);
-  const MapSettings settings = settings_of_new_map(request_of(map.sources.front(), building.cache), building.cell_m,
-                                                   building.detector);
+  const MapSettings settings =
+      settings_of_new_map(request_of(map.sources.front(), building.cache), building.cell_m, building.detector);
   std::vector<OpenedSource> sources;
   for (const ManifestSource& source : map.sources) {
     sources.push_back(

@@ -93,7 +93,8 @@ void ConstantVelocityMotion::operator()(ParticleState& state, RandomStream& rand
   };
   go_on(state.east_m, state.drift_east_m_s);
   go_on(state.north_m, state.drift_north_m_s);
-  state.heading_rad = wrapped(state.heading_rad + heading_walk_rad * std::sqrt(seconds) * random.normal());
+  const double heading_sigma = std::hypot(heading_walk_rad * std::sqrt(seconds), turn_rad.sigma);
+  state.heading_rad = wrapped(state.heading_rad + turn_rad.mean + heading_sigma * random.normal());
 }
 
 }  // namespace roadfix

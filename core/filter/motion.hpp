@@ -72,11 +72,12 @@ struct BodyVelocity {
 };
 
 /// Nothing is told: the drift, which is all of the velocity then, goes on, changed by white acceleration, and the
-/// heading wanders.
+/// heading turns and wanders.
 struct ConstantVelocityMotion {
   double seconds = 0.0;
   double velocity_walk = 1.0;      ///< m/s per square root of a second and axis
   double heading_walk_rad = 0.05;  ///< per square root of a second
+  Gaussian turn_rad{};             ///< of the step, clockwise; the velocity does not turn with it
   BodyVelocity joins{};            ///< the drift at first: what moved the particle beside it until now
 
   void operator()(ParticleState& state, RandomStream& random) const;

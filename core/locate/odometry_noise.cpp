@@ -14,6 +14,20 @@ OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const
   return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
 }
 
+namespace {
+
+/// So many equal movements one after another: chords of one arc. The n-th has turned by n - 1 times the turn of one.
+Odometry repeated(const Odometry& one, double times) {
+  const double half_turn = 0.5 * one.turn.wrapped().radians();
+  const double sine = std::sin(half_turn);
+  const double length = std::abs(sine) < 1e-9 ? times : std::sin(times * half_turn) / sine;
+  const double direction = (times - 1.0) * half_turn;
+  return {length * (one.forward_m * std::cos(direction) - one.right_m * std::sin(direction)),
+          length * (one.forward_m * std::sin(direction) + one.right_m * std::cos(direction)), times * one.turn};
+}
+
+}  // namespace
+
 std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry, OdometryCovariance covariance,
                                                         double lost) {
   constexpr double kLostShare = 0.5;
@@ -25,8 +39,7 @@ std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry
   covariance[0][0] += metres * metres;
   covariance[1][1] += metres * metres;
   covariance[2][2] += lost * kLostTurn * kLostTurn;
-  const double times = 1.0 + lost;
-  return {{times * odometry.forward_m, times * odometry.right_m, times * odometry.turn}, covariance};
+  return {repeated(odometry, 1.0 + lost), covariance};
 }
 
 }  // namespace roadfix

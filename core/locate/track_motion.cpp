@@ -17,6 +17,9 @@ constexpr double kScaleWalkShare = 0.03;
 // within a second (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
 constexpr double kManoeuvreShare = 0.5;
 constexpr double kLeastManoeuvreMS = 1.0;
+// It goes on turning for some seconds, and may as well have stopped: of what it turns by then, so much is one sigma.
+constexpr double kTurnLastsS = 3.0;
+constexpr double kTurnDoubt = 0.5;
 
 // 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told: so much
 // of the speed, and at least so many m/s.
@@ -66,19 +69,15 @@ double StepMotion::move(Filter& filter) {
   return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk});
 }
 
-void StepMotion::begin_anew() {
-  learned_.velocity.reset();
-  learned_.coasts = coasts();
-}
+void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.drifts, coasts(), 0.0}; }
 
 /// Where the step before told no motion, the drift of the particles was all of their velocity: they draw a new one.
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
   const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk);
-  if (told_.seconds >= kShortestS) {
-    learned_.velocity = {odometry.forward_m / told_.seconds, odometry.right_m / told_.seconds};
-  }
+  learned_.coasted_s = 0.0;
+  if (told_.seconds >= kShortestS) learn_velocity(odometry);
   if (!coasted) return predict(filter, motion);
   return predict(filter, [&motion, region = region()](ParticleState& state, RandomStream& random) {
     draw_drift(region, state, random);
@@ -86,10 +85,30 @@ double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   });
 }
 
-/// On with the velocity that odometry told, if any did.
-double StepMotion::coast(Filter& filter, bool begins) const {
+void StepMotion::learn_velocity(const Odometry& odometry) {
+  const double sine = std::sin(odometry.turn.radians());
+  const double cosine = std::cos(odometry.turn.radians());
+  learned_.velocity = {(odometry.forward_m * cosine + odometry.right_m * sine) / told_.seconds,
+                       (odometry.right_m * cosine - odometry.forward_m * sine) / told_.seconds};
+  learned_.turn_rate_rad_s = odometry.turn.radians() / told_.seconds;
+}
+
+/// Of this step. The doubts of steps add up to that of the whole turn.
+Gaussian StepMotion::turn_goes_on() const {
+  const auto turned_by = [&](double seconds) {
+    return -learned_.turn_rate_rad_s * kTurnLastsS * std::expm1(-seconds / kTurnLastsS);
+  };
+  const double before = turned_by(learned_.coasted_s);
+  const double after = turned_by(learned_.coasted_s + told_.seconds);
+  return {after - before, kTurnDoubt * std::sqrt(after * after - before * before)};
+}
+
+/// On with the velocity and the turn that odometry told, if any did.
+double StepMotion::coast(Filter& filter, bool begins) {
   ConstantVelocityMotion motion{told_.seconds};
   motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_m_s());
+  motion.turn_rad = turn_goes_on();
+  learned_.coasted_s += told_.seconds;
   if (begins) motion.joins = learned_.velocity.value_or(BodyVelocity{});
   return predict(filter, motion);
 }

@@ -20,9 +20,11 @@ struct ToldMotion {
 
 /// What a track keeps of the motion from step to step.
 struct LearnedMotion {
-  std::optional<BodyVelocity> velocity;  ///< that the last odometry told
+  std::optional<BodyVelocity> velocity;  ///< that the last odometry told, seen from the pose at its end
+  double turn_rate_rad_s = 0.0;          ///< likewise, clockwise
   bool drifts = false;                   ///< the odometry was found wrong: a wind is learned though none was told
-  bool coasts = false;  ///< the last step told no motion: the drift of the particles is all of their velocity
+  bool coasts = false;     ///< the last step told no motion: the drift of the particles is all of their velocity
+  double coasted_s = 0.0;  ///< since motion was told
   friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;
 };
 
@@ -60,8 +62,10 @@ class StepMotion {
  private:
   bool coasts() const { return !told_.odometry && !vehicle_.planar; }
   Wind wind() const;
+  void learn_velocity(const Odometry& odometry);
   double follow_odometry(Filter& filter, bool coasted);
-  double coast(Filter& filter, bool begins) const;
+  double coast(Filter& filter, bool begins);
+  Gaussian turn_goes_on() const;
   template <MotionModel Motion>
   double predict(Filter& filter, const Motion& motion) const;
 

@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3330'5354'4652ULL;  // "RFTS03"
+constexpr std::uint64_t kMagic = 0x3430'5354'4652ULL;  // "RFTS04"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -35,7 +35,7 @@ void pass_members(auto& io, auto& state) {
          recent, last_view, motion] = state;
   io(searched, sequence, time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
-  io(motion.velocity, motion.drifts, motion.coasts);
+  io(motion.velocity, motion.turn_rate_rad_s, motion.drifts, motion.coasts, motion.coasted_s);
   io(last_view.seen, last_view.stands_still, last_view.earlier);
   io(filter.seed, filter.step, filter.resets, filter.slow_support, filter.fast_support, filter.particles);
   io(recent);

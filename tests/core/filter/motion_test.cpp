@@ -218,6 +218,15 @@ TEST(ConstantVelocityMotion, GoesOnAsItWent) {
   EXPECT_EQ(end.heading_rad, 0.5);
 }
 
+TEST(ConstantVelocityMotion, TurnsTheBodyAndNotItsWay) {
+  ConstantVelocityMotion motion{2.0, 0.0, 0.0};
+  motion.turn_rad = {0.3, 0.0};
+  const ParticleState end = moved(motion, {1.0, 1.0, 0.5, 10.0, -4.0});
+  EXPECT_NEAR(end.heading_rad, 0.8, 1e-12);
+  EXPECT_NEAR(end.east_m, 21.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -7.0, 1e-12);
+}
+
 TEST(ScaleWalk, GrowsWithTheRootOfTimeAndStaysWithinItsRange) {
   double sum2 = 0.0;
   double max = 0.0;

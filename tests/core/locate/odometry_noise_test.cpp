@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace roadfix {
 namespace {
 
@@ -39,13 +41,30 @@ TEST(OdometryNoise, IsTheShareThatIsTold) {
 TEST(OdometryNoise, IsHalfOfWhatLostStepsMayHaveMoved) {
   const OdometryCovariance of_one{{{1.0, 0.5, 0.0}, {0.5, 4.0, 0.0}, {0.0, 0.0, 0.01}}};
   const auto [odometry, covariance] = with_lost_steps({6.0, 8.0, Angle::degrees(10.0)}, of_one, 2.0);
-  EXPECT_DOUBLE_EQ(odometry.forward_m, 18.0);
-  EXPECT_DOUBLE_EQ(odometry.right_m, 24.0);
   EXPECT_DOUBLE_EQ(odometry.turn.degrees(), 30.0);
   EXPECT_DOUBLE_EQ(covariance[0][0], 3.0 * 1.0 + 10.0 * 10.0);
   EXPECT_DOUBLE_EQ(covariance[0][1], 3.0 * 0.5);
   EXPECT_DOUBLE_EQ(covariance[1][1], 3.0 * 4.0 + 10.0 * 10.0);
   EXPECT_DOUBLE_EQ(covariance[2][2], 3.0 * 0.01 + 2.0 * 0.3 * 0.3);
+}
+
+TEST(OdometryNoise, LaysLostStepsOneAfterAnother) {
+  for (const double turn_deg : {0.0, 15.0, -40.0, 180.0, 1e-7, 360.0}) {
+    const Odometry one{12.0, 5.0, Angle::degrees(turn_deg)};
+    for (const int lost : {0, 1, 3, 6}) {
+      double forward = 0.0;
+      double right = 0.0;
+      for (int k = 0; k <= lost; ++k) {
+        const double turned = k * one.turn.radians();
+        forward += one.forward_m * std::cos(turned) - one.right_m * std::sin(turned);
+        right += one.forward_m * std::sin(turned) + one.right_m * std::cos(turned);
+      }
+      const Odometry all = with_lost_steps(one, {}, lost).first;
+      EXPECT_NEAR(all.forward_m, forward, 1e-6) << turn_deg << ' ' << lost;
+      EXPECT_NEAR(all.right_m, right, 1e-6) << turn_deg << ' ' << lost;
+      EXPECT_DOUBLE_EQ(all.turn.radians(), (1 + lost) * one.turn.radians());
+    }
+  }
 }
 
 }  // namespace

@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 namespace roadfix {
 namespace {
 
 const AcceptanceRegion kFlight{
     {{{0.0, 0.0}, {1000.0, 1000.0}}, std::nullopt, Angle(), Angle::degrees(180.0)}, 500.0, 0.0, 0.0};
-const LearnedMotion kFlewAt20MS{BodyVelocity{16.0, 12.0}, false, false};
+const LearnedMotion kFlewAt20MS{BodyVelocity{16.0, 12.0}, 0.0, false, false, 0.0};
 
 Filter filter_at(const StepMotion& motion, GridPose pose) {
   Filter filter(FilterOptions::paper(100), motion.region(), 1);
@@ -54,6 +58,59 @@ TEST(StepMotion, CountsLostStepsAsLikeThisOne) {
   motion.move(filter);
   EXPECT_EQ(motion.learned().velocity, (BodyVelocity{10.0, 0.0}));
   EXPECT_FALSE(motion.covers_ground());
+}
+
+/// By how much particles turn, mean and deviation, when a vehicle that turned so fast tells no motion any more.
+std::pair<double, double> turned_by_deg(double seconds, int steps, double turn_deg_s) {
+  const VehicleNoise vehicle;
+  StepMotion told(vehicle, kFlight, {Odometry{12.0, 0.0, Angle::degrees(turn_deg_s)}, OdometryCovariance{}, 1.0}, {});
+  Filter filter = filter_at(told, {{500.0, 500.0}, Angle()});
+  told.move(filter);
+  const std::vector<double> before = filter.particles().heading_rad;
+  LearnedMotion learned = told.learned();
+  FilterOptions options = FilterOptions::paper(100);
+  options.injected_share = 0.0;
+  FilterState state = filter.state();
+  for (int k = 0; k < steps; ++k) {
+    StepMotion coasting(vehicle, kFlight, {{}, {}, seconds / steps}, learned);
+    Filter coasted(options, coasting.region(), std::move(state));
+    EXPECT_EQ(coasting.move(coasted), 1.0);
+    state = coasted.state();
+    learned = coasting.learned();
+  }
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double turned = Angle::radians(state.particles.heading_rad[i] - before[i]).wrapped().degrees();
+    sum += turned;
+    squares += turned * turned;
+  }
+  const double n = static_cast<double>(before.size());
+  return {sum / n, std::sqrt(squares / n - sum * sum / n / n)};
+}
+
+TEST(StepMotion, GoesOnTurningForSomeSecondsAndDoubtsIt) {
+  for (const int steps : {1, 4}) {
+    // 12 degrees/s for 3 s: 36 degrees if it goes on and none if it stopped. Expected 22.8, doubted by half, and 5.0 by
+    // the wandering: 12.4. Five sigma of 100 draws.
+    const auto [mean, sigma] = turned_by_deg(3.0, steps, 12.0);
+    EXPECT_NEAR(mean, 36.0 * (1.0 - std::exp(-1.0)), 5.0 * 12.4 / 10.0) << steps;
+    EXPECT_NEAR(sigma, 12.4, 5.0 * 12.4 / std::sqrt(200.0)) << steps;
+  }
+  const auto [straight_on, sigma] = turned_by_deg(3.0, 1, 0.0);
+  EXPECT_NEAR(straight_on, 0.0, 5.0 * 5.0 / 10.0);
+  EXPECT_LT(sigma, 8.0);
+}
+
+TEST(StepMotion, KeepsTheCourseOfAVehicleThatYawedAsItFlewStraightOn) {
+  const VehicleNoise vehicle;
+  StepMotion told(vehicle, kFlight, {Odometry{12.0, 0.0, Angle::degrees(40.0)}, OdometryCovariance{}, 1.0}, {});
+  Filter filter = filter_at(told, {{500.0, 500.0}, Angle()});
+  told.move(filter);
+  ASSERT_TRUE(told.learned().velocity);
+  // The heading is 40 degrees to the right of the course now.
+  EXPECT_NEAR(told.learned().velocity->forward_m_s, 12.0 * std::cos(Angle::degrees(40.0).radians()), 1e-9);
+  EXPECT_NEAR(told.learned().velocity->right_m_s, -12.0 * std::sin(Angle::degrees(40.0).radians()), 1e-9);
 }
 
 TEST(StepMotion, LearnsADriftOnlyOfOdometry) {

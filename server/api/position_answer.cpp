@@ -18,14 +18,19 @@ constexpr std::array<Media, 6> kFormats{{{"json", "application/json"},
                                          {"mavproxy", "application/x-mavproxy-gps-input+json"},
                                          {"nmea", "application/x-nmea-0183"}}};
 
+/// 1 sigma. No message says how sure a yaw is, and an autopilot that steers by it takes it for that of a compass.
+constexpr double kLeastSureYawDeg = 10.0;
+
 /// Answers have the heading of the frame, autopilots want that of the vehicle.
 std::optional<autopilot::Position> position_of(const nlohmann::json& answer, Angle camera_yaw) {
   if (!answer.contains("pose")) return std::nullopt;
   const nlohmann::json& pose = answer.at("pose");
   const std::array<double, 2> sigma_m = answer.at("sigma_m");
-  return autopilot::Position{{pose.at("lat"), pose.at("lon")},
-                             Angle::degrees(pose.at("heading_deg")) - camera_yaw,
-                             std::max(sigma_m[0], sigma_m[1])};
+  autopilot::Position position{{pose.at("lat"), pose.at("lon")}, std::nullopt, std::max(sigma_m[0], sigma_m[1])};
+  if (answer.at("heading_sigma_deg") <= kLeastSureYawDeg) {
+    position.heading = Angle::degrees(pose.at("heading_deg")) - camera_yaw;
+  }
+  return position;
 }
 
 void read_id(const Fields& fields, const std::string& name, std::uint8_t& id) {

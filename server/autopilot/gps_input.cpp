@@ -50,7 +50,7 @@ GpsInput gps_input(const PositionReport& report, int satellites) {
     input.ignore_flags &= static_cast<std::uint16_t>(~kHorizontalAccuracy);
   }
   input.satellites_visible = static_cast<std::uint8_t>(satellites);
-  input.yaw = yaw_cdeg(position.heading);
+  if (position.heading) input.yaw = yaw_cdeg(*position.heading);
   return input;
 }
 

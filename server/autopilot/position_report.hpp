@@ -12,7 +12,7 @@ namespace roadfix::autopilot {
 
 struct Position {
   LatLon at;
-  Angle heading;                  ///< of the vehicle, clockwise from true north
+  std::optional<Angle> heading;   ///< of the vehicle, clockwise from true north; nullopt = not known well enough
   std::optional<double> sigma_m;  ///< 1 sigma along the longer axis of the ellipse, so that no axis is thought better
 };
 

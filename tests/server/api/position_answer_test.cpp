@@ -16,8 +16,10 @@ using ::testing::Contains;
 using ::testing::Pair;
 using ::testing::StartsWith;
 
-const json kKnown{
-    {"status", "fix"}, {"pose", {{"lat", 37.7632}, {"lon", 38.2571}, {"heading_deg", 131.4}}}, {"sigma_m", {2.5, 1.5}}};
+const json kKnown{{"status", "fix"},
+                  {"pose", {{"lat", 37.7632}, {"lon", 38.2571}, {"heading_deg", 131.4}}},
+                  {"sigma_m", {2.5, 1.5}},
+                  {"heading_sigma_deg", 1.2}};
 /// Where several places fit there is no pose at the top, whatever the places below it say.
 const json kNotKnown{{"status", "ambiguous"}, {"modes", {{{"pose", kKnown["pose"]}}}}};
 constexpr PositionTime kTime{1'763'724'896'250'000, std::chrono::milliseconds(250)};
@@ -84,6 +86,13 @@ TEST(PositionAnswer, IsAsAccurateAsTheLongerAxisOfItsEllipseWhicheverComesFirst)
     answer["sigma_m"] = sigma_m;
     EXPECT_EQ(mavproxy(answer)["horiz_accuracy"], 2.5) << sigma_m[0];
   }
+}
+
+TEST(PositionAnswer, TellsNoYawWhereTheHeadingIsHardlyKnown) {
+  json answer = kKnown;
+  answer["heading_sigma_deg"] = 10.5;
+  EXPECT_EQ(mavproxy(answer)["yaw"], 0);
+  EXPECT_EQ(mavproxy(answer)["lat"], 377'632'000);
 }
 
 TEST(PositionAnswer, TurnsTheHeadingOfTheFrameIntoThatOfTheVehicle) {

@@ -1,7 +1,11 @@
 // Prints what the public MAVLink implementation node-mavlink makes of the messages of autopilot_test.cpp, as JSON from
 // name to hexadecimal bytes. node_mavlink_vectors.json is its output with node-mavlink 2.3.0 and mavlink-mappings
-// 1.0.21. To look again: npm install node-mavlink; NODE_PATH=$PWD/node_modules node node_mavlink.cjs
+// 1.0.21. To look again: npm install node-mavlink; NODE_PATH=$PWD/node_modules node node_mavlink.cjs. With a file as
+// argument it prints nothing, and fails where the file says otherwise.
 "use strict";
+
+const assert = require("node:assert/strict");
+const { readFileSync } = require("node:fs");
 
 let mavlink;
 try {
@@ -74,4 +78,8 @@ for (const [name, [message, fields]] of Object.entries(messages)) {
   Object.assign(message, fields);
   result[name] = new MavLinkProtocolV2(7, 197).serialize(message, 41).toString("hex");
 }
-console.log(JSON.stringify(result, null, 2));
+if (process.argv[2]) {
+  assert.deepEqual(JSON.parse(readFileSync(process.argv[2], "utf8")), result);
+} else {
+  console.log(JSON.stringify(result, null, 2));
+}

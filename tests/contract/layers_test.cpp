@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const fs::path kRoot = ROADFIX_SOURCE_DIR;
+const std::regex kBuildFile(R"(CMakeLists\.txt)");
 
 std::string read(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -31,15 +32,19 @@ struct SourceFile {
   std::string text;
 };
 
-std::vector<SourceFile> product_files(const std::regex& name) {
+std::vector<SourceFile> files_in(std::initializer_list<const char*> folders, const std::regex& name) {
   std::vector<SourceFile> files;
-  for (const char* top : {"core", "tiles", "server", "schema", "cli"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+  for (const char* folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
       if (!std::regex_match(entry.path().filename().string(), name)) continue;
       files.push_back({entry.path().lexically_relative(kRoot).generic_string(), read(entry.path())});
     }
   }
   return files;
+}
+
+std::vector<SourceFile> product_files(const std::regex& name) {
+  return files_in({"core", "tiles", "server", "schema", "cli"}, name);
 }
 
 std::vector<std::string> matches(const std::string& text, const std::regex& pattern) {
@@ -61,7 +66,7 @@ TEST(Layers, EveryIncludeIsAllowedByTheModuleTable) {
 
 TEST(Layers, EveryLinkedModuleIsAllowedByTheModuleTable) {
   const LayerTable table = project_table();
-  const auto files = product_files(std::regex("CMakeLists\\.txt"));
+  const auto files = product_files(kBuildFile);
   std::map<std::string, std::string> folder_of_target;
   for (const auto& file : files) {
     for (const auto& name : matches(file.text, std::regex(R"(roadfix_module\(\s*(\w+))"))) {
@@ -118,6 +123,14 @@ TEST(Layers, EveryHeaderBelongsToATargetSoThatItIsCompiledAlone) {
 TEST(Layers, HeadersOfAModuleAreThoseOfItsPairsAndThoseThatComeAlone) {
   EXPECT_THAT(headers_in("roadfix_module(a\n  FILES b c/d\n  HEADERS e.hpp\n  SOURCES f.cpp\n  LINK g)\nh(i.hpp)"),
               ElementsAre("b.hpp", "c/d.hpp", "e.hpp"));
+}
+
+TEST(BuildFiles, AreNoWiderThanClangFormatLetsSourcesBe) {
+  std::vector<SourceFile> files = files_in({"core", "tiles", "server", "schema", "cli", "tests"}, kBuildFile);
+  files.push_back({"CMakeLists.txt", read(kRoot / "CMakeLists.txt")});
+  for (const auto& file : files) {
+    EXPECT_THAT(matches(file.text, std::regex("(.{121,})")), IsEmpty()) << "wrap this in " << file.path;
+  }
 }
 
 /// Types at namespace scope, which stand at the beginning of a line, with their namespace.

@@ -14,7 +14,7 @@ std::string_view tracks_sql();
 /// Every route of the service, OpenAPI 3.1 (schema/openapi.json).
 std::string_view openapi_json();
 
-/// How sure the service is of its answers (core/locate/calibration.json).
+/// How sure the service is of its answers (schema/calibration.json).
 std::string_view calibration_json();
 
 }  // namespace roadfix::schema

@@ -51,7 +51,7 @@ struct Calibration {
 /// The text of a calibration file; its `origin` is for people. Throws InvalidInput "calibration-..." naming the field.
 Calibration parse_calibration(std::string_view json);
 
-/// The one that is shipped (core/locate/calibration.json).
+/// The one that is shipped (schema/calibration.json).
 const Calibration& default_calibration();
 
 }  // namespace roadfix

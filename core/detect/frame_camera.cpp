@@ -56,9 +56,10 @@ void validate(const FrameCamera& camera, cv::Size frame) {
   require_camera(std::abs(camera.assumed_pitch().degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
   const bool calibrated = camera.principal_px || camera.lens != LensModel::kPerspective || !camera.distortion.empty();
   if (calibrated && !camera.focal_px) {
-    throw InvalidInput("frame-camera",
-                       "frame: principal point and distortion come from a calibration: give its focal length in pixels "
-                       "with them, not the field of view");
+    throw InvalidInput(
+        "frame-camera",
+        "frame: principal point, distortion and a fisheye lens come from a calibration: give its focal length "
+        "in pixels with them, not the field of view");
   }
   if (camera.principal_px) require_in_the_middle(*camera.principal_px, frame);
 }

@@ -7,8 +7,12 @@ namespace roadfix::cli {
 
 void add_bbox_option(CLI::App& command, const std::string& what, std::optional<GeoBox>& box) {
   const auto take = [&box](const std::vector<double>& bounds) {
-    box = geo_box_of(std::span<const double, 4>(bounds));
-    if (box->empty()) throw CLI::ValidationError("--bbox", "west must lie below east, and south below north");
+    box = told_box(std::span<const double, 4>(bounds));
+    if (!box) {
+      throw CLI::ValidationError("--bbox",
+                                 "west must lie below east, and south below north: longitudes from -360 to 360 and "
+                                 "latitudes from -90 to 90 degrees");
+    }
   };
   command
       .add_option_function<std::vector<double>>(

@@ -9,8 +9,7 @@
 
 namespace roadfix::cli {
 
-/// `what` is the region to the command, for the help. Empty boxes are wrong usage; where west lies more than half a
-/// turn above east, the box crosses the antimeridian, as that of `ingest --extent`.
+/// `what` is the region to the command, for the help. What is no told_box() is wrong usage.
 void add_bbox_option(CLI::App& command, const std::string& what, std::optional<GeoBox>& box);
 
 }  // namespace roadfix::cli

@@ -64,13 +64,13 @@ constexpr std::array kTurnsDeg{0.0, -360.0};
 
 }  // namespace
 
-double eastern_side_deg(double west_deg, double east_deg) {
+std::optional<GeoBox> told_box(std::span<const double, 4> sides_deg) {
   constexpr double kTurn = 360.0;
-  return west_deg - east_deg > kTurn / 2.0 ? east_deg + kTurn : east_deg;
-}
-
-GeoBox geo_box_of(std::span<const double, 4> sides_deg) {
-  return {{sides_deg[1], sides_deg[0]}, {sides_deg[3], eastern_side_deg(sides_deg[0], sides_deg[2])}};
+  const auto [west, south, east, north] = std::array{sides_deg[0], sides_deg[1], sides_deg[2], sides_deg[3]};
+  if (std::max(std::abs(west), std::abs(east)) > kTurn) return std::nullopt;
+  if (std::max(std::abs(south), std::abs(north)) > 90.0) return std::nullopt;
+  const GeoBox box{{south, west}, {north, west - east > kTurn / 2.0 ? east + kTurn : east}};
+  return box.empty() ? std::nullopt : std::optional(box);
 }
 
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box) {

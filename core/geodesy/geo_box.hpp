@@ -2,6 +2,7 @@
 // other.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,10 @@ struct GeoBox {
   }
 };
 
-/// The eastern side of a box, as people write it: beyond 180 degrees where west lies more than half a turn above it,
-/// since the box crosses the antimeridian then.
-double eastern_side_deg(double west_deg, double east_deg);
-
-/// Of west, south, east and north in degrees, as people write them; empty where they are no box.
-GeoBox geo_box_of(std::span<const double, 4> sides_deg);
+/// Of west, south, east and north in degrees, as people write them: longitudes are counted up to 180 or up to 360, and
+/// where west lies more than half a turn above east the box crosses the meridian at which their count begins anew.
+/// nullopt where they are no box of the Earth with ground in it.
+std::optional<GeoBox> told_box(std::span<const double, 4> sides_deg);
 
 /// The smallest one around a box of the plane, which is not empty, to centimetres for a city.
 GeoBox geo_box_around(const UtmZone& zone, const GridBox& box);

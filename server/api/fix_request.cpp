@@ -61,15 +61,12 @@ Prior parse_prior(const Fields& fields) {
                              fields.number("radius_m", {0.0, 2e7, true})};
   }
   if (const auto box = fields.optional_numbers("bbox", 4)) {
-    const GeoBox geo = geo_box_of(std::span<const double, 4>(*box));
-    // Beyond 180 degrees: across the antimeridian, as GET /v1/maps gives the boxes of such maps.
-    const auto on_earth = [](LatLon p) { return std::abs(p.lat_deg) <= 90.0 && std::abs(p.lon_deg) <= 360.0; };
-    if (!on_earth(geo.south_west) || !on_earth(geo.north_east) || geo.empty()) {
+    prior.box = told_box(std::span<const double, 4>(*box));
+    if (!prior.box) {
       throw InvalidField("bad-parameter", "bbox",
                          "'bbox' must be west,south,east,north in degrees with south < north, and with west < east "
                          "unless the antimeridian lies between them");
     }
-    prior.box = geo;
   }
   require_together(fields, {"heading_deg", "heading_range_deg"});
   if (fields.has("heading_deg")) {

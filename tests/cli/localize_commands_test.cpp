@@ -254,6 +254,7 @@ TEST_F(LocalizeCommands, FixTakesAPrior) {
   const ProgramResult swapped = roadfix("fix " + input + "--bbox 50,20,51,20");
   EXPECT_EQ(swapped.code, 2);
   EXPECT_THAT(swapped.err, HasSubstr("--bbox: west must lie below east, and south below north"));
+  EXPECT_EQ(roadfix("fix " + input + "--bbox 0,-100,10,100").code, 2) << "as the service refuses it";
   const ProgramResult box = roadfix("fix " + input + "--bbox 20,50,21,51");
   EXPECT_THAT(box.err, HasSubstr("prior-outside-map"));
 }

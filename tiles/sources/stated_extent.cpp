@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numeric>
@@ -67,22 +66,13 @@ bool looks_like_numbers(const std::string& extent) {
          !std::filesystem::exists(extent, none);
 }
 
-/// Of west, south, east and north, as they are told: longitudes may be counted from 0 to 360 degrees, too.
-std::optional<GeoBox> box_of(std::span<const double, 4> sides_deg) {
-  for (const std::size_t longitude : {0U, 2U}) {
-    if (std::abs(sides_deg[longitude]) > 360.0 || std::abs(sides_deg[longitude + 1]) > 90.0) return std::nullopt;
-  }
-  const GeoBox box = geo_box_of(sides_deg);
-  return box.empty() ? std::nullopt : std::optional(box);
-}
-
 }  // namespace
 
 std::optional<GeoBox> box_in_degrees(const std::string& extent) {
   const std::optional<std::vector<double>> sides = numbers_in(extent, ',');
   const bool four = sides && sides->size() == 4;
   if (!four && !looks_like_numbers(extent)) return std::nullopt;
-  const std::optional<GeoBox> box = four ? box_of(std::span<const double, 4>(*sides)) : std::nullopt;
+  const std::optional<GeoBox> box = four ? told_box(std::span<const double, 4>(*sides)) : std::nullopt;
   if (!box) {
     throw InvalidInput(
         "extent-unreadable",

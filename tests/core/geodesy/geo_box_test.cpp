@@ -148,10 +148,24 @@ TEST(GeoBoxAround, AndTheGridBoxAroundThatHoldTheBox) {
 
 TEST(GeoBox, GoesAcrossTheAntimeridianOnlyWhereItsEastLiesMoreThanHalfATurnWestOfItsWest) {
   const std::array<double, 4> fiji{179.0, -18.0, -179.0, -16.0};
-  EXPECT_EQ(geo_box_of(fiji).north_east.lon_deg, 181.0);
+  EXPECT_EQ(told_box(fiji).value().north_east.lon_deg, 181.0);
   const std::array<double, 4> swapped{-11.0, 57.0, -12.0, 58.0};
-  EXPECT_EQ(geo_box_of(swapped).north_east.lon_deg, -12.0) << "no belt round the Earth";
-  EXPECT_TRUE(geo_box_of(swapped).empty());
+  EXPECT_FALSE(told_box(swapped)) << "no belt round the Earth";
+}
+
+TEST(GeoBox, IsToldWithLongitudesUpTo180OrUpTo360) {
+  const std::array<double, 4> across_greenwich{350.0, 45.0, 10.0, 46.0};
+  EXPECT_EQ(told_box(across_greenwich).value().south_west.lon_deg, 350.0);
+  EXPECT_EQ(told_box(across_greenwich).value().north_east.lon_deg, 370.0);
+  const std::array<double, 4> alaska{200.0, 60.0, 220.0, 70.0};
+  EXPECT_EQ(told_box(alaska).value().north_east.lon_deg, 220.0);
+}
+
+TEST(GeoBox, IsNotToldByWhatLiesBesideTheEarth) {
+  for (const std::array<double, 4>& sides : {std::array{0.0, -100.0, 10.0, 1.0}, std::array{0.0, 0.0, 10.0, 91.0},
+                                             std::array{-361.0, 0.0, 1.0, 1.0}, std::array{0.0, 0.0, 361.0, 1.0}}) {
+    EXPECT_FALSE(told_box(sides)) << sides[0] << ' ' << sides[1] << ' ' << sides[2] << ' ' << sides[3];
+  }
 }
 
 TEST(GeoBox, IsEmptyWhereACornerIsNoNumber) {

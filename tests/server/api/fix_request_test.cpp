@@ -63,6 +63,12 @@ TEST(PriorRequest, TellsABoxAcrossTheAntimeridianEitherWay) {
   }
 }
 
+TEST(PriorRequest, TellsABoxByLongitudesUpTo360Too) {
+  const GeoBox box = prior_of({{"bbox", {350, 45, 10, 46}}}).box.value();
+  EXPECT_EQ(box.south_west.lon_deg, 350.0);
+  EXPECT_EQ(box.north_east.lon_deg, 370.0);
+}
+
 TEST(PriorRequest, RefusesABoxThatHoldsNothingOrIsNotOnEarth) {
   for (const json& box : {json{12, 57, 11, 58}, json{11, 58, 12, 57}, json{11, 57, 11, 58}, json{11, 57, 12, 57},
                           json{11, -91, 12, 58}, json{11, 57, 12, 91}, json{-361, 57, 12, 58}, json{11, 57, 361, 58},

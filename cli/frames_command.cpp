@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -89,22 +90,10 @@ std::string unnameable(const std::string& name, const std::string& sequence) {
   return "";
 }
 
-/// nullopt, said on stderr, where it is damaged.
-std::optional<PictureTags> tags_of(const fs::path& file) {
-  try {
-    require_not_empty(file);
-    return read_picture_tags(file);
-  } catch (const InvalidInput& error) {
-    say_left_out(file, error.what());
-    return std::nullopt;
-  }
-}
-
 /// nullopt, said on stderr, where the file does not tell enough.
 std::optional<Frame> frame_of(const fs::path& file, const fs::path& table_folder, const FramesOptions& options) {
-  const auto tags = tags_of(file);
-  if (!tags) return std::nullopt;
-  DronePicture picture = drone_picture(*tags);
+  require_not_empty(file);
+  DronePicture picture = drone_picture(read_picture_tags(file));
   const auto agl_m = agl_of(picture, options);
   const fs::path whole = fs::absolute(file).lexically_normal();
   const std::string name = whole.lexically_proximate(table_folder).generic_string();
@@ -138,11 +127,18 @@ void run_frames(const FramesOptions& options) {
       options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
   std::vector<Frame> frames;
   const auto files = picture_files(options.pictures, kPhotoEndings);
-  for (const fs::path& file : files) {
-    require_apart({options.csv}, {file});
+  for (const fs::path& file : files) require_apart({options.csv}, {file});
+  const auto take = [&](const fs::path& file) {
     if (auto frame = frame_of(file, folder, options)) frames.push_back(std::move(*frame));
+  };
+  std::size_t unread = 0;
+  if (are_several(options.pictures)) {
+    unread = for_each_picture(files, "reading", false, take);
+  } else {
+    take(files.front());
   }
   if (frames.empty()) {
+    if (unread == files.size()) require_none(unread, files.size());
     throw InvalidInput("no-drone-pictures",
                        "none of the pictures tells where and how it was taken: programs that edit "
                        "or shrink pictures often drop that; take them as the drone stored them");
@@ -162,6 +158,7 @@ void run_frames(const FramesOptions& options) {
                "heights are those above the take-off: if it lay higher or lower than the ground in the pictures, "
                "say by how much with --takeoff-agl\n");
   }
+  require_none(unread, files.size());
 }
 
 }  // namespace
@@ -171,7 +168,9 @@ void add_frames_command(CLI::App& app) {
       "frames", "Makes the table of frames for bench and fly out of pictures as a drone stored them (EXIF and XMP)");
   command->footer(
       "Examples: roadfix frames photos/ --csv photos/frames.csv\n"
-      "          roadfix frames DJI_0042.JPG      (prints what roadfix fix --exif takes from it)");
+      "          roadfix frames DJI_0042.JPG      (prints what roadfix fix --exif takes from it)\n"
+      "Exit code: 0 done, 1 where a picture could not be read, 2 for wrong usage. Of several pictures the table has "
+      "the others.");
   const auto options = std::make_shared<FramesOptions>();
   command->add_option("pictures", options->pictures, "JPEG files, or folders of them")->required();
   command->add_option("--csv", options->csv, "File to write, from which the pictures are named; default: print");

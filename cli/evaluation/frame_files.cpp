@@ -17,9 +17,8 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
 }
 
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
-  const auto file = read_file(folder / frame.file);
-  if (!file) throw InvalidInput("image-unreadable", fmt::format("{}: cannot be opened", frame.file.string()));
-  const std::vector<std::uint8_t> bytes(file->begin(), file->end());
+  const std::string file = read_named_file(folder / frame.file, "file-not-found");
+  const std::vector<std::uint8_t> bytes(file.begin(), file.end());
   return said_of(frame.file.string(),
                  [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), frame.gsd_m, border); });
 }

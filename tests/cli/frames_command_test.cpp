@@ -82,17 +82,18 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
                                 HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
 }
 
-TEST_F(FramesCommand, LeavesOutDamagedFilesOfAFolderButMissesNamedOnes) {
+TEST_F(FramesCommand, LeavesOutDamagedAndMissingFilesAndTellsByItsExitCode) {
   picture("good.jpg", tags(120.0));
   std::ofstream(folder / "flight 1" / "empty.jpg").flush();
   std::ofstream(folder / "flight 1" / "text.JPG") << "no picture";
   const std::string place = "'" + (folder / "flight 1").string() + "'";
-  const ProgramResult result = frames(place);
-  EXPECT_EQ(result.code, 0);
+  const ProgramResult result = frames("nothere.jpg " + place);
+  EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("empty")), Not(HasSubstr("text"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("empty.jpg is left out: the file is empty"),
-                                HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 3 pictures")));
-  EXPECT_THAT(frames(place + " none.jpg").err, HasSubstr("[source-not-found]"));
+                                HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 4 pictures"),
+                                HasSubstr("nothere.jpg is left out: no such file"), HasSubstr("[file-not-found]"),
+                                HasSubstr("[pictures-left-out]")));
 }
 
 TEST_F(FramesCommand, WritesNoTableThatItsNamesBreak) {
@@ -166,7 +167,8 @@ TEST_F(FramesCommand, RefusesWhereThereIsNothingToRead) {
   EXPECT_THAT(frames(place).err, HasSubstr("[no-pictures]"));
   picture("bare.jpg", "");
   EXPECT_THAT(frames(place).err, HasSubstr("[no-drone-pictures]"));
-  EXPECT_THAT(frames("missing.jpg").err, HasSubstr("[source-not-found]"));
+  EXPECT_THAT(frames("missing.jpg").err, HasSubstr("[file-not-found]"));
+  EXPECT_THAT(frames("missing.jpg missing2.jpg").err, HasSubstr("[pictures-left-out]"));
   const std::string file = "'" + (folder / "flight 1" / "bare.jpg").string() + "'";
   EXPECT_THAT(frames(file + " --csv " + file).err, HasSubstr("[target-is-source]"));
 }

@@ -101,7 +101,7 @@ TEST_F(IngestCommand, BadInputGetsOneLineACodeAndNoMap) {
   write_raster(folder / "wrong.tif", metres_as_degrees, [](int, int, int) { return 1.0; });
   const std::map<std::string, std::string> cases{{"zero.tif", "source-unreadable"},
                                                  {"header.tif", "source-unreadable"},
-                                                 {"none.tif", "source-not-found"},
+                                                 {"none.tif", "file-not-found"},
                                                  {"nowhere.tif", "image-without-georeference"},
                                                  {"wrong.tif", "crs-not-transformable"}};
   for (const auto& [file, code] : cases) {

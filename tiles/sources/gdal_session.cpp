@@ -96,8 +96,9 @@ DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* con
   errno = 0;
   if (VSIStatL(path.c_str(), &stat) != 0 && errno != EACCES) {
     const bool with_layer = path.find("|layername=") != std::string::npos;  // as QGIS writes it
-    throw NotFound("source-not-found", fmt::format("{}: no such file{}", path,
-                                                   with_layer ? "; name the layer with --layer, not here" : ""));
+    throw NotFound("file-not-found",
+                   fmt::format("{}: no such file; {}", path,
+                               with_layer ? "name the layer with --layer, not here" : "check its name"));
   }
   const std::string said = messages.text();
   throw InvalidInput("source-unreadable", fmt::format("{}: cannot be opened ({}); {}", path, said, remedy(path)));

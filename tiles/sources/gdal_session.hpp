@@ -42,7 +42,7 @@ struct CloseDataset {
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 
-/// Throws NotFound ("source-not-found") or InvalidInput ("source-unreadable") with GDAL's reason. `flags` and
+/// Throws NotFound ("file-not-found") or InvalidInput ("source-unreadable") with GDAL's reason. `flags` and
 /// `open_options` are those of GDALOpenEx.
 DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options = nullptr);
 

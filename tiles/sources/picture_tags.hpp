@@ -23,7 +23,7 @@ struct PictureTags {
 /// XML.
 Tags tags_of_xmp(const std::string& text);
 
-/// Throws NotFound ("source-not-found") or InvalidInput ("source-unreadable").
+/// Throws NotFound ("file-not-found") or InvalidInput ("source-unreadable").
 PictureTags read_picture_tags(const std::string& path);
 /// Of a JPEG in memory, as drones write them; no tags and no size where the bytes are none.
 PictureTags read_picture_tags(std::span<const std::uint8_t> bytes);

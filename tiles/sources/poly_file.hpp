@@ -16,7 +16,7 @@ bool is_poly_file(const std::string& path);
 /// In degrees of WGS 84, each hole in the ring around it. Throws InvalidInput "extent-unreadable" with `path` and the
 /// number of the line.
 std::unique_ptr<OGRMultiPolygon> parse_poly(const std::string& text, const std::string& path);
-/// Throws NotFound "source-not-found" too.
+/// Throws NotFound "file-not-found" too.
 std::unique_ptr<OGRMultiPolygon> read_poly_file(const std::string& path);
 
 }  // namespace roadfix

@@ -27,7 +27,7 @@ struct SourceFiles {
 };
 
 /// Where a `layer` is named, a file that holds both pixels and vectors stands for its vectors.
-/// Throws NotFound "source-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").
+/// Throws NotFound "file-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").
 SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer = {});
 
 }  // namespace roadfix

@@ -42,7 +42,7 @@ TEST_F(PolyFile, HoldsRingsAndTheHolesInThem) {
 }
 
 TEST_F(PolyFile, ThatCannotBeReadSaysInWhichLine) {
-  EXPECT_EQ(code_of([&] { read_poly_file(folder / "none.poly"); }), "source-not-found");
+  EXPECT_EQ(code_of([&] { read_poly_file(folder / "none.poly"); }), "file-not-found");
   EXPECT_THAT(message_of([&] { read_poly_file(file("land\n1\n 9 47\n east north\nEND\n")); }),
               HasSubstr("line 4: 'east north' is no longitude and latitude"));
   EXPECT_THAT(message_of([&] { read_poly_file(file("land\n1\n 47 9\n 470 9\n 47 10\nEND\n")); }), HasSubstr("line 4"));

@@ -282,7 +282,7 @@ TEST_F(RasterFileTest, FilesThatAreNoImagesAreRefusedByName) {
   using namespace std::string_view_literals;
   std::ofstream(folder / "empty.tif") << "";
   std::ofstream(folder / "broken.tif") << "II*\0garbage that is no directory of a TIFF file"sv;
-  EXPECT_EQ(code_of([&] { RasterFile((folder / "none.tif").string(), {}); }), "source-not-found");
+  EXPECT_EQ(code_of([&] { RasterFile((folder / "none.tif").string(), {}); }), "file-not-found");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "empty.tif").string(), {}); }), "source-unreadable");
   EXPECT_EQ(code_of([&] { RasterFile((folder / "broken.tif").string(), {}); }), "source-unreadable");
 }

@@ -260,7 +260,7 @@ TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
 }
 
 TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
-  EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "source-not-found");
+  EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "file-not-found");
   EXPECT_THAT(testing::message_of([&] { find_source("roads.gpkg|layername=streets", SourceMeaning::kAuto); }),
               ::testing::HasSubstr("name the layer with --layer"));
   EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");

@@ -208,7 +208,7 @@ TEST(World, RefusesSettingsThatCannotBeMet) {
               s.roads = "roads.geojson";
             }),
             "world-land-roads");
-  EXPECT_EQ(code_with([](auto& s) { s.roads = "no-such-file.geojson"; }), "source-not-found");
+  EXPECT_EQ(code_with([](auto& s) { s.roads = "no-such-file.geojson"; }), "file-not-found");
   EXPECT_FALSE(std::filesystem::exists(folder / "world"));
 }
 

@@ -31,11 +31,6 @@ const std::map<std::string, int, std::less<>>& statuses() {
       {"step-differs", 409},
       {"time-backwards", 409},
       {"track-ended", 410},
-      {"body-too-large", 413},
-      {"image-too-large", 413},
-      {"ground-too-large", 413},
-      {"too-many-cells", 413},
-      {"too-many-poses", 413},
       {"url-too-long", 414},
       {"unsupported-media-type", 415},
       {"unsupported-content-encoding", 415},
@@ -140,7 +135,7 @@ int status_of(const Error& error) {
   if (dynamic_cast<const http::InvalidField*>(&error) != nullptr) return 400;
   if (dynamic_cast<const InvalidInput*>(&error) != nullptr) return 422;
   if (dynamic_cast<const NotFound*>(&error) != nullptr) return 404;
-  if (dynamic_cast<const LimitExceeded*>(&error) != nullptr) return 422;
+  if (dynamic_cast<const LimitExceeded*>(&error) != nullptr) return 413;
   if (dynamic_cast<const Interrupted*>(&error) != nullptr) return 503;
   if (dynamic_cast<const InUse*>(&error) != nullptr) return 503;
   return 500;

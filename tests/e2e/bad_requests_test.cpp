@@ -103,14 +103,14 @@ TEST_F(BadRequests, WithFeatureMapsThatCannotBeUsed) {
   EXPECT_EQ(refusal(client_.Post(camera + "&principal_px=64,64", png, "image/png")), "422 frame-camera");
   EXPECT_EQ(refusal(client_.Post(fix_near_ + "&kind=frame&gsd_m=1&lens=fisheye", png, "image/png")),
             "400 bad-parameter lens");
-  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "422 search-area-too-large");
+  EXPECT_EQ(refusal(client_.Post(fix_ + "?cell_m=2", png, "image/png")), "413 search-area-too-large");
 }
 
-TEST_F(BadRequests, ForATrackThatWouldHaveToBeSearchedForOnTooMuchGroundAreUnprocessable) {
+TEST_F(BadRequests, ForATrackThatWouldHaveToBeSearchedForOnTooMuchGroundAreTooLarge) {
   const auto begin = [this](const std::string& more) {
     return client_.Post("/v1/tracks", R"({"map":"town")" + more + "}", "application/json");
   };
-  EXPECT_EQ(refusal(begin("")), "422 search-area-too-large");
+  EXPECT_EQ(refusal(begin("")), "413 search-area-too-large");
   EXPECT_EQ(begin(R"(,"start":"uniform")")->status, 201);
 }
 

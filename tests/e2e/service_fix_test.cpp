@@ -99,7 +99,7 @@ TEST_F(ServiceFix, LaysFramesOfAFlightTogether) {
   };
   EXPECT_EQ(refusal(7), "400 bad-parameter also");
   EXPECT_EQ(refusal(json::array({frame, 7})), "400 bad-parameter also[1]");
-  EXPECT_EQ(refusal(json(std::vector<json>(16, frame))), "422 too-many-frames");
+  EXPECT_EQ(refusal(json(std::vector<json>(16, frame))), "413 too-many-frames");
   json bent = frame;
   bent["turn_deg"] = "left";
   EXPECT_EQ(refusal(json::array({bent})), "400 bad-parameter also[0].turn_deg");
@@ -116,7 +116,7 @@ TEST_F(ServiceFix, LaysFramesOfAFlightTogether) {
   EXPECT_THAT(mixed["detail"].get<std::string>(), ::testing::HasSubstr("beside 'also'"));
   bent = frame;
   bent["right_m"] = bent["forward_m"] = 9e4;
-  EXPECT_EQ(refusal(json::array({bent})), "422 frames-too-far-apart");
+  EXPECT_EQ(refusal(json::array({bent})), "413 frames-too-far-apart");
 }
 
 TEST_F(ServiceFix, SearchesOnlyWhereThePriorAllows) {

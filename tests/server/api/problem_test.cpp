@@ -18,8 +18,8 @@ TEST(Problem, GivesEachClassOfErrorsItsStatus) {
   EXPECT_EQ(status_of(http::InvalidField("x-y", "lat", "m")), 400);
   EXPECT_EQ(status_of(InvalidInput("prior-outside-map", "m")), 422);
   EXPECT_EQ(status_of(NotFound("map-not-found", "m")), 404);
-  EXPECT_EQ(status_of(LimitExceeded("search-area-too-large", "m")), 422);
-  EXPECT_EQ(status_of(LimitExceeded("body-too-large", "m")), 413);
+  EXPECT_EQ(status_of(LimitExceeded("search-area-too-large", "m")), 413);
+  EXPECT_EQ(status_of(LimitExceeded("too-many-tracks", "m")), 429);
   EXPECT_EQ(status_of(Interrupted("time-limit", "m")), 503);
   EXPECT_EQ(status_of(InUse("map-busy", "m")), 503);
   EXPECT_EQ(status_of(CorruptData("tile-corrupt", "m")), 500);

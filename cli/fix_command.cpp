@@ -26,6 +26,8 @@
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/fix_request.hpp"
+#include "server/api/limits.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -175,11 +177,11 @@ void add_fix_command(CLI::App& app) {
       ->add_option("--confidence", o->fix.confidence,
                    "Minimum probability of a fix; the shipped calibration vouches for 0.9965 at most")
       ->capture_default_str()
-      ->check(between(0.5, 0.999999));
+      ->check(between(api::kConfidence.min, api::kConfidence.max));
   add_calibration_option(*command, o->calibration);
   command->add_option("--modes", o->fix.search.max_modes, "Maximum number of places to report")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+      ->check(CLI::Range(1, api::Limits().modes));
   command
       ->add_option(
           "--scale-range", o->fix.search.scale_range,

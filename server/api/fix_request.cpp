@@ -78,7 +78,7 @@ Prior parse_prior(const Fields& fields) {
 
 FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   FixOptions options;
-  options.confidence = fields.optional_number("confidence", {0.5, 0.999999}).value_or(options.confidence);
+  options.confidence = fields.optional_number("confidence", kConfidence).value_or(options.confidence);
   options.search.max_modes = fields.optional_integer("max_modes", 1, limits.modes).value_or(options.search.max_modes);
   options.max_search_km2 = limits.search_km2;
   options.search.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(0.0);

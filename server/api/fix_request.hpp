@@ -12,6 +12,9 @@
 
 namespace roadfix::api {
 
+/// That a client may ask of a fix.
+inline constexpr Range kConfidence{0.5, 0.999999};
+
 const std::vector<std::string>& prior_fields();
 /// lat, lon, radius_m; bbox = west, south, east, north; heading_deg with heading_range_deg (half the width). None of
 /// them = the whole map.

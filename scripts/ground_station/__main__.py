@@ -27,7 +27,8 @@ from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
 from preflight import check
 from service import Refused, Service, Silent
 from steps import NewestLine, all_lines, captured, place_and_covariance, read_step
-from track import Track
+from track import Track, WrongTrack
+from trial import try_out
 
 
 def parse_setting(text):
@@ -79,8 +80,8 @@ def parse_arguments(arguments):
                              "of this computer's clock, else when its line came) to sending (default: %(default)g); of "
                              + " and ".join(PROCESSING) + " the processing time that they report is not counted")
     parser.add_argument("--check", action="store_true",
-                        help="only look whether the service has the map and knows the fields of --frame, and whether "
-                             "--track begins on it, as is done before each flight")
+                        help="only look whether the service has the map and --track begins on it, as is done before "
+                             "each flight, and whether it takes --track and --frame, by a track that is removed again")
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
@@ -129,9 +130,11 @@ def main(arguments=None):
     options = parse_arguments(arguments)
     sys.stderr = Log(sys.stderr)
     try:
-        is_there = check(options.server, request_of(options), dict(options.frame))
+        can_follow = check(options.server, request_of(options), dict(options.frame))
         if options.check:
-            return 0 if is_there else 1
+            if can_follow:
+                try_out(Service(options.server, options.patience), request_of(options), dict(options.frame))
+            return 0 if can_follow else 1
         if options.steps is None:
             sys.stdin.reconfigure(encoding="utf-8", errors="replace")  # a bad byte spoils its line alone
             return 0 if fly(sys.stdin, options) else 1
@@ -139,7 +142,7 @@ def main(arguments=None):
             return 0 if fly(lines, options) else 1
     except BrokenPipeError:  # nobody reads the answers any more
         return 1
-    except (ValueError, OSError, Refused) as error:
+    except (ValueError, OSError, Refused, Silent, WrongTrack) as error:
         print(f"ground_station: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

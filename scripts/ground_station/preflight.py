@@ -12,8 +12,8 @@ LEAST_DEGREE_M = 110_500.0  # of latitude; that of places makes distances too lo
 
 
 def check(url, request, frame_fields):
-    """Says what the service has of what POST /v1/tracks would be asked for. False where it is away. Throws Refused, and
-    ValueError where no flight can come of it."""
+    """Says what the service has of what POST /v1/tracks would be asked for. Whether it can follow a track now. Throws
+    Refused, and ValueError where no flight can come of it."""
     for name in frame_fields:
         if name not in PICTURE_FIELDS + POSITION_FIELDS:
             raise ValueError(f"--frame {name}: no such field of a step; there are {', '.join(PICTURE_FIELDS)}, and of "
@@ -29,9 +29,10 @@ def check(url, request, frame_fields):
         return False
     finally:
         service.close()
-    if ready.get("tracks", "ready") != "ready":
+    can_follow = ready.get("tracks", "ready") == "ready"
+    if not can_follow:
         print(f"no track can be flown now: {ready.get('tracks_problem')}", file=sys.stderr)
-    return True
+    return can_follow
 
 
 def _check_map(request, service):

@@ -125,6 +125,12 @@ def place_and_covariance(line, frame_fields):
         return None, None
 
 
+def with_kind(fields):
+    """Those of a picture: one of a camera, where they tell of it."""
+    is_frame = "kind" not in fields and any(name in fields for name in CAMERA_FIELDS)
+    return {**fields, "kind": "frame"} if is_frame else fields
+
+
 def read_step(line, folder, frame_fields):
     """What a line says. `frame_fields` are the same of all steps, those of pictures of all pictures. Throws ValueError,
     OSError."""
@@ -144,9 +150,7 @@ def read_step(line, folder, frame_fields):
         return Step(place, origin, fields, None)
     if not isinstance(file, str):
         raise ValueError("image is the name of a file")
-    if "kind" not in fields and any(name in fields for name in CAMERA_FIELDS):
-        fields["kind"] = "frame"
-    return Step(place, origin, fields, pathlib.Path(folder, file).read_bytes())
+    return Step(place, origin, with_kind(fields), pathlib.Path(folder, file).read_bytes())
 
 
 def captured(line, fields):

@@ -28,6 +28,20 @@ def as_query(fields):
     return urllib.parse.urlencode({name: text(value) for name, value in fields.items()})
 
 
+class WrongTrack(Exception):
+    """What is told of the track, with which none can begin, whenever it is asked for."""
+
+
+def begin_track(service, request):
+    """The service's answer. Throws WrongTrack, Refused, Silent."""
+    try:
+        return service.ask_object(("id",), "POST", "/v1/tracks", json.dumps(request).encode(), "application/json")
+    except Refused as refusal:
+        if refusal.status == 400 and refusal.leaves_the_track:
+            raise WrongTrack(f"--track: {refusal}") from None
+        raise
+
+
 class Track:
     """A flight that the service follows. `request`: the members of POST /v1/tracks. With `state_file` a client that
     was restarted goes on with the track that it had, unless that was long ago. `begun` is called with the id of each
@@ -155,8 +169,7 @@ class Track:
         return taken
 
     def _begin(self, origin, request, why=None):
-        track = self._service.ask_object(("id",), "POST", "/v1/tracks", json.dumps(request).encode(),
-                                         "application/json")
+        track = begin_track(self._service, request)
         former = [*self._state.get("former", []), self.id] if self.id else []
         self._keep({"map": request["map"], "id": track["id"], "sequence": 0, "origin": origin,
                     "known": told_place(request), "time_of_silence_s": time_of_silence(track), **moment(),

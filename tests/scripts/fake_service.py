@@ -33,7 +33,8 @@ class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
     taken, "pay" or "hello" where something in between answers, "still at it" where it takes the one before that it had
     not told of; then 200. A step takes `delay_s` when it comes first, and messages say that it took `told_s`. A track
-    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem. `readiness` None: no answer."""
+    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem, or `never_begun` with one.
+    `readiness` None: no answer."""
 
     TIME_OF_SILENCE_S = 3600.0
 
@@ -48,6 +49,7 @@ class FakeService:
         self.left_s = None  # of the time of silence; None: what follows from silent_s
         self.set_s = 0.0    # by which the clock was set since the last step
         self.gone = None
+        self.never_begun = None
         self.map = (200, {"name": "m", "status": "ready", "version": "7f3a", "bbox": [38.2, 37.7, 38.3, 37.8]})
         self.readiness = {"status": "ready", "tracks": "ready"}
         fake = self
@@ -96,6 +98,9 @@ class FakeService:
                 if self.path == "/v1/tracks":
                     fake.requests.append((self.path, body, dict(self.headers)))
                     fake.last = {}
+                    if fake.never_begun:
+                        self.answer(fake.never_begun[0], json.dumps(fake.never_begun[1]).encode())
+                        return
                     self.answer(201, json.dumps(fake.track(0.0)).encode())
                     return
                 step = step_of(self.path, body)

@@ -23,10 +23,13 @@ BEFORE = r"\S+Z the map 'm' has version 7f3a\n"  # what is said before the fligh
 
 class BeforeTheFlight(unittest.TestCase):
     def checked(self, fake, *options):
-        """The exit status, and what was said, of a program that would wait for a first step."""
+        """The exit status, and what was said, of a program that would wait for a first step. It leaves no track."""
+        asked = len(fake.requests)
         program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", *options],
                                  stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
-        self.assertEqual([path for path, _, _ in fake.requests], [])
+        if "--check" not in options:
+            self.assertEqual(len(fake.requests), asked)
+        self.assertEqual(len(fake.ended), len(fake.begun()) if fake.never_begun is None else 0)
         return program.returncode, program.stderr
 
     def test_the_map_is_looked_for(self):
@@ -35,6 +38,7 @@ class BeforeTheFlight(unittest.TestCase):
                 status, words = self.checked(fake, "--track", "lat=37.7", "lon=38.3", "radius_m=10", *check)
                 self.assertEqual(status, 0)
                 self.assertRegex(words, f"^{BEFORE}$")
+            self.assertEqual(fake.begun(), [{"map": "m", "lat": 37.7, "lon": 38.3, "radius_m": 10}])
             fake.map = (404, {"code": "map-not-found", "detail": "there is town"})
             status, words = self.checked(fake)
             self.assertEqual(status, 1)
@@ -65,6 +69,43 @@ class BeforeTheFlight(unittest.TestCase):
             self.assertIn("--frame satelites: no such field of a step", words)
             self.assertEqual(self.checked(fake, "--frame", "fov_deg=78", "satellites=10", "exif=true")[0], 0)
 
+    def test_what_no_track_can_begin_with_is_told_by_a_check(self):
+        for refusal, words in (((400, {"code": "missing-parameter", "detail": "'lon' is missing"}),
+                                "ground_station: --track: 400 missing-parameter: 'lon' is missing"),
+                               ((422, {"code": "search-area-too-large", "detail": "give a place"}),
+                                "ground_station: 422 search-area-too-large: give a place")):
+            with FakeService() as fake:
+                fake.never_begun = refusal
+                status, told = self.checked(fake, "--track", "lat=37.76", "--check")
+                self.assertEqual(status, 1)
+                self.assertIn(words, told)
+                self.assertEqual(self.checked(fake, "--track", "lat=37.76")[0], 0)
+
+    def test_fields_of_frames_with_which_each_step_would_be_refused_are_told_by_a_check(self):
+        wrong = (400, {"code": "bad-parameter", "field": "fov_deg", "detail": "'fov_deg' must be a number"})
+        for refusal, expected, words in ((wrong, 1, "--frame: 400 bad-parameter: 'fov_deg' must be a number"),
+                                         ((422, {"code": "frame-too-coarse"}), 0, None), (200, 0, None)):
+            with FakeService([refusal]) as fake:
+                status, told = self.checked(fake, "--frame", "fov_deg=seventy", "--check")
+                self.assertEqual(status, expected)
+                self.assertRegex(told, f"^{BEFORE}" + (rf"\S+Z ground_station: {words}\n$" if words else "$"))
+                step, = fake.steps()
+                self.assertEqual((step["fov_deg"], step["kind"], step["agl_m"]), ("seventy", "frame", "100.0"))
+
+    def test_what_only_lines_can_tell_of_pictures_is_told_by_a_check_and_no_error(self):
+        missing = (400, {"code": "missing-parameter", "field": "fov_deg", "detail": "a frame needs gsd_m"})
+        for frame in ([], ["--frame", "roll_deg=0"]):
+            with FakeService([missing]) as fake:
+                status, words = self.checked(fake, *frame, "--check")
+                self.assertEqual(status, 0)
+                self.assertIn("so their lines or files have to: a frame needs gsd_m", words)
+
+    def test_a_track_is_removed_also_where_the_service_falls_silent_at_its_step(self):
+        with FakeService(["hang up"] * 100) as fake:
+            status, words = self.checked(fake, "--patience", "0.5", "--check")
+            self.assertEqual(status, 1)
+            self.assertIn("ground_station: no answer of 127.0.0.1 within 0.5 s", words)
+
     def test_a_service_that_is_away_is_told_and_no_error(self):
         with FakeService() as fake:
             pass
@@ -84,7 +125,11 @@ class BeforeTheFlight(unittest.TestCase):
     def test_tracks_that_cannot_be_kept_are_told(self):
         with FakeService() as fake:
             fake.readiness = {"status": "ready", "tracks": "unavailable", "tracks_problem": "the disk is full"}
-            self.assertIn("no track can be flown now: the disk is full", self.checked(fake)[1])
+            for check, expected in (([], 0), (["--check"], 1)):
+                status, words = self.checked(fake, *check)
+                self.assertEqual(status, expected)
+                self.assertIn("no track can be flown now: the disk is full", words)
+            self.assertEqual(fake.begun(), [])
 
 
 class Positions(unittest.TestCase):
@@ -220,6 +265,18 @@ class Program(unittest.TestCase):
             sent = fake.steps()[1:]  # one or two, by how fast the lines were read
         self.assertEqual(sum(float(step["forward_m"]) for step in sent), 30.0)
         self.check_covariances(sent)
+
+    def test_ends_where_no_track_can_begin_with_what_it_was_told_and_else_goes_on(self):
+        wrong = (400, {"code": "missing-parameter", "detail": "'lon' is missing"})
+        for refusal, tries in ((wrong, 1), ((400, {}), 3), ((422, {"code": "map-too-large"}), 3)):
+            with FakeService() as fake:
+                fake.never_begun = refusal
+                program = subprocess.run(
+                    [sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", "--track", "lat=37.76"],
+                    input=3 * '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n', capture_output=True, text=True, timeout=60)
+            self.assertEqual((program.returncode, len(fake.begun())), (1, tries))
+            self.assertEqual(program.stderr.count("ground_station: --track: 400 missing-parameter: 'lon' is missing"),
+                             1 if tries == 1 else 0)
 
     def test_says_where_the_file_of_steps_stands(self):
         for option in ("--frame", "--track"):

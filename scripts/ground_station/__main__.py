@@ -85,6 +85,8 @@ def parse_arguments(arguments):
     options = parser.parse_args(arguments)
     if (options.format is None) != (options.send is None):
         parser.error("--format and --send go together")
+    if "map" in dict(options.track):
+        parser.error("--track map: the map is that of --map")
     return options
 
 

@@ -286,6 +286,12 @@ class Program(unittest.TestCase):
             self.assertIn("usage: ground_station [steps] --map MAP", program.stderr)
             self.assertIn("'flight.jsonl': write NAME=VALUE, and the file of steps before all options", program.stderr)
 
+    def test_refuses_a_track_on_another_map(self):
+        program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", "--track", "lat=1", "map=city"],
+                                 capture_output=True, text=True, timeout=60)
+        self.assertEqual(program.returncode, 2)
+        self.assertIn("--track map: the map is that of --map", program.stderr)
+
     def test_says_when_and_of_which_picture_something_is_wrong(self):
         refused = (422, {"code": "image-damaged", "detail": "no picture"})
         with FakeService([200, 200, refused]) as fake, tempfile.TemporaryDirectory() as folder:

@@ -56,9 +56,10 @@ class Sender:
         age_s = max(time.monotonic() - captured, told_s)
         why = None
         if not age_s - told_s <= self._max_age_s:  # not even where it says no number
-            why = f"{age_s - told_s:.1f} s old" + (f"er than the {told_s:.1f} s that it says" if told_s else "")
+            why = f"{age_s - told_s:.3g} s old" + (f"er than the {told_s:.3g} s that it says" if told_s else "")
+            why += f", more than --max-age {self._max_age_s:g}"
         elif age_s > LONGEST_S.get(self._format, math.inf):
-            why = f"{age_s:.1f} s old, which is more than its receiver believes"
+            why = f"{age_s:.3g} s old, more than the {LONGEST_S[self._format]:g} s that its receiver believes"
         if why:
             print(f"a position is not sent: it is {why}", file=sys.stderr)
             return

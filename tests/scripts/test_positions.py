@@ -15,6 +15,10 @@ NOW_S = 5000.0  # since the start of the computer
 DATE_S = 1.7e9
 
 
+def command(told_s):
+    return struct.pack("<10xff30x", 0.0, told_s)
+
+
 class Ages(unittest.TestCase):
     """In seconds, of a line that came `came_s_ago`, by its times."""
 
@@ -81,10 +85,17 @@ class Senders(unittest.TestCase):
             self.assertTrue(self.sent(packet_format, 0.499))
             self.assertFalse(self.sent(packet_format, 0.501))
 
-    def test_drop_what_is_older_than_ardupilot_believes_whatever_it_says(self):
-        def command(told_s):
-            return struct.pack("<10xff30x", 0.0, told_s)
+    def test_say_how_old_a_dropped_position_is_and_how_old_it_may_be(self):
+        for packet_format, age_s, packet, why in (
+                ("gps_input", 0.503, b"a position", "0.503 s old, more than --max-age 0.5"),
+                ("command_int", 0.94, command(0.4),
+                 "0.54 s older than the 0.4 s that it says, more than --max-age 0.5"),
+                ("command_int", 4.51, command(4.4), "4.51 s old, more than the 4.5 s that its receiver believes")):
+            with said() as words:
+                self.sender(packet_format).send(NOW_S - age_s, packet)
+            self.assertEqual(words.getvalue(), f"a position is not sent: it is {why}\n")
 
+    def test_drop_what_is_older_than_ardupilot_believes_whatever_it_says(self):
         for age_s, told_s, sent in ((3.0, 3.0, True), (4.49, 4.4, True), (4.51, 4.4, False), (4.51, 4.51, False),
                                     (0.2, 8.0, False), (1.0, 0.4, False), (1.0, float("nan"), False)):
             self.assertEqual(self.sent("command_int", age_s, command(told_s)), sent, (age_s, told_s))

@@ -140,13 +140,18 @@ class NewPictures:
             print(f"no pictures: {error}" if error else f"{self._folder} can be read again", file=sys.stderr)
 
 
-def _newest_folder_in(folder):
-    """And when something was added to it, as a date. None where it holds none."""
+def _newest_in(folder, is_asked_for):
+    """Of its entries that are, and when it was written, or something was added to it, as a date. None where it holds
+    none."""
     try:
         with os.scandir(folder) as entries:
-            return max(((entry.stat().st_mtime, entry.path) for entry in entries if entry.is_dir()), default=None)
+            return max(((entry.stat().st_mtime, entry.path) for entry in entries if is_asked_for(entry)), default=None)
     except OSError:
         return None
+
+
+def _is_other_file(entry):
+    return entry.is_file() and os.path.splitext(entry.name)[1].lower() not in ENDINGS
 
 
 class Silence:
@@ -170,7 +175,11 @@ class Silence:
                   file=sys.stderr)
 
     def _question(self):
-        newest = _newest_folder_in(self._folder)
-        if newest is not None and newest[0] > time.time() - (time.monotonic() - self._last):
-            return f"does the camera go on in {newest[1]}?"
+        since = time.time() - (time.monotonic() - self._last)
+        for is_asked_for, question in (
+                (os.DirEntry.is_dir, "does the camera go on in {}?"),
+                (_is_other_file, f"only {', '.join(ENDINGS)} are read, and {{}} is something else")):
+            newest = _newest_in(self._folder, is_asked_for)
+            if newest is not None and newest[0] > since:
+                return question.format(newest[1])
         return "does the camera write into the folder?"

@@ -223,6 +223,25 @@ class Pictures(unittest.TestCase):
             silence.look(False, self.time.now)
         self.assertIn("does the camera write into the folder?", words.getvalue())
 
+    def test_of_a_kind_that_is_not_read_are_named_where_no_others_come(self):
+        begin_s = time.time()
+        for name, seconds in (("old.tif", -1.0), ("1.tif", 4.0), ("2.TIF", 5.0), ("0.jpg", 6.0)):
+            self.write(name)
+            os.utime(self.folder / name, (begin_s + seconds,) * 2)
+        self.check_question(begin_s, f"only .jpg, .jpeg, .png are read, and {self.folder}/2.TIF is something else")
+        Path(self.folder, "101MEDIA").mkdir()
+        os.utime(Path(self.folder, "101MEDIA"), (begin_s + 1.0,) * 2)
+        self.check_question(begin_s, f"does the camera go on in {self.folder}/101MEDIA?")
+
+    def check_question(self, begin_s, question):
+        """Where no picture came since."""
+        self.time.now = begin_s - self.time.ahead_s
+        silence = Silence(self.folder)
+        self.time.now += 10.1
+        with said() as words:
+            silence.look(False, self.time.now)
+        self.assertTrue(words.getvalue().endswith(f": {question}\n"), words.getvalue())
+
     def test_that_stay_empty_are_told_of_once(self):
         new = NewPictures(self.folder, self.clock)
         self.write("1.jpg", b"", date_s=self.time.now + 1000)

@@ -24,6 +24,7 @@ from autopilot import Autopilot
 from clock import WallClock
 from gimbal import STATUS, Gimbal
 from lines import Lines
+from link import LinkSilence
 from log import Log
 from packets import messages
 from pictures import NewPictures, Silence
@@ -115,13 +116,16 @@ def follow(link, pictures, clock, options):
     receiver = Receiver(autopilot, vehicle, gimbal)
     lines = Lines(vehicle, gimbal, autopilot, clock, options)
     silence = Silence(options.watch)
-    looked = -math.inf
+    link_silence = LinkSilence(options.listen[1])
+    came = looked = -math.inf
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
+            came = time.monotonic()
             hear(link, receiver)
         if time.monotonic() < looked + LOOK_S:
             continue
         clock.look()
+        link_silence.look(came, vehicle.heard)
         new = pictures()
         silence.look(pictures.have_come, vehicle.heard)
         for path, written in new:

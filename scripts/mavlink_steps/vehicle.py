@@ -84,6 +84,8 @@ class Vehicle:
         Throws Unknown."""
         attitude = between(*around(self._attitudes, when), when, ATTITUDE_HOLE_S)
         if attitude is None:
+            if self.heard == -math.inf:
+                raise Unknown("the autopilot was not heard yet")
             raise Unknown(f"no two ATTITUDE around that time, at most {ATTITUDE_HOLE_S:g} s apart")
         return self._place_at(when), attitude
 

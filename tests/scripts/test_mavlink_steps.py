@@ -184,7 +184,7 @@ class Listening(unittest.TestCase):
         pictures.have_come = False
 
         options = types.SimpleNamespace(by_air=False, takeoff_agl=0.0, system=None, component=1, camera="body",
-                                        delay=0.0, watch="frames")
+                                        delay=0.0, watch="frames", listen=("", 14551))
         self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
         began = time.monotonic()
         with mock.patch.object(self.program, "Silence", lambda folder: silence), said(), self.assertRaises(End):
@@ -305,7 +305,7 @@ class Program(unittest.TestCase):
     def test_says_why_a_picture_is_left_out(self):
         self.start()
         Path(self.folder.name, "1.jpg").write_bytes(b"\xff\xd8\xff\xd9")
-        self.assertIn("1.jpg is left out: no two ATTITUDE around that time", self.program.stderr.readline())
+        self.assertIn("1.jpg is left out: the autopilot was not heard yet", self.program.stderr.readline())
 
 
 class Log(unittest.TestCase):

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "core/grid/resample.hpp"
-#include "core/locate/compared_cells.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/prepare.hpp"
+#include "core/locate/soft_map.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -120,14 +120,14 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const auto started = std::chrono::steady_clock::now();
   const PoseRegion region = search_region(map, prior, options);
   const FeatureMap cells = in_cells_of(map, features);
-  const FeatureMap compared = compared_cells(cells);
+  const FeatureMap soft = softened(cells);
   // As it was given, too: of one smaller than a cell of the map next to nothing is left.
-  for (const FeatureMap* seen : {&features, &cells, &compared}) {
+  for (const FeatureMap* seen : {&features, &cells, &soft}) {
     if (auto refusal = refusal_of(*seen)) return refused(map, *std::move(refusal));
   }
   const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
   SearchResult found =
-      search(compared_cells(map, compared.cell_m), compared.cell_m, compared, region, search_options_of(options, map));
+      search(soft_reader(map, soft.cell_m), soft.cell_m, soft, region, search_options_of(options, map));
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
   const Decision decision = decide(found, calibration, options.confidence);
   Fix fix = fix_of(map, found, decision);

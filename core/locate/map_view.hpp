@@ -27,7 +27,7 @@ struct MapView {
   /// Cells of the geometry, unobserved where the map has none. `geometry.cell_m` is cell_m * 2^k.
   /// Safe to call from several threads.
   std::function<RoadGrid(const GridGeometry& geometry)> read;
-  /// What searches build of this version of the map, as compared_cells() gives it; nullptr = nothing is kept.
+  /// What searches build of this version of the map, as soft_reader() gives it; nullptr = nothing is kept.
   std::shared_ptr<SearchCache> searches = nullptr;
   /// Some of it is imagery and some road data, so that `imagery_reader` suits a part of the ground only.
   bool imagery_and_roads = false;

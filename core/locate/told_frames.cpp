@@ -6,18 +6,16 @@
 #include <cstddef>
 
 #include "core/grid/cell_moments.hpp"
-#include "core/locate/compared_cells.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/locate/last_view.hpp"
+#include "core/locate/soft_map.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
 
 /// How much of what the search compares can tell places apart.
-double evidence_of(const FeatureMap& features) {
-  return moments_of(compared_cells(features).cells).squared_deviations();
-}
+double evidence_of(const FeatureMap& features) { return moments_of(softened(features).cells).squared_deviations(); }
 
 /// How far from the reference what tells its place was seen from, in the mean.
 double mean_distance_m(std::span<const PlacedFeatures> parts) {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include "core/locate/compared_cells.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/particle_likelihoods.hpp"
 #include "core/locate/prepare.hpp"
+#include "core/locate/soft_map.hpp"
 
 namespace roadfix {
 namespace {
@@ -120,8 +120,7 @@ std::optional<std::vector<double>> Tracker::Step::log_likelihoods() const {
   if (is_over_bare_ground()) return std::nullopt;
   const MeasurementModel& model = settings_.measurement_model;
   const bool correlates = model.kind == LikelihoodKind::kCorrelation;
-  const ParticleMatches found =
-      correlates ? matches(compared_map(map_), compared_cells(*features_)) : matches(map_, *features_);
+  const ParticleMatches found = correlates ? matches(soft_view(map_), softened(*features_)) : matches(map_, *features_);
   return log_likelihoods_of(filter_.particles(), found, *features_, model);
 }
 

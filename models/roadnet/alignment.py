@@ -41,7 +41,7 @@ def random_footprint(map_side, generator):
 
 
 def half_the_log_odds(logits):
-    """What the product compares (core/locate/compared_cells.hpp), as a probability."""
+    """What the product compares (core/locate/soft_map.hpp), as a probability."""
     return torch.sigmoid(logits / 2)
 
 

@@ -1,4 +1,4 @@
-#include "core/locate/compared_cells.hpp"
+#include "core/locate/soft_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ RoadGrid doubtful_streets() {
   return map;
 }
 
-class ComparedCells : public ::testing::Test {
+class SoftMap : public ::testing::Test {
  protected:
   RoadGrid map_ = doubtful_streets();
   MapView view_ = view_of(map_);
@@ -34,25 +34,25 @@ class ComparedCells : public ::testing::Test {
                        Angle::degrees(33.0)};
 };
 
-TEST_F(ComparedCells, HaveHalfTheLogOddsOnBothSides) {
+TEST_F(SoftMap, HasHalfTheLogOddsOnBothSides) {
   CellArray cells(3, 1);
   cells.at(0, 0) = cell_from_probability(0.1);
   cells.at(1, 0) = kRoad;
   const RoadGrid grid{{2.0, {0, 0}, 3, 1}, cells};
   const MapView view = view_of(grid);
-  for (const CellArray& compared :
-       {compared_cells(view, 2.0)(grid.geometry).cells, compared_cells(FeatureMap::centred(cells, 2.0)).cells}) {
-    EXPECT_NEAR(probability(compared.at(0, 0)), 0.25, 0.003);  // 1 : 9 becomes 1 : 3
-    EXPECT_EQ(compared.at(1, 0), kRoad);
-    EXPECT_EQ(compared.at(2, 0), kUnobserved);
+  for (const CellArray& soft :
+       {soft_reader(view, 2.0)(grid.geometry).cells, softened(FeatureMap::centred(cells, 2.0)).cells}) {
+    EXPECT_NEAR(probability(soft.at(0, 0)), 0.25, 0.003);  // 1 : 9 becomes 1 : 3
+    EXPECT_EQ(soft.at(1, 0), kRoad);
+    EXPECT_EQ(soft.at(2, 0), kUnobserved);
   }
 }
 
-TEST_F(ComparedCells, HoldTheMeanOfWhatIsComparedWhereTheyAreCoarser) {
+TEST_F(SoftMap, HoldsTheMeanOfItsFinerCellsWhereItIsCoarser) {
   for (const bool kept : {false, true}) {
     MapView view = view_;
     if (kept) view.searches = std::make_shared<SearchCache>(std::size_t{1} << 20);
-    const GridReader read = compared_cells(view, 2.0);
+    const GridReader read = soft_reader(view, 2.0);
     for (int level = 1; level <= 2; ++level) {
       // Across the borders of what is made at a time, and beyond the map.
       const int size = 1 << level;
@@ -69,7 +69,16 @@ TEST_F(ComparedCells, HoldTheMeanOfWhatIsComparedWhereTheyAreCoarser) {
   }
 }
 
-TEST_F(ComparedCells, LeaveEquationFiveToTheCellsAsTheyAre) {
+TEST_F(SoftMap, IsReadOnWhereTheViewThatItCameFromReadsNoMore) {
+  const GridReader read = soft_reader(view_, 2.0);
+  const MapView soft = soft_view(view_);
+  const CellArray before = read(map_.geometry).cells;
+  view_.read = nullptr;
+  EXPECT_EQ(read(map_.geometry).cells, before);
+  EXPECT_EQ(soft.read(map_.geometry).cells, before);
+}
+
+TEST_F(SoftMap, LeavesEquationFiveToTheCellsAsTheyAre) {
   const FeatureMap window = cut_out(map_, pose_, 120, 90, 2.0);
   const std::vector<GeoPose> poses{on_earth(pose_, view_.zone)};
   const double matched = match(view_, window, poses).at(0).rho.value();
@@ -87,7 +96,7 @@ TEST_F(ComparedCells, LeaveEquationFiveToTheCellsAsTheyAre) {
   EXPECT_NEAR(fix.modes[0].rho, match(view_, window, found).at(0).rho.value(), 1e-6);
 }
 
-TEST_F(ComparedCells, HaveNoEquationFiveOffTheMap) {
+TEST_F(SoftMap, HasNoEquationFiveOffTheMap) {
   GridPose off = pose_;
   off.position.east_m += 5000.0;
   EXPECT_EQ(rho_at(view_, cut_out(map_, pose_, 50, 50, 2.0), off), std::nullopt);

@@ -12,13 +12,12 @@
 
 namespace roadfix {
 
-/// Reads half the log odds of `map` for a search whose finest cells are `finest_cell_m` wide. `map` must outlive the
-/// reader. Coarser cells are kept in MapView::searches, so every search that shares it has to read through such a
-/// reader.
-GridReader compared_cells(const MapView& map, double finest_cell_m);
-/// `map` as half its log odds, without what searches build. `map` must outlive it.
-MapView compared_map(const MapView& map);
+/// Reads half the log odds of `map` for a search whose finest cells are `finest_cell_m` wide. Coarser cells are kept
+/// in MapView::searches, so every search that shares it has to read through such a reader.
+GridReader soft_reader(const MapView& map, double finest_cell_m);
+/// `map` as half its log odds, without what searches build.
+MapView soft_view(const MapView& map);
 /// The feature map as half its log odds.
-FeatureMap compared_cells(FeatureMap features);
+FeatureMap softened(FeatureMap features);
 
 }  // namespace roadfix

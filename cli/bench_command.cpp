@@ -126,13 +126,9 @@ void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& ho
   }
 }
 
-const Calibration& in_force(const BenchArguments& arguments) {
-  return arguments.options.fix.calibration ? *arguments.options.fix.calibration : default_calibration();
-}
-
 void learn(const BenchArguments& arguments, const nlohmann::json& origin, const std::vector<bench::Outcome>& outcomes,
            std::FILE* out) {
-  const bench::CalibrationReport report = bench::learn_calibration(outcomes, in_force(arguments));
+  const bench::CalibrationReport report = bench::learn_calibration(outcomes, *arguments.options.fix.calibration);
   write_json(bench::calibration_json(report, origin), arguments.calibrate_file);
   fmt::print(out, "learned from {} answers, {} of them right: {}\n", report.examples, report.right,
              arguments.calibrate_file);
@@ -141,7 +137,7 @@ void learn(const BenchArguments& arguments, const nlohmann::json& origin, const 
 void learn_headings(const BenchArguments& arguments, const nlohmann::json& origin,
                     const std::vector<bench::Outcome>& outcomes, std::FILE* out) {
   const std::string& file = arguments.calibrate_headings_file;
-  const bench::HeadingScale learned = bench::learn_heading_scale(outcomes, in_force(arguments));
+  const bench::HeadingScale learned = bench::learn_heading_scale(outcomes, *arguments.options.fix.calibration);
   write_json(bench::with_heading_scale(read_named_file(file, "calibration-missing"), learned, origin), file);
   fmt::print(out, "learned from the headings of {} right answers: {}\n", learned.right, file);
 }

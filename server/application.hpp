@@ -20,8 +20,8 @@ struct Configuration {
   std::chrono::milliseconds watch_interval{1000};
   MapCacheBytes map_cache_bytes;
   std::size_t picture_cache_bytes = std::size_t{64} << 20;
-  int search_threads = 1;                          ///< of all searches
-  std::shared_ptr<const Calibration> calibration;  ///< nullptr = the one that is shipped
+  int search_threads = 1;                                                  ///< of all searches
+  std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr
   http::ServerSettings http;
   api::Limits limits;
   std::filesystem::path tracks;  ///< file of the tracks' state; empty = tracks.sqlite in the folder of the maps

@@ -26,7 +26,7 @@ struct Service {
   TrackRegistry& tracks;
   TrackSteps& steps;
   SearchThreads& search_threads;
-  std::shared_ptr<const Calibration> calibration = nullptr;  ///< nullptr = the one that is shipped
+  std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr
 };
 
 /// How often what was answered: the one figure that tells a service that works from one that only runs.

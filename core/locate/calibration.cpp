@@ -50,8 +50,8 @@ Calibration parse_calibration(std::string_view text) {
   return calibration;
 }
 
-const Calibration& default_calibration() {
-  static const Calibration kShipped = parse_calibration(schema::calibration_json());
+std::shared_ptr<const Calibration> shipped_calibration() {
+  static const auto kShipped = std::make_shared<const Calibration>(parse_calibration(schema::calibration_json()));
   return kShipped;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string_view>
 
 #include "core/locate/search_figures.hpp"
@@ -51,7 +52,7 @@ struct Calibration {
 /// The text of a calibration file; its `origin` is for people. Throws InvalidInput "calibration-..." naming the field.
 Calibration parse_calibration(std::string_view json);
 
-/// The one that is shipped (schema/calibration.json).
-const Calibration& default_calibration();
+/// The one that is shipped (schema/calibration.json), the same object every time.
+std::shared_ptr<const Calibration> shipped_calibration();
 
 }  // namespace roadfix

@@ -125,7 +125,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   for (const FeatureMap* seen : {&features, &cells, &soft}) {
     if (auto refusal = refusal_of(*seen)) return refused(map, *std::move(refusal));
   }
-  const Calibration& calibration = options.calibration ? *options.calibration : default_calibration();
+  const Calibration& calibration = *options.calibration;
   SearchResult found =
       search(soft_reader(map, soft.cell_m), soft.cell_m, soft, region, search_options_of(options, map));
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);

@@ -26,8 +26,8 @@ struct FixOptions {
   /// Where several frames were laid together: the one whose nadir is asked for. It alone has to bear a likely place
   /// out.
   std::optional<FeatureMap> own_frame{};
-  std::shared_ptr<const Calibration> calibration{};  ///< nullptr = the one that is shipped
-  SearchOptions search{};                            ///< all but the cache and the surroundings, which the map gives
+  std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr
+  SearchOptions search{};  ///< all but the cache and the surroundings, which the map gives
 };
 
 enum class FixStatus { kFix, kAmbiguous, kNoFix };

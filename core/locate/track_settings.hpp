@@ -62,7 +62,7 @@ struct TrackSettings {
   /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
   /// place.
   std::optional<double> max_search_km2 = 2000.0;
-  std::shared_ptr<const Calibration> calibration;  ///< used by its searches; nullptr = the one that is shipped
+  std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< of its searches; never nullptr
 
   /// The paper's filter: uniform start, no search, equation (7), no particle beyond the map.
   static TrackSettings paper(int particles);

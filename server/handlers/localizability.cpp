@@ -110,7 +110,7 @@ std::string drawn(const Service& service, const http::Request& request, const La
 
 /// A service that is started with another calibration draws other tiles.
 std::string variation(const Service& service, const Layer& layer, const std::string& path) {
-  const Calibration& c = service.calibration ? *service.calibration : default_calibration();
+  const Calibration& c = *service.calibration;
   std::string key = fmt::format("{} {} {} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest,
                                 c.position_sigma_scale, c.heading_sigma_scale);
   for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.max);

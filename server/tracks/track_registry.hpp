@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/locate/calibration.hpp"
 #include "core/locate/tracker.hpp"
 #include "server/api/limits.hpp"
 #include "server/maps/map_registry.hpp"
@@ -35,9 +36,10 @@ struct TrackLimits {
 class TrackRegistry {
  public:
   /// A store that cannot be opened is reported by problem(), and by every call below until it can. `calibration` is of
-  /// the searches of all tracks; nullptr = the one that is shipped.
+  /// the searches of all tracks, and never nullptr.
   TrackRegistry(std::filesystem::path store, TrackLimits limits, const MapRegistry& maps,
-                const api::Limits& request_limits, std::shared_ptr<const Calibration> calibration = nullptr);
+                const api::Limits& request_limits,
+                std::shared_ptr<const Calibration> calibration = shipped_calibration());
 
   const TrackLimits& limits() const { return limits_; }
   /// Why tracks cannot be kept now, as far as the last step told.

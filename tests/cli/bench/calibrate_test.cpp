@@ -35,7 +35,7 @@ std::vector<Outcome> drawn(int n, std::uint64_t seed) {
 }
 
 TEST(LearnCalibration, FindsTheLogisticFunctionBelowTheMedianOfTheRight) {
-  const CalibrationReport report = learn_calibration(drawn(4000, 1), default_calibration());
+  const CalibrationReport report = learn_calibration(drawn(4000, 1), *shipped_calibration());
   // Above one half the chance that other places fit bounds it.
   for (const double surprise : {-2.0, -1.0, -0.5, 0.0}) {
     // The spread of a logistic regression on 4000 examples is about 0.02 here; the cut-off bends it a little.
@@ -45,13 +45,13 @@ TEST(LearnCalibration, FindsTheLogisticFunctionBelowTheMedianOfTheRight) {
 }
 
 TEST(LearnCalibration, WidensEllipsesThatAreTooSmall) {
-  const Calibration& before = default_calibration();
+  const Calibration& before = *shipped_calibration();
   const CalibrationReport report = learn_calibration(drawn(4000, 2), before);
   EXPECT_NEAR(report.calibration.position_sigma_scale / before.position_sigma_scale, 2.0, 0.1);
 }
 
 TEST(LearnCalibration, ClaimsNoMoreThanTheExamplesVouchFor) {
-  const CalibrationReport report = learn_calibration(drawn(400, 3), default_calibration());
+  const CalibrationReport report = learn_calibration(drawn(400, 3), *shipped_calibration());
   EXPECT_LT(report.calibration.highest, 1.0 - 1.0 / 402.0);
   const SearchFigures surest{.surprise = 100.0, .lead = 100.0, .gap = 100.0, .other_roads_across = 2.0};
   EXPECT_GT(report.calibration.probability(surest), 0.9);
@@ -67,15 +67,15 @@ TEST(LearnCalibration, CountsTheWrongAmongAnswersThatAreAllAsSure) {
     outcomes[i].error_m = right ? 2.0 : 500.0;
     outcomes[i].position_nees = right ? 1.0 : 1e6;
   }
-  EXPECT_DOUBLE_EQ(learn_calibration(outcomes, default_calibration()).calibration.highest, 1.0 - 21.0 / 122.0);
+  EXPECT_DOUBLE_EQ(learn_calibration(outcomes, *shipped_calibration()).calibration.highest, 1.0 - 21.0 / 122.0);
 }
 
 TEST(LearnCalibration, RefusesTooFewExamples) {
-  EXPECT_THROW(learn_calibration(drawn(60, 4), default_calibration()), InvalidInput);
+  EXPECT_THROW(learn_calibration(drawn(60, 4), *shipped_calibration()), InvalidInput);
 }
 
 TEST(LearnCalibration, WritesWhatTheServiceReads) {
-  const CalibrationReport report = learn_calibration(drawn(1000, 5), default_calibration());
+  const CalibrationReport report = learn_calibration(drawn(1000, 5), *shipped_calibration());
   const Calibration read = parse_calibration(calibration_json(report, {{"seed", 5}}).dump());
   for (const double surprise : {-3.0, 0.0, 4.0}) {
     const SearchFigures figures{.surprise = surprise, .lead = 1.0, .gap = 1.0, .other_roads_across = 2.0};
@@ -93,12 +93,12 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
     outcome.position_nees = *outcome.position_nees < 1e6 ? 1e-6 * *outcome.position_nees : 1e6;
     outcome.heading_nees = 1e-6;
   }
-  const CalibrationReport report = learn_calibration(exact, default_calibration());
+  const CalibrationReport report = learn_calibration(exact, *shipped_calibration());
   EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
 }
 
 TEST(LearnHeadingScale, WidensHeadingsThatAreSurerThanTheyShouldBe) {
-  const Calibration& before = default_calibration();
+  const Calibration& before = *shipped_calibration();
   std::vector<Outcome> outcomes = drawn(400, 7);
   for (Outcome& outcome : outcomes) outcome.heading_nees = 9.0;  // three standard deviations off
   // A mean of 1 asks for a factor of 3, the 95th percentile of chi^2 (3.84) for less.
@@ -115,14 +115,14 @@ TEST(LearnHeadingScale, LearnsFromNoPlaceThatIsWrong) {
       ++right;
     }
   }
-  const HeadingScale learned = learn_heading_scale(outcomes, default_calibration());
+  const HeadingScale learned = learn_heading_scale(outcomes, *shipped_calibration());
   EXPECT_EQ(learned.right, right);
-  EXPECT_LT(learned.scale, default_calibration().heading_sigma_scale);  // 0.25 each
-  EXPECT_THROW(learn_heading_scale(std::span(outcomes).first(50), default_calibration()), InvalidInput);
+  EXPECT_LT(learned.scale, shipped_calibration()->heading_sigma_scale);  // 0.25 each
+  EXPECT_THROW(learn_heading_scale(std::span(outcomes).first(50), *shipped_calibration()), InvalidInput);
 }
 
 TEST(LearnHeadingScale, ChangesNothingElseOfACalibration) {
-  const CalibrationReport report = learn_calibration(drawn(1000, 9), default_calibration());
+  const CalibrationReport report = learn_calibration(drawn(1000, 9), *shipped_calibration());
   const nlohmann::json before = calibration_json(report, {{"seed", 9}});
   nlohmann::json after = with_heading_scale(before.dump(), {1.75, 60}, {{"seed", 10}});
   EXPECT_EQ(parse_calibration(after.dump()).heading_sigma_scale, 1.75);

@@ -36,7 +36,7 @@ TEST(Calibration, IsNeverSurerThanItsExamples) {
 }
 
 TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
-  const Calibration& calibration = default_calibration();
+  const Calibration& calibration = *shipped_calibration();
   EXPECT_EQ(calibration.probability(figures(2.6, 100.0, 100.0)), std::exp(-std::exp(-2.6)));
   EXPECT_EQ(calibration.probability(figures(0.0, 100.0, 100.0)), 0.5);
   EXPECT_GE(calibration.probability(figures(5.0, 100.0, 100.0)), 0.99);
@@ -45,24 +45,24 @@ TEST(Calibration, IsNotSureOfWhatChanceMayExplainWhateverTheExamplesSay) {
 TEST(Calibration, IsNotSureOfAPlaceThatRestsOnNoMoreThanOneStraightRoad) {
   SearchFigures far_ahead = figures(100.0, 100.0, 100.0);
   far_ahead.other_roads_across = 0.39;
-  EXPECT_EQ(default_calibration().probability(far_ahead), 0.5);
+  EXPECT_EQ(shipped_calibration()->probability(far_ahead), 0.5);
   far_ahead.other_roads_across = 0.41;
-  EXPECT_GE(default_calibration().probability(far_ahead), 0.99);
+  EXPECT_GE(shipped_calibration()->probability(far_ahead), 0.99);
 }
 
 TEST(Calibration, TrustsNoFigureThatIsNoNumber) {
   for (const CountedFigure& figure : kCountedFigures) {
     SearchFigures broken = figures(100.0, 100.0, 100.0);
     broken.*figure.value = std::nan("");
-    EXPECT_EQ(default_calibration().probability(broken), 0.0) << figure.name;
+    EXPECT_EQ(shipped_calibration()->probability(broken), 0.0) << figure.name;
   }
   SearchFigures broken = figures(100.0, 100.0, 100.0);
   broken.other_roads_across = std::nan("");
-  EXPECT_LE(default_calibration().probability(broken), 0.5);
+  EXPECT_LE(shipped_calibration()->probability(broken), 0.5);
 }
 
 TEST(Calibration, RisesWithEveryFigure) {
-  const Calibration& calibration = default_calibration();
+  const Calibration& calibration = *shipped_calibration();
   for (double surprise = -10.0; surprise < 20.0; surprise += 1.0) {
     for (double lead = 0.0; lead < 12.0; lead += 1.0) {
       const double here = calibration.probability(figures(surprise, lead, lead, 10.0));
@@ -76,13 +76,13 @@ TEST(Calibration, RisesWithEveryFigure) {
 
 TEST(Calibration, AsShippedDoubtsSmallFootprintsMoreThanLargeOnes) {
   const auto of_footprint = [](double side_m) { return figures(3.0, 2.0, 2.0, std::log(side_m * side_m)); };
-  const Calibration& calibration = default_calibration();
+  const Calibration& calibration = *shipped_calibration();
   EXPECT_LT(calibration.probability(of_footprint(70.0)) + 0.1, calibration.probability(of_footprint(300.0)));
 }
 
 TEST(Calibration, AsShippedReachesTheUsualConfidenceAndDoubtsWhatChanceExplains) {
-  EXPECT_GE(default_calibration().probability(figures(100.0, 100.0, 100.0)), 0.99);
-  EXPECT_LT(default_calibration().probability(figures(0.0, 0.5, 0.5)), 0.5);
+  EXPECT_GE(shipped_calibration()->probability(figures(100.0, 100.0, 100.0)), 0.99);
+  EXPECT_LT(shipped_calibration()->probability(figures(0.0, 0.5, 0.5)), 0.5);
 }
 
 TEST(Calibration, SaysWhichFieldOfAFileIsWrong) {

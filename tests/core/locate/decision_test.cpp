@@ -34,7 +34,7 @@ SearchResult found(double score, double second, double lowest) {
 }
 
 TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
-  const Decision decision = decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99);
+  const Decision decision = decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kFix);
   EXPECT_GE(decision.probability, 0.99);
   EXPECT_TRUE(decision.reason.empty());
@@ -42,7 +42,7 @@ TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
 }
 
 TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
-  const Decision decision = decide(found(0.38, 0.35, 0.2), default_calibration(), 0.99);
+  const Decision decision = decide(found(0.38, 0.35, 0.2), *shipped_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
   EXPECT_LT(decision.probability, 0.5);
@@ -51,7 +51,7 @@ TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
 TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
   bool likely = false;
   for (double score = 0.38; score < 0.6; score += 0.01) {
-    const Decision decision = decide(found(score, 0.35, 0.2), default_calibration(), 0.99);
+    const Decision decision = decide(found(score, 0.35, 0.2), *shipped_calibration(), 0.99);
     if (decision.status != FixStatus::kNoFix) continue;
     EXPECT_EQ(decision.reason, decision.probability > 0.5 ? "below-confidence" : "not-above-chance") << score;
     likely = likely || decision.probability > 0.5;
@@ -60,18 +60,18 @@ TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
 }
 
 TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
-  const Decision decision = decide(found(0.85, 0.84, 0.7), default_calibration(), 0.99);
+  const Decision decision = decide(found(0.85, 0.84, 0.7), *shipped_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "several-places-fit");
 }
 
 TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   const SearchResult result = found(0.8, 0.35, 0.2);
-  const Decision decision = decide(result, default_calibration(), 0.9999);
+  const Decision decision = decide(result, *shipped_calibration(), 0.9999);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "below-confidence");
   EXPECT_NE(decision.explanation.find("vouches for no more than 0.9965"), std::string::npos) << decision.explanation;
-  Calibration doubtful = default_calibration();
+  Calibration doubtful = *shipped_calibration();
   doubtful.bias -= 20.0;
   const Decision doubted = decide(result, doubtful, 0.9999);
   EXPECT_EQ(doubted.reason, "below-confidence");
@@ -82,7 +82,7 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
 TEST(Decision, APlaceThatRestsOnLittleBesideTwoStraightRoadsIsExplainedByChanceHoweverFarItIsAhead) {
   SearchResult result = found(0.8, 0.35, 0.2);
   result.modes[0].other_roads_m = 150;
-  const Decision decision = decide(result, default_calibration(), 0.4);
+  const Decision decision = decide(result, *shipped_calibration(), 0.4);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
   EXPECT_NE(decision.explanation.find("share 150 m of road beside two straight ones, and 160 m are needed"),
@@ -91,7 +91,7 @@ TEST(Decision, APlaceThatRestsOnLittleBesideTwoStraightRoadsIsExplainedByChanceH
   EXPECT_LE(decision.probability, 0.5);
   EXPECT_EQ(decision.weights.size(), 2U);
   result.modes[0].other_roads_m = 170;
-  EXPECT_EQ(decide(result, default_calibration(), 0.99).status, FixStatus::kFix);
+  EXPECT_EQ(decide(result, *shipped_calibration(), 0.99).status, FixStatus::kFix);
 }
 
 class DecisionBesideOtherPlacesOutside : public ::testing::Test {
@@ -105,7 +105,7 @@ class DecisionBesideOtherPlacesOutside : public ::testing::Test {
       result.outside.back().score = score;
       result.outside.back().pose.position.east_m += 60.0 * static_cast<double>(result.outside.size());
     }
-    return decide(result, default_calibration(), 0.99);
+    return decide(result, *shipped_calibration(), 0.99);
   }
 };
 
@@ -137,7 +137,7 @@ TEST_F(DecisionBesideOtherPlacesOutside, ChanceHasAllTheGroundAroundForOneHoweve
 
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsFarLessChangesNothing) {
   EXPECT_EQ(beside({0.7}).status, FixStatus::kFix);
-  EXPECT_NEAR(beside({0.7}).probability, decide(found(0.8, 0.35, 0.2), default_calibration(), 0.99).probability, 1e-4);
+  EXPECT_NEAR(beside({0.7}).probability, decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99).probability, 1e-4);
 }
 
 TEST_F(DecisionBesideOtherPlacesOutside, EachThatFitsAsWellTakesItsShare) {
@@ -148,7 +148,7 @@ TEST_F(DecisionBesideOtherPlacesOutside, EachThatFitsAsWellTakesItsShare) {
 
 TEST(Decision, WeightsAreSharedByTheModes) {
   for (const double second : {0.3, 0.5, 0.7, 0.79, 0.8}) {
-    const Decision decision = decide(found(0.8, second, 0.2), default_calibration(), 0.99);
+    const Decision decision = decide(found(0.8, second, 0.2), *shipped_calibration(), 0.99);
     double sum = 0.0;
     for (const double weight : decision.weights) sum += weight;
     EXPECT_LE(sum, 1.0 + 1e-12);
@@ -174,27 +174,27 @@ TEST(Decision, WeightsOfPlacesThatFitAsWellAsASureOneShareWhatItLeaves) {
 TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {
   SearchResult few = found(0.4, 0.1, 0.05);
   few.background.rivals.resize(5);
-  EXPECT_EQ(decide(few, default_calibration(), 0.9).status, FixStatus::kNoFix);
+  EXPECT_EQ(decide(few, *shipped_calibration(), 0.9).status, FixStatus::kNoFix);
 }
 
 TEST(Decision, WhatATimeLimitEndedIsNoFixHoweverWellItFits) {
   SearchResult half = found(0.8, 0.35, 0.2);
-  const double whole = decide(half, default_calibration(), 0.99).probability;
+  const double whole = decide(half, *shipped_calibration(), 0.99).probability;
   half.scanned_share = 0.5;
-  const Decision decision = decide(half, default_calibration(), 0.5);
+  const Decision decision = decide(half, *shipped_calibration(), 0.5);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "search-time-limit");
   EXPECT_NEAR(decision.probability, 0.5 * whole, 1e-12);
   EXPECT_NE(decision.explanation.find("50 %"), std::string::npos);
   half.scanned_share = 1.0;
   half.refined = false;
-  EXPECT_EQ(decide(half, default_calibration(), 0.5).reason, "search-time-limit");
+  EXPECT_EQ(decide(half, *shipped_calibration(), 0.5).reason, "search-time-limit");
   half.modes.clear();
-  EXPECT_EQ(decide(half, default_calibration(), 0.5).reason, "search-time-limit");
+  EXPECT_EQ(decide(half, *shipped_calibration(), 0.5).reason, "search-time-limit");
 }
 
 TEST(Decision, WithoutAnyModeTheMapIsTooEmpty) {
-  const Decision decision = decide({}, default_calibration(), 0.99);
+  const Decision decision = decide({}, *shipped_calibration(), 0.99);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "map-too-empty");
 }

@@ -109,7 +109,7 @@ TEST_F(Track, ClaimsNoHeadingThatOneWrongTurnTold) {
 }
 
 TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
-  Calibration doubts = default_calibration();
+  Calibration doubts = *shipped_calibration();
   doubts.highest = 0.45;
   TrackSettings unsure = settings();
   unsure.calibration = std::make_shared<const Calibration>(doubts);

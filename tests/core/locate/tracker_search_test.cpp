@@ -80,7 +80,7 @@ TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
   const StepInput first = flight.step();
   const auto accepted = [&](double highest) {
     TrackSettings s = settings();
-    Calibration calibration = default_calibration();
+    Calibration calibration = *shipped_calibration();
     calibration.highest = highest;
     s.calibration = std::make_shared<const Calibration>(calibration);
     const StepResult result = Tracker(view_, s).advance({}, first);

@@ -76,7 +76,7 @@ TEST_F(TrackRegistryTest, LetsGoOfWhatHasExpiredThoughNobodyAsksForATrack) {
 }
 
 TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
-  Calibration doubtful = default_calibration();
+  Calibration doubtful = *shipped_calibration();
   doubtful.highest = 0.5;
   std::mt19937_64 random(1);
   StepInput first = step_of(0);
@@ -90,7 +90,7 @@ TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
     EXPECT_EQ(answer["measurement"], "searched");
     return !answer["since_accepted_s"].is_null();
   };
-  EXPECT_TRUE(accepted("sure.sqlite", nullptr));
+  EXPECT_TRUE(accepted("sure.sqlite", shipped_calibration()));
   EXPECT_FALSE(accepted("doubtful.sqlite", std::make_shared<const Calibration>(doubtful)));
 }
 

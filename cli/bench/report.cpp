@@ -28,7 +28,7 @@ json number_or_null(const std::optional<double>& value) {
 
 json figures_json(const std::optional<SearchFigures>& figures) {
   if (!figures) return nullptr;
-  json result{{"agreement", figures->agreement}, {"other_roads_across", figures->other_roads_across}};
+  json result{{"agreement", figures->agreement}, {"other_roads_across", number_or_null(figures->other_roads_across)}};
   for (const CountedFigure& counted : kCountedFigures) result[counted.name] = (*figures).*counted.value;
   return result;
 }

@@ -27,8 +27,7 @@ double Calibration::probability(const SearchFigures& figures) const {
   }
   const double learned = std::min(highest, 1.0 / (1.0 + std::exp(-sum)));
   // By chance exp(-surprise) places fit as well; this is the probability that there is none.
-  const bool alike = !(figures.other_roads_across >= kMinOtherRoadsAcross);
-  const double not_by_chance = alike ? 0.0 : std::exp(-std::exp(-figures.surprise));
+  const double not_by_chance = shares_too_few_roads(figures) ? 0.0 : std::exp(-std::exp(-figures.surprise));
   return std::min(learned, std::max(kSureByExamples, not_by_chance));
 }
 

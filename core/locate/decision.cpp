@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace roadfix {
@@ -92,12 +93,24 @@ void call_ambiguous(Decision& decision, const std::vector<double>& ratios, const
   }
 }
 
-std::string shares_too_few_roads(const SearchFigures& figures) {
+/// The UAV is not over the map, or what it sees looks like everywhere.
+void explain_by_chance(Decision& decision, bool bare, std::string explanation) {
+  if (bare) {
+    explain(decision, "too-few-roads",
+            "the frame shows less road than a single one across the footprint: use a larger footprint, or fly on to "
+            "where roads are");
+  } else {
+    explain(decision, "not-above-chance", std::move(explanation));
+  }
+}
+
+std::string too_few_shared_roads(const SearchFigures& figures) {
   const double across_m = std::exp(0.5 * figures.ground);
   return fmt::format(
-      "at the best place frame and map share {:.0f} m of road beside two straight ones, and {:.0f} m are needed, since "
-      "junctions look alike: use a larger footprint, or fly on to where roads are; the UAV may not be over this map",
-      figures.other_roads_across * across_m, kMinOtherRoadsAcross * across_m);
+      "at the best place frame and map share {:.0f} m of road beside the longest straight ones, and {:.0f} m are "
+      "needed, since junctions look alike: use a larger footprint, or fly on to where roads are; the UAV may not be "
+      "over this map",
+      figures.other_roads_across.value_or(0.0) * across_m, kMinOtherRoadsAcross * across_m);
 }
 
 /// Share of the best mode beside the places around the region, as if those lay in it.
@@ -112,12 +125,9 @@ double share_beside_outside(const SearchResult& found) {
 /// Whether chance does not explain how well the roads fit at the best place around the region, which is known then.
 bool is_known_outside(const SearchResult& found) {
   if (found.outside.empty()) return false;
-  SearchResult there = found;
-  there.modes = {found.outside.front()};
-  std::vector<double>& rivals = there.background.rivals;
-  if (!rivals.empty()) rivals.erase(rivals.begin());  // itself
-  there.background.region_share = 1.0;
-  return figures_of(there).surprise >= kBeyondChance;
+  const std::span<const double> rivals(found.background.rivals);
+  const auto others = rivals.subspan(std::min<std::size_t>(1, rivals.size()));  // all but itself
+  return surprise_of(found.outside.front().score, others, 1.0) >= kBeyondChance;
 }
 
 std::string fits_outside(const SearchResult& found) {
@@ -129,7 +139,7 @@ std::string fits_outside(const SearchResult& found) {
 
 }  // namespace
 
-Decision decide(const SearchResult& found, const Calibration& calibration, double confidence) {
+Decision decide(const SearchResult& found, const Calibration& calibration, double confidence, bool bare) {
   Decision decision;
   if (found.modes.empty() && found.complete()) {
     explain(
@@ -149,7 +159,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   const double share = share_beside_outside(found);
   decision.probability = share * within;
   decision.weights = weights_of(ratios, decision.probability);
-  const bool few_roads = figures.other_roads_across < kMinOtherRoadsAcross;
+  const bool few_roads = shares_too_few_roads(figures);
   const bool sure_within = !few_roads && within >= confidence;
   if (!found.complete()) {
     explain_time_limit(decision, found);
@@ -158,15 +168,16 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   } else if (sure_within || (share < 0.5 && (within > kLikely || is_known_outside(found)))) {
     explain(decision, "better-outside-prior", fits_outside(found));
   } else if (few_roads) {
-    explain(decision, kNotAboveChanceReason, shares_too_few_roads(figures));
+    explain_by_chance(decision, bare, too_few_shared_roads(figures));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {
     call_ambiguous(decision, ratios, calibration, confidence);
   } else if (decision.probability > kLikely) {
     explain(decision, "below-confidence", below_confidence(decision.probability, calibration, confidence));
   } else {
-    explain(decision, kNotAboveChanceReason,
-            "the best place fits no better than chance allows among so many places: use a larger footprint or a "
-            "narrower prior; the UAV may not be over this map");
+    explain_by_chance(
+        decision, bare,
+        "the best place fits no better than chance allows among so many places: use a larger footprint or a "
+        "narrower prior; the UAV may not be over this map");
   }
   return decision;
 }

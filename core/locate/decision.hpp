@@ -27,11 +27,10 @@ struct Decision {
   std::vector<double> weights;
 };
 
-/// Chance explains the best place: the UAV is not over the map, or what it sees looks like everywhere.
-inline constexpr const char* kNotAboveChanceReason = "not-above-chance";
-
 inline constexpr double kModeShare = 0.01;
 
-Decision decide(const SearchResult& found, const Calibration& calibration, double confidence);
+/// `bare`: the feature map shows less road than a single one across it (footprint_refusal.hpp), which is said where
+/// chance explains the best place.
+Decision decide(const SearchResult& found, const Calibration& calibration, double confidence, bool bare);
 
 }  // namespace roadfix

@@ -96,13 +96,6 @@ Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decisi
   return fix;
 }
 
-void name_too_few_roads(Fix& fix) {
-  fix.reason = "too-few-roads";
-  fix.explanation =
-      "the frame shows less road than a single one across the footprint: use a larger footprint, or fly on to where "
-      "roads are";
-}
-
 }  // namespace
 
 PoseRegion search_region(const MapView& map, const Prior& prior, const FixOptions& options) {
@@ -129,13 +122,12 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   SearchResult found =
       search(soft_reader(map, soft.cell_m), soft.cell_m, soft, region, search_options_of(options, map));
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
-  const Decision decision = decide(found, calibration, options.confidence);
+  const Decision decision = decide(found, calibration, options.confidence, shows_less_than_a_road_across(cells));
   Fix fix = fix_of(map, found, decision);
   const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.search.max_modes)));
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
-  if (fix.reason == kNotAboveChanceReason && shows_less_than_a_road_across(cells)) name_too_few_roads(fix);
   if (claims_a_place(fix) && options.own_frame &&
       contradicts(map, *options.own_frame, found.modes.front(), fix.modes.front().rho)) {
     refuse_contradicting_frames(fix);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <span>
 
 namespace roadfix {
 namespace {
@@ -27,6 +26,20 @@ double mean_excess(std::span<const double> rivals) {
   return sum / static_cast<double>(rivals.size() - 1);
 }
 
+/// How the rivals of a place thin out, and how far it is above the lowest of them, both in Fisher's z.
+struct Tail {
+  double mean_excess;
+  double excess;
+};
+
+/// nullopt where the rivals are too few to tell, or the place is not above them.
+std::optional<Tail> tail_below(double score, std::span<const double> rivals) {
+  if (rivals.size() < kFewestRivals) return std::nullopt;
+  const Tail tail{mean_excess(rivals), fisher(score) - fisher(rivals.back())};
+  if (tail.mean_excess <= 0.0 || tail.excess <= 0.0) return std::nullopt;
+  return tail;
+}
+
 double ground_m2(const SearchMode& mode, double cell_m) {
   return static_cast<double>(mode.observed_cells) * cell_m * cell_m;
 }
@@ -40,27 +53,35 @@ double second_of(const SearchResult& found) {
 
 }  // namespace
 
+bool shares_too_few_roads(const SearchFigures& figures) {
+  return !(figures.other_roads_across >= kMinOtherRoadsAcross);
+}
+
+double surprise_of(double score, std::span<const double> rivals, double region_share) {
+  const std::optional<Tail> tail = tail_below(score, rivals);
+  if (!tail) return kUnknown;
+  // The scale is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
+  const auto count = static_cast<double>(rivals.size() - 1);
+  const double log_expected =
+      std::log(region_share * count) - count * std::log1p(tail->excess / (tail->mean_excess * count));
+  return std::clamp(-log_expected, kUnknown, kLargestFigure);
+}
+
 SearchFigures figures_of(const SearchResult& found) {
   assert(!found.modes.empty());
   const ScoreBackground& background = found.background;
-  const double best = fisher(found.modes.front().score);
-  const double ahead = best - fisher(second_of(found));
+  const double score = found.modes.front().score;
+  const double ahead = fisher(score) - fisher(second_of(found));
   const double ground = ground_m2(found.modes.front(), found.cell_m);
   SearchFigures figures;
-  figures.surprise = kUnknown;
+  figures.surprise = surprise_of(score, background.rivals, background.region_share);
   figures.agreement = found.modes.front().pearson * std::sqrt(ground / kSampleM2);
-  if (ground > 0.0) figures.other_roads_across = found.modes.front().other_roads_m / std::sqrt(ground);
+  if (found.other_roads_m && ground > 0.0) figures.other_roads_across = *found.other_roads_m / std::sqrt(ground);
   figures.ground = std::log(std::max(ground, 1.0));
   if (background.sd > 0.0) figures.lead = std::clamp(ahead / background.sd, 0.0, kLargestFigure);
-  if (background.rivals.size() < kFewestRivals) return figures;
-  const double scale = mean_excess(background.rivals);
-  const double excess = best - fisher(background.rivals.back());
-  if (scale <= 0.0 || excess <= 0.0) return figures;
-  // The scale is itself an estimate from `count` values: the tail that follows falls as a power, not as exp.
-  const auto count = static_cast<double>(background.rivals.size() - 1);
-  const double log_expected = std::log(background.region_share * count) - count * std::log1p(excess / (scale * count));
-  figures.surprise = std::clamp(-log_expected, kUnknown, kLargestFigure);
-  figures.gap = std::clamp(ahead / scale, 0.0, kLargestFigure);
+  if (const auto tail = tail_below(score, background.rivals)) {
+    figures.gap = std::clamp(ahead / tail->mean_excess, 0.0, kLargestFigure);
+  }
   return figures;
 }
 

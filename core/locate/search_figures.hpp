@@ -2,6 +2,9 @@
 // distances between scores in units of the spread that the scores of this very search have.
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "core/search/search.hpp"
 
 namespace roadfix {
@@ -35,9 +38,16 @@ struct SearchFigures {
   /// the less the tail of the others says of it.
   double ground = 0.0;
   /// Road in both that the best place rests on beside the longest straight lines among it: its length over the side
-  /// of a square as large as the ground that took part.
-  double other_roads_across = 0.0;
+  /// of a square as large as the ground that took part; nullopt where that is unknown.
+  std::optional<double> other_roads_across{};
 };
+
+/// So few, or unknown, that chance explains the best place (kMinOtherRoadsAcross).
+bool shares_too_few_roads(const SearchFigures& figures);
+
+/// SearchFigures::surprise of a place of this score among these rivals (ScoreBackground::rivals), where the region has
+/// such a share of the ground that they came from.
+double surprise_of(double score, std::span<const double> rivals, double region_share);
 
 /// `found` holds a mode.
 SearchFigures figures_of(const SearchResult& found);

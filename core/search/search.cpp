@@ -62,6 +62,7 @@ SearchResult searched(const GridReader& read, double finest_cell_m, const Featur
   set_rivals(levels, scan, options, poses, result.background);
   FoundModes found = find_modes(levels, scan, options, poses, result.background);
   result.modes = std::move(found.modes);
+  result.other_roads_m = found.other_roads_m;
   result.nearby = found.nearby;
   result.outside = std::move(found.outside);
   result.refined = result.refined && found.complete;

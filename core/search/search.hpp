@@ -46,8 +46,8 @@ struct SearchOptions {
   /// at least, and headings a little beside, to tell what chance gives and whether another place fits better. nullopt =
   /// no farther than it takes to tell anything of chance.
   std::optional<GridBox> surroundings{};
-  /// So many of the longest straight lines do not count in SearchMode::other_roads_m: two, since junctions look alike;
-  /// one where a place is known and has to be borne out.
+  /// So many of the longest straight lines do not count in SearchResult::other_roads_m: two, since junctions look
+  /// alike; one where a place is known and has to be borne out.
   int straight_roads = 2;
   std::shared_ptr<SearchCache> cache{};  ///< of this map; nullptr = what is built is not kept
   Deadline deadline{};                   ///< at it the search ends with what it has; Interrupted when asked to stop
@@ -77,9 +77,6 @@ struct SearchMode {
   double pearson = 0.0;  ///< equation (5) about the separate means, at the nearest cell
   std::int64_t observed_cells = 0;
   PoseCovariance covariance{};  ///< from the shape of the peak, and the cell size
-  /// Length of the roads in both that the score rests on beside the longest straight lines among them
-  /// (SearchOptions::straight_roads, shared_road.hpp); of the best mode alone, of others 0.
-  double other_roads_m = 0.0;
 };
 
 /// What scores look like by chance over the searched region.
@@ -104,6 +101,9 @@ struct ScoreBackground {
 
 struct SearchResult {
   std::vector<SearchMode> modes;  ///< best first; empty where no pose has enough observed cells
+  /// Length of the roads in both that the score of the best mode rests on beside the longest straight lines among them
+  /// (SearchOptions::straight_roads, shared_road.hpp).
+  std::optional<double> other_roads_m;
   /// Another peak within the region, so close to the best mode that the two are no distinct places, at its heading and
   /// scale: no higher than the mode. What the map knows of its own accuracy tells whether it is another place.
   std::optional<SearchMode> nearby;

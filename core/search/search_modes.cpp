@@ -130,7 +130,7 @@ FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const 
   const bool looks_nearby = !options.deadline.over();
   if (looks_nearby) found.nearby = nearby_mode(levels, scan.separation_m(), best, finder);
   if (found.nearby && found.nearby->score > best.score) std::swap(*found.nearby, best);
-  best.other_roads_m = other_roads_m(levels.finest(), best, options.straight_roads);
+  found.other_roads_m = other_roads_m(levels.finest(), best, options.straight_roads);
   if (options.surroundings) {
     std::vector<SearchMode> others = finder.first_of(worth_a_look(levels, poses.around, best, background), kOutside);
     found.outside = modes_outside(levels, scan.scanned(), finder, std::move(others), best);

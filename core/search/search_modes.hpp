@@ -24,6 +24,7 @@ void set_rivals(const SearchLevels& levels, const SearchScan& scan, const Search
 /// As in SearchResult.
 struct FoundModes {
   std::vector<SearchMode> modes;
+  std::optional<double> other_roads_m;
   std::optional<SearchMode> nearby;
   std::vector<SearchMode> outside;
   bool complete = true;  ///< false where the deadline ended it, after the first mode at the earliest

@@ -1,6 +1,6 @@
 #include "core/locate/decision.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,16 +25,21 @@ SearchResult found(double score, double second, double lowest) {
   result.background.rivals_within = result.background.rivals;
   SearchMode best;
   best.score = best.pearson = score;
-  best.observed_cells = 40'000;  // 400 x 400 m
-  best.other_roads_m = 2 * 400;  // two roads across beside the two longest
+  best.observed_cells = 40'000;    // 400 x 400 m
+  result.other_roads_m = 2 * 400;  // two roads across beside the two longest
   SearchMode next = best;
   next.score = next.pearson = second;
   result.modes = {best, next};
   return result;
 }
 
+/// Of a frame that shows roads enough.
+Decision decided(const SearchResult& result, double confidence = 0.99) {
+  return decide(result, *shipped_calibration(), confidence, false);
+}
+
 TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
-  const Decision decision = decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99);
+  const Decision decision = decided(found(0.8, 0.35, 0.2));
   EXPECT_EQ(decision.status, FixStatus::kFix);
   EXPECT_GE(decision.probability, 0.99);
   EXPECT_TRUE(decision.reason.empty());
@@ -42,16 +47,30 @@ TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
 }
 
 TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
-  const Decision decision = decide(found(0.38, 0.35, 0.2), *shipped_calibration(), 0.99);
+  const Decision decision = decided(found(0.38, 0.35, 0.2));
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
   EXPECT_LT(decision.probability, 0.5);
 }
 
+TEST(Decision, WhatChanceExplainsOfABareFrameHasTooFewRoads) {
+  constexpr bool kBare = true;
+  for (const double other_roads_m : {150.0, 800.0}) {
+    SearchResult result = found(0.38, 0.35, 0.2);
+    result.other_roads_m = other_roads_m;
+    const Decision decision = decide(result, *shipped_calibration(), 0.99, kBare);
+    EXPECT_EQ(decision.status, FixStatus::kNoFix);
+    EXPECT_EQ(decision.reason, "too-few-roads");
+    EXPECT_THAT(decision.explanation, ::testing::HasSubstr("less road than a single one"));
+  }
+  EXPECT_EQ(decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99, kBare).status, FixStatus::kFix);
+  EXPECT_EQ(decide(found(0.85, 0.84, 0.7), *shipped_calibration(), 0.99, kBare).reason, "several-places-fit");
+}
+
 TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
   bool likely = false;
   for (double score = 0.38; score < 0.6; score += 0.01) {
-    const Decision decision = decide(found(score, 0.35, 0.2), *shipped_calibration(), 0.99);
+    const Decision decision = decided(found(score, 0.35, 0.2));
     if (decision.status != FixStatus::kNoFix) continue;
     EXPECT_EQ(decision.reason, decision.probability > 0.5 ? "below-confidence" : "not-above-chance") << score;
     likely = likely || decision.probability > 0.5;
@@ -60,20 +79,20 @@ TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
 }
 
 TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
-  const Decision decision = decide(found(0.85, 0.84, 0.7), *shipped_calibration(), 0.99);
+  const Decision decision = decided(found(0.85, 0.84, 0.7));
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "several-places-fit");
 }
 
 TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   const SearchResult result = found(0.8, 0.35, 0.2);
-  const Decision decision = decide(result, *shipped_calibration(), 0.9999);
+  const Decision decision = decided(result, 0.9999);
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
   EXPECT_EQ(decision.reason, "below-confidence");
   EXPECT_NE(decision.explanation.find("vouches for no more than 0.9965"), std::string::npos) << decision.explanation;
   Calibration doubtful = *shipped_calibration();
   doubtful.bias -= 20.0;
-  const Decision doubted = decide(result, doubtful, 0.9999);
+  const Decision doubted = decide(result, doubtful, 0.9999, false);
   EXPECT_EQ(doubted.reason, "below-confidence");
   EXPECT_EQ(doubted.explanation.find("vouches"), std::string::npos) << doubted.explanation;
   EXPECT_EQ(decision.weights.size(), 1U);
@@ -81,17 +100,17 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
 
 TEST(Decision, APlaceThatRestsOnLittleBesideTwoStraightRoadsIsExplainedByChanceHoweverFarItIsAhead) {
   SearchResult result = found(0.8, 0.35, 0.2);
-  result.modes[0].other_roads_m = 150;
-  const Decision decision = decide(result, *shipped_calibration(), 0.4);
+  result.other_roads_m = 150;
+  const Decision decision = decided(result, 0.4);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "not-above-chance");
-  EXPECT_NE(decision.explanation.find("share 150 m of road beside two straight ones, and 160 m are needed"),
+  EXPECT_NE(decision.explanation.find("share 150 m of road beside the longest straight ones, and 160 m are needed"),
             std::string::npos)
       << decision.explanation;
   EXPECT_LE(decision.probability, 0.5);
   EXPECT_EQ(decision.weights.size(), 2U);
-  result.modes[0].other_roads_m = 170;
-  EXPECT_EQ(decide(result, *shipped_calibration(), 0.99).status, FixStatus::kFix);
+  result.other_roads_m = 170;
+  EXPECT_EQ(decided(result).status, FixStatus::kFix);
 }
 
 class DecisionBesideOtherPlacesOutside : public ::testing::Test {
@@ -105,7 +124,7 @@ class DecisionBesideOtherPlacesOutside : public ::testing::Test {
       result.outside.back().score = score;
       result.outside.back().pose.position.east_m += 60.0 * static_cast<double>(result.outside.size());
     }
-    return decide(result, *shipped_calibration(), 0.99);
+    return decided(result);
   }
 };
 
@@ -137,7 +156,7 @@ TEST_F(DecisionBesideOtherPlacesOutside, ChanceHasAllTheGroundAroundForOneHoweve
 
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsFarLessChangesNothing) {
   EXPECT_EQ(beside({0.7}).status, FixStatus::kFix);
-  EXPECT_NEAR(beside({0.7}).probability, decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99).probability, 1e-4);
+  EXPECT_NEAR(beside({0.7}).probability, decided(found(0.8, 0.35, 0.2)).probability, 1e-4);
 }
 
 TEST_F(DecisionBesideOtherPlacesOutside, EachThatFitsAsWellTakesItsShare) {
@@ -148,7 +167,7 @@ TEST_F(DecisionBesideOtherPlacesOutside, EachThatFitsAsWellTakesItsShare) {
 
 TEST(Decision, WeightsAreSharedByTheModes) {
   for (const double second : {0.3, 0.5, 0.7, 0.79, 0.8}) {
-    const Decision decision = decide(found(0.8, second, 0.2), *shipped_calibration(), 0.99);
+    const Decision decision = decided(found(0.8, second, 0.2));
     double sum = 0.0;
     for (const double weight : decision.weights) sum += weight;
     EXPECT_LE(sum, 1.0 + 1e-12);
@@ -164,7 +183,7 @@ TEST(Decision, WeightsOfPlacesThatFitAsWellAsASureOneShareWhatItLeaves) {
   SearchResult result = found(0.8, 0.35, 0.2);
   result.modes.push_back(result.modes.front());
   result.modes[1].score = result.modes.front().score;
-  const Decision decision = decide(result, sure, 0.5);
+  const Decision decision = decide(result, sure, 0.5, false);
   ASSERT_EQ(decision.weights.size(), 3U);
   EXPECT_EQ(decision.weights[0], 0.9);
   EXPECT_NEAR(decision.weights[1], 0.05, 1e-9);
@@ -174,27 +193,27 @@ TEST(Decision, WeightsOfPlacesThatFitAsWellAsASureOneShareWhatItLeaves) {
 TEST(Decision, WithFewRivalsChanceIsUnknownAndNothingIsAFix) {
   SearchResult few = found(0.4, 0.1, 0.05);
   few.background.rivals.resize(5);
-  EXPECT_EQ(decide(few, *shipped_calibration(), 0.9).status, FixStatus::kNoFix);
+  EXPECT_EQ(decided(few, 0.9).status, FixStatus::kNoFix);
 }
 
 TEST(Decision, WhatATimeLimitEndedIsNoFixHoweverWellItFits) {
   SearchResult half = found(0.8, 0.35, 0.2);
-  const double whole = decide(half, *shipped_calibration(), 0.99).probability;
+  const double whole = decided(half).probability;
   half.scanned_share = 0.5;
-  const Decision decision = decide(half, *shipped_calibration(), 0.5);
+  const Decision decision = decided(half, 0.5);
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "search-time-limit");
   EXPECT_NEAR(decision.probability, 0.5 * whole, 1e-12);
   EXPECT_NE(decision.explanation.find("50 %"), std::string::npos);
   half.scanned_share = 1.0;
   half.refined = false;
-  EXPECT_EQ(decide(half, *shipped_calibration(), 0.5).reason, "search-time-limit");
+  EXPECT_EQ(decided(half, 0.5).reason, "search-time-limit");
   half.modes.clear();
-  EXPECT_EQ(decide(half, *shipped_calibration(), 0.5).reason, "search-time-limit");
+  EXPECT_EQ(decided(half, 0.5).reason, "search-time-limit");
 }
 
 TEST(Decision, WithoutAnyModeTheMapIsTooEmpty) {
-  const Decision decision = decide({}, *shipped_calibration(), 0.99);
+  const Decision decision = decided({});
   EXPECT_EQ(decision.status, FixStatus::kNoFix);
   EXPECT_EQ(decision.reason, "map-too-empty");
 }

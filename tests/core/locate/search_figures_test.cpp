@@ -67,8 +67,19 @@ TEST(SearchFigures, CountsOtherRoadsInRoadsAcrossTheGroundThatTookPart) {
   SearchResult result = found_among(0.6, 0.2, 0.02);
   result.cell_m = 2.0;
   result.modes[0].observed_cells = 22'500;  // 300 x 300 m
-  result.modes[0].other_roads_m = 2 * 300;
-  EXPECT_NEAR(figures_of(result).other_roads_across, 2.0, 1e-9);
+  result.other_roads_m = 2 * 300;
+  EXPECT_NEAR(figures_of(result).other_roads_across.value(), 2.0, 1e-9);
+}
+
+TEST(SearchFigures, ShareTooFewRoadsBelowTheLeastAndWhereTheyAreUnknownOrNoNumber) {
+  SearchFigures figures;
+  EXPECT_TRUE(shares_too_few_roads(figures));
+  for (const double few : {0.0, 0.39, std::nan("")}) {
+    figures.other_roads_across = few;
+    EXPECT_TRUE(shares_too_few_roads(figures)) << few;
+  }
+  figures.other_roads_across = kMinOtherRoadsAcross;
+  EXPECT_FALSE(shares_too_few_roads(figures));
 }
 
 TEST(SearchFigures, ASmallerRegionLeavesChanceLessRoom) {

@@ -49,8 +49,7 @@ void note_other_reader(const std::string& feature_map, const std::string& reader
 
 std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const DetectorChoice& choice) {
   note_missing_network(choice);
-  const Detectors detectors(choice);
-  auto detector = detectors.for_map(map.imagery_reader);
+  auto detector = detector_for_map(choice, map.imagery_reader);
   if (map.imagery_and_roads && !is_one_for_both(choice)) {
     fmt::print(
         stderr,
@@ -58,7 +57,7 @@ std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const Detec
         "are fewer where only the other was ingested\n",
         map.name, detector->describe());
   }
-  if (!detectors.include_reader(map.imagery_reader)) {
+  if (!is_reader_of(*detector, map.imagery_reader)) {
     fmt::print(stderr,
                "note: {} was read by {}, and frames are by {}: they find other roads, and fixes are fewer. Name the "
                "map's network with --model, or ingest its imagery anew\n",

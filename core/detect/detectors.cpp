@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <utility>
 
 namespace roadfix {
@@ -9,6 +10,16 @@ namespace {
 
 /// Kind, name and checksum of a network: frames are read in one orientation where the map was read in several.
 std::string_view network_in(std::string_view description) { return description.substr(0, description.find(" gsd_m=")); }
+
+/// The network for imagery is asked first: it reads most maps that are not of roads alone.
+std::shared_ptr<const RoadDetector> chosen_for(
+    std::string_view imagery_reader, const std::function<std::shared_ptr<const RoadDetector>(ComparedWith)>& detector) {
+  if (imagery_reader.empty()) return detector(ComparedWith::kRoads);
+  auto for_imagery = detector(ComparedWith::kImagery);
+  if (is_reader_of(*for_imagery, imagery_reader)) return for_imagery;
+  auto for_roads = detector(ComparedWith::kRoads);
+  return is_reader_of(*for_roads, imagery_reader) ? for_roads : for_imagery;
+}
 
 }  // namespace
 
@@ -18,6 +29,15 @@ bool is_same_reader(std::string_view description, std::string_view other) {
 
 bool is_one_for_both(const DetectorChoice& choice) {
   return !is_left_to_default(choice) || default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);
+}
+
+bool is_reader_of(const RoadDetector& detector, std::string_view imagery_reader) {
+  return imagery_reader.empty() || is_same_reader(imagery_reader, detector.describe());
+}
+
+std::shared_ptr<const RoadDetector> detector_for_map(const DetectorChoice& choice, std::string_view imagery_reader) {
+  if (is_one_for_both(choice)) return make_detector(choice, ComparedWith::kImagery);
+  return chosen_for(imagery_reader, [&](ComparedWith compared) { return make_detector(choice, compared); });
 }
 
 Detectors::Detectors(const DetectorChoice& choice)
@@ -33,12 +53,11 @@ std::shared_ptr<const RoadDetector> Detectors::compared_with(ComparedWith compar
 }
 
 std::shared_ptr<const RoadDetector> Detectors::for_map(std::string_view imagery_reader) const {
-  const bool by_the_one_for_roads = is_same_reader(imagery_reader, for_roads_->describe());
-  return imagery_reader.empty() || by_the_one_for_roads ? for_roads_ : for_imagery_;
+  return chosen_for(imagery_reader, [&](ComparedWith compared) { return compared_with(compared); });
 }
 
 bool Detectors::include_reader(std::string_view imagery_reader) const {
-  return imagery_reader.empty() || is_same_reader(imagery_reader, for_map(imagery_reader)->describe());
+  return is_reader_of(*for_map(imagery_reader), imagery_reader);
 }
 
 std::string Detectors::describe() const {

@@ -15,6 +15,12 @@ bool is_one_for_both(const DetectorChoice& choice);
 /// Whether two describe() tell of one network, or are equal: a picture is read in more orientations or not.
 bool is_same_reader(std::string_view description, std::string_view other);
 
+/// What Detectors::for_map() gives, without loading a network that is not asked. Throws what make_detector() does.
+std::shared_ptr<const RoadDetector> detector_for_map(const DetectorChoice& choice, std::string_view imagery_reader);
+
+/// Whether the detector for frames over a map is the one that read its imagery, if it has any.
+bool is_reader_of(const RoadDetector& detector, std::string_view imagery_reader);
+
 class Detectors {
  public:
   /// Throws what make_detector() does.

@@ -54,6 +54,15 @@ TEST_F(TwoNetworks, KnowWhetherTheyReadTheMap) {
   EXPECT_FALSE(detectors_->include_reader("tree map=probabilistic gsd_m=0.5"));
 }
 
+TEST_F(TwoNetworks, AreMadeByThemselvesForOneMapAsTheyAreChosenOfBoth) {
+  for (const std::string& of_map : {std::string(), reader(ComparedWith::kImagery), reader(ComparedWith::kRoads),
+                                    std::string("tree map=probabilistic gsd_m=0.5")}) {
+    const auto detector = detector_for_map({}, of_map);
+    EXPECT_EQ(detector->describe(), reads_frames_of(of_map)) << of_map;
+    EXPECT_EQ(is_reader_of(*detector, of_map), detectors_->include_reader(of_map)) << of_map;
+  }
+}
+
 TEST_F(TwoNetworks, AreBothDescribed) {
   EXPECT_EQ(detectors_->describe(),
             reader(ComparedWith::kImagery) + "; over road data " + reader(ComparedWith::kRoads));

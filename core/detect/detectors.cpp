@@ -8,9 +8,6 @@
 namespace roadfix {
 namespace {
 
-/// Kind, name and checksum of a network: frames are read in one orientation where the map was read in several.
-std::string_view network_in(std::string_view description) { return description.substr(0, description.find(" gsd_m=")); }
-
 /// The network for imagery is asked first: it reads most maps that are not of roads alone.
 std::shared_ptr<const RoadDetector> chosen_for(
     std::string_view imagery_reader, const std::function<std::shared_ptr<const RoadDetector>(ComparedWith)>& detector) {
@@ -22,10 +19,6 @@ std::shared_ptr<const RoadDetector> chosen_for(
 }
 
 }  // namespace
-
-bool is_same_reader(std::string_view description, std::string_view other) {
-  return network_in(description) == network_in(other);
-}
 
 bool is_one_for_both(const DetectorChoice& choice) {
   return !is_left_to_default(choice) || default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads);

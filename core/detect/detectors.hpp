@@ -12,9 +12,6 @@ namespace roadfix {
 /// Whether the choice makes one detector for all that frames are compared with.
 bool is_one_for_both(const DetectorChoice& choice);
 
-/// Whether two describe() tell of one network, or are equal: a picture is read in more orientations or not.
-bool is_same_reader(std::string_view description, std::string_view other);
-
 /// What Detectors::for_map() gives, without loading a network that is not asked. Throws what make_detector() does.
 std::shared_ptr<const RoadDetector> detector_for_map(const DetectorChoice& choice, std::string_view imagery_reader);
 

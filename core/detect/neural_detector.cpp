@@ -171,9 +171,8 @@ double NeuralRoadDetector::halo_m() const {
   return 0.5 * network_.overlap_px * network_.gsd_m;
 }
 
-std::string NeuralRoadDetector::describe() const {
-  return fmt::format("neural {} fnv1a64={} gsd_m={} orientations={}", network_.name, checksum_, network_.gsd_m,
-                     options_.orientations);
-}
+std::string NeuralRoadDetector::name() const { return fmt::format("neural {} fnv1a64={}", network_.name, checksum_); }
+
+std::string NeuralRoadDetector::settings() const { return fmt::format("orientations={}", options_.orientations); }
 
 }  // namespace roadfix

@@ -30,7 +30,8 @@ class NeuralRoadDetector : public RoadDetector {
                    const std::stop_token& stop) const override;
   double preferred_gsd_m() const override;
   double halo_m() const override;
-  std::string describe() const override;
+  std::string name() const override;
+  std::string settings() const override;
 
  private:
   class NetPool;

@@ -1,11 +1,28 @@
 #include "core/detect/road_detector.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
 
 namespace roadfix {
+namespace {
+
+constexpr std::string_view kAfterName = " gsd_m=";
+
+std::string_view name_in(std::string_view description) { return description.substr(0, description.find(kAfterName)); }
+
+}  // namespace
+
+std::string RoadDetector::describe() const {
+  return fmt::format("{}{}{} {}", name(), kAfterName, preferred_gsd_m(), settings());
+}
+
+bool is_same_reader(std::string_view description, std::string_view other) {
+  return name_in(description) == name_in(other);
+}
 
 void require_time(const std::stop_token& stop) {
   if (!stop.stop_requested()) return;

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "core/grid/cell_array.hpp"
 
@@ -35,9 +36,17 @@ class RoadDetector {
   virtual double preferred_gsd_m() const = 0;
   /// How far beyond a cell the detector looks: blocks are read with this margin.
   virtual double halo_m() const = 0;
-  /// One line for the provenance of a source: name and all parameters that change the result.
-  virtual std::string describe() const = 0;
+  /// Which detector it is, whatever its settings: its kind, and name and checksum of its network.
+  virtual std::string name() const = 0;
+  /// What changes the result beside preferred_gsd_m(), as "key=value key=value".
+  virtual std::string settings() const = 0;
+  /// One line for the provenance of a source: name() and all parameters that change the result. Maps and feature maps
+  /// keep it: is_same_reader() has to read what has been written.
+  std::string describe() const;
 };
+
+/// Whether two describe() tell of detectors of one name: a picture is read in more orientations or not.
+bool is_same_reader(std::string_view description, std::string_view other);
 
 /// For detectors, between pieces of work: throws Interrupted ("detection-interrupted") once a stop is requested.
 void require_time(const std::stop_token& stop);

@@ -113,13 +113,16 @@ double TreeRoadDetector::halo_m() const {
   return reach_px * options_.gsd_m;
 }
 
-std::string TreeRoadDetector::describe() const {
+std::string TreeRoadDetector::name() const {
+  return options_.map == TreeDetectorOptions::Map::kBinary ? "tree map=binary" : "tree map=probabilistic";
+}
+
+std::string TreeRoadDetector::settings() const {
   const TreeParameters& t = options_.tree;
   const auto optional = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string("-"); };
   return fmt::format(
-      "tree map={} gsd_m={} trees_per_km2={} min_nodes={} alpha={} beta={} gamma={} epsilon={} edge_px={} fan={} "
+      "trees_per_km2={} min_nodes={} alpha={} beta={} gamma={} epsilon={} edge_px={} fan={} "
       "fan_half_width_deg={:g} root_fan={} max_nodes={} max_explored_share={} max_area_px={} min_score={}",
-      options_.map == TreeDetectorOptions::Map::kBinary ? "binary" : "probabilistic", options_.gsd_m,
       options_.trees_per_km2, options_.min_nodes, t.alpha, t.beta, t.gamma, t.epsilon, t.edge_px, t.fan,
       t.fan_half_width.degrees(), t.root_fan, optional(t.max_nodes), optional(t.max_explored_share),
       optional(t.max_area_px), optional(t.min_score));

@@ -30,7 +30,8 @@ class TreeRoadDetector : public RoadDetector {
                    const std::stop_token& stop) const override;
   double preferred_gsd_m() const override { return options_.gsd_m; }
   double halo_m() const override;
-  std::string describe() const override;
+  std::string name() const override;
+  std::string settings() const override;
 
  private:
   TreeDetectorOptions options_;

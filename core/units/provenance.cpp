@@ -24,7 +24,15 @@ std::string credit_of(const Provenance& part) {
   return part.attribution + " (" + part.licence + ")";
 }
 
+constexpr std::string_view kAfterDetector = "; ";
+
 }  // namespace
+
+std::string method_by(std::string_view detector, std::string_view settings) {
+  return std::string(detector).append(kAfterDetector).append(settings);
+}
+
+std::string_view detector_in(std::string_view method) { return method.substr(0, method.find(kAfterDetector)); }
 
 std::string credits_of(std::span<const Provenance> parts) {
   std::vector<std::string> credits;

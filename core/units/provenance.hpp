@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace roadfix {
 
@@ -15,6 +16,12 @@ struct Provenance {
 
   friend bool operator==(const Provenance&, const Provenance&) = default;
 };
+
+/// How the cells of a source of imagery were made: by which detector (RoadDetector::describe()), and what else changes
+/// them. Maps keep it: detector_in() has to read what has been written.
+std::string method_by(std::string_view detector, std::string_view settings);
+/// The detector that method_by() was told.
+std::string_view detector_in(std::string_view method);
 
 /// What the licences ask to be shown beside the content: "attribution (licence)", each once and separated by "; ".
 std::string credits_of(std::span<const Provenance> parts);

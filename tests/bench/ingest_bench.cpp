@@ -98,7 +98,8 @@ class GradientDetector : public RoadDetector {
   }
   double preferred_gsd_m() const override { return 1.0; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "gradient"; }
+  std::string name() const override { return "gradient"; }
+  std::string settings() const override { return {}; }
 };
 
 /// The whole of `ingest` into a new map file.

@@ -77,9 +77,9 @@ class Imagery final : public CellSource {
         gsd_m_(detection_gsd_m(cell_m, detector.preferred_gsd_m(), mosaic_.gsd_m())) {
     require_fine_enough(paths);
     summary_.kind = SourceKind::kImagery;
-    summary_.method =
-        fmt::format("{}; pixels of {} m, values {}..{}, one colour over {} m unseen{}", detector.describe(), gsd_m_,
-                    mosaic_.range().low, mosaic_.range().high, kBlankSideM, settings_of(options));
+    summary_.method = method_by(
+        detector.describe(), fmt::format("pixels of {} m, values {}..{}, one colour over {} m unseen{}", gsd_m_,
+                                         mosaic_.range().low, mosaic_.range().high, kBlankSideM, settings_of(options)));
     summary_.fingerprint = fingerprint(paths, summary_.method);
     summary_.crs = mosaic_.crs();
     summary_.native_gsd_m = mosaic_.gsd_m();

@@ -64,7 +64,7 @@ std::string imagery_reader_of(const MapInfo& info) {
   for (const SourceStatus& source : info.sources) {
     if (!source.complete) continue;
     const bool imagery = source.record.kind == "imagery";
-    const std::string reader = source.record.method.substr(0, source.record.method.find(';'));
+    const std::string reader(detector_in(source.record.method));
     (imagery ? of_readers[reader] : of_roads) += source.blocks_total;
   }
   const auto most = std::ranges::max_element(of_readers, {}, [](const auto& reader) { return reader.second; });

@@ -37,7 +37,8 @@ class BrightnessDetector : public RoadDetector {
   }
   double preferred_gsd_m() const override { return kGsdM; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "brightness"; }
+  std::string name() const override { return "brightness"; }
+  std::string settings() const override { return {}; }
 };
 
 /// Half a square kilometre of streets at 1 m, in UTM 34 north, as a picture with world file.

@@ -23,7 +23,8 @@ class Brightness : public RoadDetector {
   }
   double preferred_gsd_m() const override { return 1.0; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "brightness"; }
+  std::string name() const override { return "brightness"; }
+  std::string settings() const override { return {}; }
 };
 
 class Recordings : public ::testing::Test {

@@ -29,7 +29,8 @@ class DetectorWitness : public RoadDetector {
   }
   double preferred_gsd_m() const override { return 0.5; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "witness"; }
+  std::string name() const override { return "witness"; }
+  std::string settings() const override { return {}; }
 
   mutable GroundImage seen;
   mutable std::uint64_t told_seed = 0;

@@ -25,7 +25,8 @@ class HalfMetreDetector : public RoadDetector {
   CellArray detect(const GroundImage&, double, std::uint64_t, const std::stop_token&) const override { return {}; }
   double preferred_gsd_m() const override { return 0.5; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "none"; }
+  std::string name() const override { return "none"; }
+  std::string settings() const override { return {}; }
 };
 
 TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {

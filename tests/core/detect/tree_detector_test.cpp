@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "tests/support/code_of.hpp"
 
@@ -77,6 +78,16 @@ TEST(CountTrees, ATreeReachesACellNoOftenerThanItsNodes) {
   const double expected = 3000 * 0.09 * 200;  // trees x nodes
   EXPECT_LE(cv::sum(counts.nodes)[0], expected);
   EXPECT_GT(cv::sum(counts.nodes)[0], 0.8 * expected);
+}
+
+TEST(TreeRoadDetector, DescribesItselfAsMapsHaveIt) {
+  const std::string parameters =
+      " gsd_m=0.5 trees_per_km2=3000 min_nodes=3 alpha=0.5 beta=0.8 gamma=0.5 epsilon=4 edge_px=12 fan=7 "
+      "fan_half_width_deg=40 root_fan=16 max_nodes=200 max_explored_share=- max_area_px=- min_score=-";
+  TreeDetectorOptions options;
+  EXPECT_EQ(TreeRoadDetector(options).describe(), "tree map=probabilistic" + parameters);
+  options.map = TreeDetectorOptions::Map::kBinary;
+  EXPECT_EQ(TreeRoadDetector(options).describe(), "tree map=binary" + parameters);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 namespace roadfix {
@@ -27,6 +28,14 @@ TEST(Provenance, CreditsSurviveBeingCombinedAgain) {
   const std::vector once{combined(mixed)};
   EXPECT_EQ(credits_of(once), credits_of(mixed));
   EXPECT_EQ(combined(once), once.front());
+}
+
+TEST(Provenance, TheDetectorOfAMethodIsReadAsMapsHaveIt) {
+  const std::string detector = "neural roadnet-7 fnv1a64=00f3a5d1c2b4e697 gsd_m=1 orientations=1";
+  const std::string method = detector + "; pixels of 1 m, values 0..255, one colour over 16 m unseen";
+  EXPECT_EQ(method_by(detector, "pixels of 1 m, values 0..255, one colour over 16 m unseen"), method);
+  EXPECT_EQ(detector_in(method), detector);
+  EXPECT_EQ(detector_in(detector), detector);
 }
 
 }  // namespace

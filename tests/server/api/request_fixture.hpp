@@ -21,7 +21,8 @@ class NoRoads : public RoadDetector {
   }
   double preferred_gsd_m() const override { return 1.0; }
   double halo_m() const override { return 0.0; }
-  std::string describe() const override { return "none"; }
+  std::string name() const override { return "none"; }
+  std::string settings() const override { return {}; }
 };
 
 inline Fields fields_of(nlohmann::json body, const std::vector<std::string>& known) {

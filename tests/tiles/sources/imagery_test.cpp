@@ -46,7 +46,8 @@ class BlurDetector final : public RoadDetector {
   }
   double preferred_gsd_m() const override { return 1.0; }
   double halo_m() const override { return 8.0; }
-  std::string describe() const override { return "blur"; }
+  std::string name() const override { return "blur"; }
+  std::string settings() const override { return {}; }
 };
 
 TEST(DetectionGsd, DividesTheCellByAPowerOfTwoNearestToWhatIsNeeded) {

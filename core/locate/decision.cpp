@@ -21,6 +21,9 @@ constexpr double kBeyondChance = 4.6;
 // that it fits by chance.
 constexpr double kLikely = 0.5;
 
+// Footprints beyond the border of a prior: so far a vehicle may be of which the prior says a little too little.
+constexpr double kJustOutsideSides = 0.5;
+
 /// How many times as likely as the best mode each mode is.
 std::vector<double> likelihood_ratios(const SearchResult& found) {
   const ScoreBackground& background = found.background;
@@ -104,13 +107,15 @@ void explain_by_chance(Decision& decision, bool bare, std::string explanation) {
   }
 }
 
+/// The side of a square as large as the ground that the best place is compared over.
+double across_m(const SearchFigures& figures) { return std::exp(0.5 * figures.ground); }
+
 std::string too_few_shared_roads(const SearchFigures& figures) {
-  const double across_m = std::exp(0.5 * figures.ground);
   return fmt::format(
       "at the best place frame and map share {:.0f} m of road beside the longest straight ones, and {:.0f} m are "
       "needed, since junctions look alike: use a larger footprint, or fly on to where roads are; the UAV may not be "
       "over this map",
-      figures.other_roads_across.value_or(0.0) * across_m, kMinOtherRoadsAcross * across_m);
+      figures.other_roads_across.value_or(0.0) * across_m(figures), kMinOtherRoadsAcross * across_m(figures));
 }
 
 /// Share of the best mode beside the places around the region, as if those lay in it.
@@ -130,16 +135,26 @@ bool is_known_outside(const SearchResult& found) {
   return surprise_of(found.outside.front().score, others, 1.0) >= kBeyondChance;
 }
 
-std::string fits_outside(const SearchResult& found) {
+std::string fits_outside(const SearchResult& found, const PoseRegion& region, const SearchFigures& figures) {
+  const GridPoint outside = found.outside.front().pose.position;
+  const double apart_m = distance_m(found.modes.front().pose.position, outside);
+  if (region.grown(kJustOutsideSides * across_m(figures), {}).contains(outside)) {
+    return fmt::format(
+        "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
+        "prior and its headings, or give a wider one",
+        apart_m);
+  }
   return fmt::format(
-      "just outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
-      "prior and its headings, or give a wider one",
-      distance_m(found.modes.front().pose.position, found.outside.front().pose.position));
+      "well outside of the prior, {:.0f} m from the best place in it, the roads fit as well or better: check the "
+      "prior; if it is right, this ground repeats and no wider prior helps: use a larger footprint, or fly on and ask "
+      "again",
+      apart_m);
 }
 
 }  // namespace
 
-Decision decide(const SearchResult& found, const Calibration& calibration, double confidence, bool bare) {
+Decision decide(const SearchResult& found, const PoseRegion& region, const Calibration& calibration, double confidence,
+                bool bare) {
   Decision decision;
   if (found.modes.empty() && found.complete()) {
     explain(
@@ -166,7 +181,7 @@ Decision decide(const SearchResult& found, const Calibration& calibration, doubl
   } else if (!few_roads && decision.probability >= confidence) {
     decision.status = FixStatus::kFix;
   } else if (sure_within || (share < 0.5 && (within > kLikely || is_known_outside(found)))) {
-    explain(decision, "better-outside-prior", fits_outside(found));
+    explain(decision, "better-outside-prior", fits_outside(found, region, figures));
   } else if (few_roads) {
     explain_by_chance(decision, bare, too_few_shared_roads(figures));
   } else if (figures.surprise >= kBeyondChance || figures.agreement >= kBeyondChanceDeviations) {

@@ -13,6 +13,7 @@
 #include "core/locate/calibration.hpp"
 #include "core/locate/fix.hpp"
 #include "core/search/search.hpp"
+#include "core/units/pose_region.hpp"
 
 namespace roadfix {
 
@@ -29,8 +30,9 @@ struct Decision {
 
 inline constexpr double kModeShare = 0.01;
 
-/// `bare`: the feature map shows less road than a single one across it (footprint_refusal.hpp), which is said where
-/// chance explains the best place.
-Decision decide(const SearchResult& found, const Calibration& calibration, double confidence, bool bare);
+/// `found` within `region`. `bare`: the feature map shows less road than a single one across it
+/// (footprint_refusal.hpp), which is said where chance explains the best place.
+Decision decide(const SearchResult& found, const PoseRegion& region, const Calibration& calibration, double confidence,
+                bool bare);
 
 }  // namespace roadfix

@@ -122,7 +122,8 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   SearchResult found =
       search(soft_reader(map, soft.cell_m), soft.cell_m, soft, region, search_options_of(options, map));
   sort_out_other_places(map, calibration, cells.nadir_sigma_m, found);
-  const Decision decision = decide(found, calibration, options.confidence, shows_less_than_a_road_across(cells));
+  const Decision decision =
+      decide(found, region, calibration, options.confidence, shows_less_than_a_road_across(cells));
   Fix fix = fix_of(map, found, decision);
   const auto told = std::min(decision.weights.size(), static_cast<std::size_t>(std::max(1, options.search.max_modes)));
   for (std::size_t i = 0; i < told; ++i) {

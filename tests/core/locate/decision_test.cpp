@@ -10,6 +10,8 @@
 namespace roadfix {
 namespace {
 
+using ::testing::HasSubstr;
+
 /// A best place of `score` among rivals that thin out from `second` to `lowest`.
 SearchResult found(double score, double second, double lowest) {
   SearchResult result;
@@ -33,9 +35,12 @@ SearchResult found(double score, double second, double lowest) {
   return result;
 }
 
-/// Of a frame that shows roads enough.
-Decision decided(const SearchResult& result, double confidence = 0.99) {
-  return decide(result, *shipped_calibration(), confidence, false);
+/// Within 10 m of the best place, of a frame that shows roads enough.
+Decision decided(const SearchResult& result, double confidence = 0.99, bool bare = false,
+                 const Calibration& calibration = *shipped_calibration()) {
+  PoseRegion region;
+  region.box = {{-10.0, -10.0}, {10.0, 10.0}};
+  return decide(result, region, calibration, confidence, bare);
 }
 
 TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
@@ -58,13 +63,13 @@ TEST(Decision, WhatChanceExplainsOfABareFrameHasTooFewRoads) {
   for (const double other_roads_m : {150.0, 800.0}) {
     SearchResult result = found(0.38, 0.35, 0.2);
     result.other_roads_m = other_roads_m;
-    const Decision decision = decide(result, *shipped_calibration(), 0.99, kBare);
+    const Decision decision = decided(result, 0.99, kBare);
     EXPECT_EQ(decision.status, FixStatus::kNoFix);
     EXPECT_EQ(decision.reason, "too-few-roads");
     EXPECT_THAT(decision.explanation, ::testing::HasSubstr("less road than a single one"));
   }
-  EXPECT_EQ(decide(found(0.8, 0.35, 0.2), *shipped_calibration(), 0.99, kBare).status, FixStatus::kFix);
-  EXPECT_EQ(decide(found(0.85, 0.84, 0.7), *shipped_calibration(), 0.99, kBare).reason, "several-places-fit");
+  EXPECT_EQ(decided(found(0.8, 0.35, 0.2), 0.99, kBare).status, FixStatus::kFix);
+  EXPECT_EQ(decided(found(0.85, 0.84, 0.7), 0.99, kBare).reason, "several-places-fit");
 }
 
 TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
@@ -92,7 +97,7 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   EXPECT_NE(decision.explanation.find("vouches for no more than 0.9965"), std::string::npos) << decision.explanation;
   Calibration doubtful = *shipped_calibration();
   doubtful.bias -= 20.0;
-  const Decision doubted = decide(result, doubtful, 0.9999, false);
+  const Decision doubted = decided(result, 0.9999, false, doubtful);
   EXPECT_EQ(doubted.reason, "below-confidence");
   EXPECT_EQ(doubted.explanation.find("vouches"), std::string::npos) << doubted.explanation;
   EXPECT_EQ(decision.weights.size(), 1U);
@@ -126,6 +131,14 @@ class DecisionBesideOtherPlacesOutside : public ::testing::Test {
     }
     return decided(result);
   }
+
+  /// So far to the east, and as good.
+  static Decision beside_one_at(double east_m) {
+    SearchResult result = found(0.8, 0.35, 0.2);
+    result.outside = {result.modes[0]};
+    result.outside[0].pose.position.east_m = east_m;
+    return decided(result);
+  }
 };
 
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsBetterLeavesNoFix) {
@@ -135,6 +148,15 @@ TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsBetterLeavesNoFix) {
   EXPECT_NE(decision.explanation.find("60 m"), std::string::npos) << decision.explanation;
   EXPECT_LT(decision.probability, 0.01);
   EXPECT_EQ(decision.weights.front(), decision.probability);
+}
+
+TEST_F(DecisionBesideOtherPlacesOutside, AWiderPriorIsAdvisedForOneWithinHalfAFootprintOfItsBorderAlone) {
+  EXPECT_THAT(beside_one_at(205.0).explanation, HasSubstr("just outside of the prior, 205 m from the best place"));
+  EXPECT_THAT(beside_one_at(205.0).explanation, HasSubstr("give a wider one"));
+  const Decision far = beside_one_at(215.0);
+  EXPECT_EQ(far.reason, "better-outside-prior");
+  EXPECT_THAT(far.explanation, HasSubstr("well outside of the prior, 215 m from the best place"));
+  EXPECT_THAT(far.explanation, HasSubstr("this ground repeats and no wider prior helps"));
 }
 
 TEST_F(DecisionBesideOtherPlacesOutside, OneThatFitsNearlyAsWellLeavesNoFixEither) {
@@ -183,7 +205,7 @@ TEST(Decision, WeightsOfPlacesThatFitAsWellAsASureOneShareWhatItLeaves) {
   SearchResult result = found(0.8, 0.35, 0.2);
   result.modes.push_back(result.modes.front());
   result.modes[1].score = result.modes.front().score;
-  const Decision decision = decide(result, sure, 0.5, false);
+  const Decision decision = decided(result, 0.5, false, sure);
   ASSERT_EQ(decision.weights.size(), 3U);
   EXPECT_EQ(decision.weights[0], 0.9);
   EXPECT_NEAR(decision.weights[1], 0.05, 1e-9);

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <exception>
+#include <utility>
 
-#include "core/units/file.hpp"
 #include "schema/schema.hpp"
 
 namespace roadfix::server {
@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::int64_t kPageBytes = 4096;
 constexpr std::int64_t kMiB = 1 << 20;
-constexpr int kVersion = 4;  // of what a state holds, too
+constexpr std::int64_t kLogBytes = 4 * kMiB;  // SQLite moves a thousand pages of its log into the file
+constexpr int kVersion = 4;                   // of what a state holds, too
 
 IoFailure not_writable(const std::filesystem::path& path) {
   return {"track-store-read-only",
@@ -31,9 +32,17 @@ void require_writable_folder(const std::filesystem::path& path) {
   if (errno == EACCES || errno == EROFS) throw not_writable(path);
 }
 
-/// SQLite does not tell a full disk from its own limit: whoever reads this can.
-IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes) {
-  const auto free_bytes = free_bytes_beside(path);
+/// SQLite does not tell a full disk from its own limit: what the disk has free does. Where it has next to nothing, not
+/// even an end of a track finds room in the log.
+IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes, std::optional<std::int64_t> free_bytes) {
+  if (free_bytes && *free_bytes < kLogBytes) {
+    return {
+        kTrackStoreFull,
+        fmt::format("{}: no space left for the tracks: their disk has {} MiB free, and their log takes up to {} MiB: "
+                    "nothing was changed; make room on the disk (to end tracks takes some, too), then send the "
+                    "request again",
+                    path.string(), *free_bytes / kMiB, kLogBytes / kMiB)};
+  }
   const std::string disk = free_bytes ? fmt::format(", and its disk has {} MiB free", *free_bytes / kMiB) : "";
   return {
       kTrackStoreFull,
@@ -42,15 +51,15 @@ IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes) {
                   path.string(), max_bytes / kMiB, disk)};
 }
 
-/// What a refusal of SQLite means for this store, which may have `max_bytes`.
+/// What a refusal of SQLite means for this store, which may have `max_bytes` on a disk with so much room.
 std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail,
-                               std::int64_t max_bytes) {
+                               std::int64_t max_bytes, const TrackFile::FreeBytes& free_bytes) {
   using sqlite::Failure;
   using std::make_exception_ptr;
   const std::string file = path.string();
   switch (failure) {
     case Failure::kFull:
-      return make_exception_ptr(full(path, max_bytes));
+      return make_exception_ptr(full(path, max_bytes, free_bytes(path)));
     case Failure::kNotWritable:
     case Failure::kMoved:
       return make_exception_ptr(not_writable(path));
@@ -86,12 +95,13 @@ bool is_of_another_program(sqlite::Connection& connection, std::int64_t version)
 
 }  // namespace
 
-TrackFile::TrackFile(const std::filesystem::path& path, std::int64_t max_bytes) : path_(path) {
+TrackFile::TrackFile(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes)
+    : path_(path), free_bytes_(std::move(free_bytes)) {
   const std::int64_t version = with([&] {
     require_writable_folder(path_);
     connection_.emplace(path_, sqlite::Access::kCreate,
-                        [max_bytes](const auto& file, sqlite::Failure failure, const std::string& detail) {
-                          return store_error(file, failure, detail, max_bytes);
+                        [this, max_bytes](const auto& file, sqlite::Failure failure, const std::string& detail) {
+                          return store_error(file, failure, detail, max_bytes, free_bytes_);
                         });
     // Who holds the file holds it as long as it runs, and others ask in the meantime.
     connection_->execute("PRAGMA busy_timeout = 0; PRAGMA locking_mode = EXCLUSIVE");
@@ -122,11 +132,11 @@ TrackFile::TrackFile(const std::filesystem::path& path, std::int64_t max_bytes) 
   identity_ = identity_of(path_);
 }
 
-double TrackFile::filled(std::optional<std::int64_t> free_bytes) {
+double TrackFile::filled() {
   const auto pages = [&](const char* name) { return sqlite::number(*connection_, fmt::format("PRAGMA {}", name)); };
   const std::int64_t now = pages("page_count");
   std::int64_t most = pages("max_page_count");
-  if (free_bytes) most = std::min(most, now + *free_bytes / kPageBytes);
+  if (const auto free_bytes = free_bytes_(path_)) most = std::min(most, now + *free_bytes / kPageBytes);
   return static_cast<double>(now - pages("freelist_count")) / static_cast<double>(most);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,8 +21,13 @@ inline constexpr const char* kTrackStoreFull = "track-store-full";
 
 class TrackFile {
  public:
+  /// Of the disk of the file.
+  using FreeBytes = std::function<std::optional<std::int64_t>(const std::filesystem::path& file)>;
+
   /// Creates the file and its tables where there are none.
-  TrackFile(const std::filesystem::path& path, std::int64_t max_bytes);
+  TrackFile(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes);
+  TrackFile(const TrackFile&) = delete;
+  TrackFile& operator=(const TrackFile&) = delete;
 
   /// Runs work on the connection, one caller at a time.
   template <typename Work>
@@ -38,15 +44,14 @@ class TrackFile {
   // Of work that runs:
 
   sqlite::Connection& connection() { return *connection_; }
-  /// How far the file, as large as it may become on a disk with so much room, is filled, 0 to 1.
-  double filled(std::optional<std::int64_t> free_bytes);
+  /// How far the file, as large as it may become on its disk, is filled, 0 to 1.
+  double filled();
   /// Where it is to write: SQLite goes on with a file that was deleted, and what it writes there is lost at the end of
   /// the process. Throws IoFailure "track-store-unavailable".
   void require_file() const;
   /// What failed before is over. A track that begins is too small to show that.
   void has_room() { problem_.reset(); }
 
-  const std::filesystem::path& path() const { return path_; }
   /// What failed last, or that the file was deleted; nullopt where nothing did.
   std::optional<std::string> problem() const;
 
@@ -54,6 +59,7 @@ class TrackFile {
   std::optional<std::string> missing_file() const;
 
   const std::filesystem::path path_;
+  const FreeBytes free_bytes_;
   mutable std::mutex mutex_;
   std::optional<sqlite::Connection> connection_;
   std::optional<FileIdentity> identity_;  ///< of the file when it was opened

@@ -46,9 +46,9 @@ bool delete_oldest_history(sqlite::Connection& connection) {
 }
 
 /// Flights that are over give way to those that come: these have half of the room at least.
-void make_room(TrackFile& file, std::optional<std::int64_t> free_bytes) {
+void make_room(TrackFile& file) {
   constexpr double kMostFilled = 0.5;
-  while (file.filled(free_bytes) > kMostFilled && delete_oldest_history(file.connection())) {
+  while (file.filled() > kMostFilled && delete_oldest_history(file.connection())) {
   }
 }
 
@@ -97,7 +97,7 @@ std::vector<StoredStep> last_steps(sqlite::Connection& connection, const std::st
 const char* to_string(TrackEnd end) { return end == TrackEnd::kExpired ? "expired" : "finished"; }
 
 TrackStore::TrackStore(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes)
-    : file_(std::make_unique<TrackFile>(path, max_bytes)), free_bytes_(std::move(free_bytes)) {}
+    : file_(std::make_unique<TrackFile>(path, max_bytes, std::move(free_bytes))) {}
 
 TrackStore::~TrackStore() = default;
 
@@ -109,7 +109,7 @@ void TrackStore::add(const StoredTrack& t) {
     sqlite::Connection& connection = file_->connection();
     with_room(connection, [&] {
       sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
-      make_room(*file_, free_bytes_(file_->path()));
+      make_room(*file_);
       sqlite::Statement(connection,
                         fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
           .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
@@ -209,7 +209,7 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
           .run();
       if (how == TrackEnd::kFinished) delete_steps(connection, id);
       forget_ended(connection);
-      make_room(*file_, free_bytes_(file_->path()));
+      make_room(*file_);
       transaction.commit();
       return steps;
     });

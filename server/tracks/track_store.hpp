@@ -82,7 +82,6 @@ class TrackStore {
 
  private:
   std::unique_ptr<TrackFile> file_;
-  FreeBytes free_bytes_;
 };
 
 }  // namespace roadfix::server

@@ -200,6 +200,18 @@ TEST(TrackStore, StaysFullThoughATrackBeginsAndSaysWhoseLimitItMayBe) {
   EXPECT_FALSE(store.problem());
 }
 
+TEST(TrackStore, AdvisesToEndTracksWhereItsLimitIsReachedButNotWhereTheDiskIsFull) {
+  for (const bool disk_is_full : {false, true}) {
+    const testing::TemporaryFolder folder;
+    TrackStore store(folder / "tracks.sqlite", 1 << 20, [&](const auto&) { return disk_is_full ? 100'000 : kPlenty; });
+    store.add(track("a"));
+    const std::string refusal = message_of([&] { (void)store.add_step("a", 5, state(2 << 20), {0, 0, "first"}); });
+    EXPECT_THAT(refusal, HasSubstr(disk_is_full ? "their disk has 0 MiB free" : "its disk has 1024 MiB free"));
+    EXPECT_THAT(refusal,
+                HasSubstr(disk_is_full ? "changed; make room on the disk" : "changed; end tracks or make room"));
+  }
+}
+
 TEST(TrackStore, IsHeldByOneServiceAtATime) {
   const testing::TemporaryFolder folder;
   auto first = std::make_unique<TrackStore>(folder / "tracks.sqlite", kPlenty);

@@ -31,6 +31,10 @@ double to_number(const std::string& name, const json& value) {
   throw InvalidField("bad-parameter", name, fmt::format("'{}' must be a number, not '{}'", name, shown(value)));
 }
 
+bool has_lists(const json& list) {
+  return std::ranges::any_of(list, [](const json& element) { return element.is_array(); });
+}
+
 void require_in(const Range& range, const std::string& name, double value) {
   const bool below = range.min_is_open ? value <= range.min : value < range.min;
   if (!below && value <= range.max) return;
@@ -190,14 +194,15 @@ std::optional<std::vector<double>> Fields::optional_numbers(const std::string& n
     const auto& text = value->json.get_ref<const std::string&>();
     const auto commas = static_cast<std::size_t>(std::ranges::count(text, ','));
     if (commas < max) numbers = numbers_in(text, ',').value_or(std::vector<double>());
-  } else if (value->json.is_array() && value->json.size() <= max) {
+  } else if (value->json.is_array() && value->json.size() <= max && !has_lists(value->json)) {
     for (const json& element : value->json) numbers.push_back(to_number(name, element));
   }
   if (numbers.size() < min || numbers.size() > max) {
-    throw InvalidField("bad-parameter", name,
-                       fmt::format("'{}' must be {} numbers {}, not '{}'", name,
-                                   min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max),
-                                   value->from_text ? "with commas between them" : "in a list", shown(value->json)));
+    throw InvalidField(
+        "bad-parameter", name,
+        fmt::format("'{}' must be {} numbers {}, not '{}'", name,
+                    min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max),
+                    value->from_text ? "with commas between them" : "in one flat list", shown(value->json)));
   }
   return numbers;
 }

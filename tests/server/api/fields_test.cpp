@@ -67,7 +67,10 @@ TEST(Fields, SayHowSeveralNumbersAreGiven) {
   EXPECT_THAT(complaint(Fields(http::Parameters{{"bbox", "1 2 3 4"}})), ::testing::HasSubstr("4 numbers with commas"));
   Fields body;
   body.add(json{{"bbox", "1,2,3,4"}}, known);
-  EXPECT_THAT(complaint(body), ::testing::HasSubstr("4 numbers in a list"));
+  EXPECT_THAT(complaint(body), ::testing::HasSubstr("4 numbers in one flat list"));
+  Fields rows;
+  rows.add(json{{"bbox", {{1, 2}, {3, 4}}}}, known);
+  EXPECT_THAT(complaint(rows), ::testing::HasSubstr("4 numbers in one flat list, not '[[1,2],[3,4]]'"));
 }
 
 TEST(Fields, GiveALongTextAwayOnce) {

@@ -22,7 +22,9 @@
 #include "cli/picture_files.hpp"
 #include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
+#include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "tiles/export/side_files.hpp"
@@ -54,6 +56,18 @@ void require_png_name(const std::string& target) {
   throw InvalidInput("feature-map-not-png",
                      fmt::format("{}: a feature map is a PNG, whose alpha says what was observed: let its name end in "
                                  ".png; gdal_translate makes other formats of it",
+                                 target));
+}
+
+/// Where the target was forgotten, the last frame is not to be lost.
+void require_no_other_picture(const std::string& target) {
+  if (!std::filesystem::is_regular_file(target) || is_standard_output(target)) return;
+  const std::string there = read_file(target).value_or("");
+  const Bytes bytes(reinterpret_cast<const std::uint8_t*>(there.data()), there.size());
+  if (!read_image_header(bytes) || is_feature_map(bytes)) return;
+  throw InvalidInput("target-is-picture",
+                     fmt::format("{} is a picture and no feature map of roadfix: the last name is what gets written, "
+                                 "so name a new file or a folder",
                                  target));
 }
 
@@ -148,6 +162,7 @@ std::unique_ptr<RoadDetector> detector_of(const DetectOptions& options) {
 
 void detect(const DetectOptions& options, const Job& job, const RoadDetector& detector) {
   require_apart({job.target}, {job.image});
+  require_no_other_picture(job.target);
   require_own_world_file(job);
   const Picture picture = read_picture(options, job.image, detector);
   const api::Features features = api::detected(picture.frame, {detector, options.cell_m, {}, options.seed});
@@ -193,6 +208,12 @@ void require_own_targets(const std::filesystem::path& folder, const std::vector<
 
 void detect_all(const DetectOptions& options, const std::vector<std::string>& pictures, const std::string& target) {
   require_name(target);
+  if (std::filesystem::exists(target) && !std::filesystem::is_directory(target)) {
+    throw InvalidInput("target-not-folder",
+                       fmt::format("{} is no folder: of several pictures the feature maps go into a folder, which is "
+                                   "the last name",
+                                   target));
+  }
   const auto images = picture_files(pictures, kPictureEndings);
   require_own_targets(target, images);
   std::filesystem::create_directories(target);

@@ -72,6 +72,35 @@ TEST_F(DetectCommand, WritesNoPngUnderTheNameOfAnotherFormat) {
   }
 }
 
+TEST_F(DetectCommand, OverwritesNoPictureButAFeatureMap) {
+  const std::string before = text_of(folder / "frame.png");
+  std::filesystem::create_directory(folder / "photos");
+  for (const char* other : {"other.png", "other", "photos/frame.png"}) {
+    std::filesystem::copy_file(folder / "frame.png", folder / other);
+  }
+  const std::string frame = "detect --detector tree --gsd 1 " + (folder / "frame.png").string() + " ";
+  for (const char* other : {"other.png", "other", "photos"}) {
+    const ProgramResult result = run_program(folder.path(), frame + (folder / other).string());
+    EXPECT_EQ(result.code, 1) << other;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("[target-is-picture]"), HasSubstr("the last name is what gets written")));
+  }
+  for (const char* other : {"other.png", "other", "photos/frame.png"}) {
+    EXPECT_EQ(text_of(folder / other), before) << other;
+  }
+  for (int times = 0; times < 2; ++times) EXPECT_EQ(detect("--gsd 1").code, 0);
+}
+
+TEST_F(DetectCommand, WritesSeveralPicturesIntoAFolderAlone) {
+  std::string names;
+  for (const char* name : {"first.png", "second.png", "third.png"}) {
+    std::filesystem::copy_file(folder / "frame.png", folder / name);
+    names += " " + (folder / name).string();
+  }
+  const ProgramResult result = run_program(folder.path(), "detect --detector tree --gsd 1" + names);
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("third.png is no folder"), HasSubstr("[target-not-folder]")));
+}
+
 TEST_F(DetectCommand, SaysThatOneDetectorForAllMapsDoesNotCareWhatTheyShow) {
   EXPECT_THAT(detect("--gsd 1 --compare-with roads").err, HasSubstr("[option-without-effect]"));
   EXPECT_EQ(detect("--gsd 1").code, 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geodesy/shown_ground.hpp"
 #include "core/grid/cell_moments.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/units/error.hpp"
@@ -41,9 +42,9 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   }
   const GridPoint place = map.zone.project(query.position);
   if (!map.extent.empty() && !contains({place, query.radius_m}, nearest(map.extent, place))) {
-    throw InvalidInput(
-        "prior-outside-map",
-        fmt::format("the place lies outside the map {}: check it; latitude and longitude may be swapped", map.name));
+    throw InvalidInput("prior-outside-map", fmt::format("the place lies outside the map {}, {}: check it", map.name,
+                                                        shown_ground_beside({query.position, query.position},
+                                                                            query.radius_m, map.zone, map.extent)));
   }
   const RoadGrid ground = around(map, place, query.footprint_m);
   const double cell_m = ground.geometry.cell_m;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geodesy/shown_ground.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix {
@@ -45,11 +46,10 @@ bool meet(const GridCircle& circle, const GridBox& box) {
   return !box.empty() && contains(circle, nearest(box, circle.centre));
 }
 
-void require_on_map(const MapView& map, bool condition) {
-  if (condition) return;
-  throw InvalidInput(
-      "prior-outside-map",
-      fmt::format("the prior lies outside the map {}: check its position, or search without it", map.name));
+[[noreturn]] void refuse_outside(const MapView& map, const GeoBox& asked, double within_m) {
+  throw InvalidInput("prior-outside-map",
+                     fmt::format("the prior lies outside the map {}, {}: check its position, or search without it",
+                                 map.name, shown_ground_beside(asked, within_m, map.zone, map.extent)));
 }
 
 /// The largest difference to that in the middle of the box.
@@ -74,13 +74,14 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
   region.box = map.extent;
   if (prior.circle) {
     region.circle = circle_in(map.zone, *prior.circle);
-    require_on_map(map, meet(*region.circle, map.extent));
     const auto& [centre, radius_m] = *region.circle;
+    const LatLon told = prior.circle->centre;
+    if (!meet(*region.circle, map.extent)) refuse_outside(map, {told, told}, radius_m);
     region.box = intersection(region.box, grown({centre, centre}, radius_m));
   }
   if (prior.box) {
     region.quads = quads_in(map, *prior.box);
-    require_on_map(map, !within(region.quads, map.extent).empty());
+    if (within(region.quads, map.extent).empty()) refuse_outside(map, *prior.box, 0.0);
     region.box = within(region.quads, region.box);
     if (region.circle && !meet(*region.circle, region.box)) {
       throw InvalidInput("prior-contradictory",

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/geodesy/shown_ground.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file_beside.hpp"
 #include "tiles/export/map_dataset.hpp"
@@ -74,8 +75,8 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
     if (region) return *region;
   }
   throw InvalidInput("region-outside-map",
-                     "the region to export does not touch the observed part of the map. roadfix "
-                     "info shows where that is");
+                     fmt::format("the region to export does not touch the ground of the map, {}: check the region",
+                                 shown_ground(info.settings.zone, info.extent)));
 }
 
 struct Monitor {

@@ -1,6 +1,6 @@
 #include "core/locate/prior.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
@@ -51,6 +51,21 @@ TEST(RegionOf, IsWhatCircleAndBoxHaveInCommon) {
   prior.circle->radius_m = 100.0;
   prior.box = GeoBox{map.zone.unproject({436'000.0, 4'176'000.0}), {42.0, 45.0}};
   EXPECT_EQ(testing::code_of([&] { region_of(map, prior); }), "prior-contradictory") << "each of them is on the map";
+}
+
+TEST(RegionOf, SaysWhereTheMapLiesOfAPriorOutsideOfIt) {
+  const MapView map = map_of(32637, {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}});
+  const LatLon middle = map.zone.unproject({435'000.0, 4'175'000.0});
+  const LatLon swapped{middle.lon_deg, middle.lat_deg};
+  Prior circle;
+  circle.circle = GeoCircle{swapped, 100.0};
+  Prior box;
+  box.box = GeoBox{swapped, {swapped.lat_deg + 0.1, swapped.lon_deg + 0.1}};
+  for (const Prior& prior : {circle, box}) {
+    EXPECT_THAT(testing::message_of([&] { region_of(map, prior); }),
+                ::testing::HasSubstr("outside the map country, which shows latitude 37.67"));
+    EXPECT_THAT(testing::message_of([&] { region_of(map, prior); }), ::testing::HasSubstr("may be swapped"));
+  }
 }
 
 MapView far_north() {  // where grid north is 2.6 degrees off

@@ -22,6 +22,10 @@ using ::testing::StartsWith;
 TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
   EXPECT_EQ(code_of(folder / "out.tif", {.cell_m = 3.0}), "cell-size-not-in-map");
   EXPECT_EQ(code_of(folder / "out.tif", {.box = GridBox{{0, 0}, {100, 100}}}), "region-outside-map");
+  EXPECT_THAT(testing::message_of([&] {
+                export_map(MapReader(path), folder / "out.tif", {.box = GridBox{{0, 0}, {100, 100}}});
+              }),
+              HasSubstr("ground of the map, which shows latitude "));
   EXPECT_EQ(code_of(folder / "no/such/folder/out.tif", {}), "export-failed");
   std::stop_source stop;
   stop.request_stop();

@@ -25,9 +25,6 @@ class Detectors {
   /// One for all maps.
   explicit Detectors(std::shared_ptr<const RoadDetector> detector);
 
-  /// Whether one of them reads whatever its feature maps are compared with: is_one_for_both().
-  bool are_one() const { return for_imagery_ == for_roads_; }
-
   std::shared_ptr<const RoadDetector> compared_with(ComparedWith compared) const;
 
   /// `imagery_reader` is MapView::imagery_reader. A map that is read by a detector that is not among these gets the one

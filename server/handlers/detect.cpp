@@ -10,7 +10,6 @@
 #include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
-#include "server/http/errors.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -20,13 +19,8 @@ constexpr std::array<api::Media, 2> kDetectFormats{{{"png", "image/png"}, {"json
 
 std::vector<std::string> detect_fields() { return joined({api::frame_fields(), {"compare_with", "format"}}); }
 
-ComparedWith compared_with(const api::Fields& fields, const Detectors& detectors) {
+ComparedWith compared_with(const api::Fields& fields) {
   const std::string word = fields.word("compare_with", kComparedWithNames);
-  if (fields.has("compare_with") && detectors.are_one()) {
-    throw http::InvalidField("option-without-effect", "compare_with",
-                             "'compare_with' does nothing in this service, where one detector reads for both imagery "
-                             "and roads: leave it out");
-  }
   return static_cast<ComparedWith>(std::ranges::find(kComparedWithNames, word) - kComparedWithNames.begin());
 }
 
@@ -34,7 +28,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
   const api::Content content = api::read_content(request, joined({detect_fields(), {"image"}}), service.limits);
   const std::string_view format = api::media_asked_for(request, content.fields, kDetectFormats).name;
   const api::TimeLimit limit(request.deadline, request.abandoned);
-  const auto detector = service.detectors.compared_with(compared_with(content.fields, service.detectors));
+  const auto detector = service.detectors.compared_with(compared_with(content.fields));
   const api::Features features = api::detected(content, {*detector, kDefaultCellM, limit.token()}, service.limits);
   http::Response response;
   if (format == "json") {

@@ -122,16 +122,6 @@ TEST_F(BadRequests, WithAFrameOfMoreGroundThanADetectorCanLookAtAreTooLarge) {
             "413 ground-too-large");
 }
 
-TEST_F(BadRequests, WithWhatTheOneDetectorForAllComparisonsDoesNotCareAboutNameIt) {
-  const std::string frame = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
-  const std::string detect = "/v1/detect?gsd_m=1";
-  for (const std::string compared : {"imagery", "roads"}) {
-    EXPECT_EQ(refusal(client_.Post(detect + "&compare_with=" + compared, frame, "image/png")),
-              "400 option-without-effect compare_with");
-  }
-  EXPECT_EQ(refusal(client_.Post(detect + "&compare_with=x", frame, "image/png")), "400 bad-parameter compare_with");
-}
-
 TEST_F(BadRequests, WithNumbersBeyondAllSenseNameThem) {
   const std::string png = testing::text_of(encode_feature_map(CellArray(64, 64, kNoRoad)));
   for (const std::string field : {"time_us", "time_limit_s", "proof_s", "radius_m", "nadir_col", "max_modes"}) {

@@ -29,7 +29,6 @@ class TwoNetworks : public ::testing::Test {
 };
 
 TEST_F(TwoNetworks, FramesOverRoadDataAreReadByTheNetworkForRoads) {
-  EXPECT_FALSE(detectors_->are_one());
   EXPECT_EQ(reads_frames_of(""), reader(ComparedWith::kRoads));
 }
 
@@ -70,7 +69,6 @@ TEST_F(TwoNetworks, AreBothDescribed) {
 
 TEST(OneDetector, ReadsTheFramesOfAllMaps) {
   const Detectors detectors({"tree", {}, 1, {}});
-  EXPECT_TRUE(detectors.are_one());
   EXPECT_EQ(detectors.compared_with(ComparedWith::kImagery), detectors.compared_with(ComparedWith::kRoads));
   EXPECT_EQ(detectors.describe(), detectors.for_map("")->describe());
   EXPECT_EQ(detectors.for_map("")->describe(), detectors.for_map("neural roadnet-7 fnv1a64=1")->describe());

@@ -21,9 +21,9 @@ Odometry repeated(const Odometry& one, double times) {
   const double half_turn = 0.5 * one.turn.wrapped().radians();
   const double sine = std::sin(half_turn);
   const double length = std::abs(sine) < 1e-9 ? times : std::sin(times * half_turn) / sine;
-  const double direction = (times - 1.0) * half_turn;
-  return {length * (one.forward_m * std::cos(direction) - one.right_m * std::sin(direction)),
-          length * (one.forward_m * std::sin(direction) + one.right_m * std::cos(direction)), times * one.turn};
+  const GridPose along_chord{{}, Angle::radians((times - 1.0) * half_turn)};
+  const GridPoint end = moved(along_chord, {length * one.forward_m, length * one.right_m, {}}).position;
+  return {end.north_m, end.east_m, times * one.turn};
 }
 
 }  // namespace

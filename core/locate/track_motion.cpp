@@ -86,10 +86,8 @@ double StepMotion::follow_odometry(Filter& filter, bool coasted) {
 }
 
 void StepMotion::learn_velocity(const Odometry& odometry) {
-  const double sine = std::sin(odometry.turn.radians());
-  const double cosine = std::cos(odometry.turn.radians());
-  learned_.velocity = {(odometry.forward_m * cosine + odometry.right_m * sine) / told_.seconds,
-                       (odometry.right_m * cosine - odometry.forward_m * sine) / told_.seconds};
+  const BodyOffset back = offset_from(moved({}, odometry), {});
+  learned_.velocity = {-back.forward_m / told_.seconds, -back.right_m / told_.seconds};
   learned_.turn_rate_rad_s = odometry.turn.radians() / told_.seconds;
 }
 

@@ -142,6 +142,14 @@ void learn_headings(const BenchArguments& arguments, const nlohmann::json& origi
   fmt::print(out, "learned from the headings of {} right answers: {}\n", learned.right, file);
 }
 
+/// Of imagery.
+std::shared_ptr<const RoadDetector> detector_of_maps(const BenchArguments& arguments, const Detectors& of_frames) {
+  if (!arguments.map_orientations) return of_frames.compared_with(ComparedWith::kImagery);
+  DetectorChoice choice = arguments.detector;
+  choice.orientations = *arguments.map_orientations;
+  return make_detector(choice, ComparedWith::kImagery);
+}
+
 void run_bench(BenchArguments& arguments) {
   const bench::Manifest manifest = manifest_of(arguments);
   const std::initializer_list<std::filesystem::path> outputs = {arguments.json_file, arguments.calibrate_file,
@@ -150,9 +158,7 @@ void run_bench(BenchArguments& arguments) {
   require_writable(outputs);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const Detectors detectors(arguments.detector);
-  DetectorChoice of_maps = arguments.detector;
-  of_maps.orientations = arguments.map_orientations.value_or(of_maps.orientations);
-  const std::unique_ptr<RoadDetector> map_detector = make_detector(of_maps, ComparedWith::kImagery);
+  const std::shared_ptr<const RoadDetector> map_detector = detector_of_maps(arguments, detectors);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
   bench::BenchOptions& options = arguments.options;
@@ -229,7 +235,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");
   add_detector_options(*command, a->detector);
   command->add_option("--map-orientations", a->map_orientations, "As --orientations, for maps; default: the same")
-      ->check(CLI::IsMember({1, 4, 8}));
+      ->check(orientations());
   command->callback([a] { run_bench(*a); });
 }
 

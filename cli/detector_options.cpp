@@ -6,6 +6,7 @@
 
 #include "cli/number_checks.hpp"
 #include "cli/unit_options.hpp"
+#include "core/detect/neural_detector.hpp"
 
 namespace roadfix::cli {
 
@@ -49,6 +50,8 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
 
 }  // namespace
 
+CLI::Validator orientations() { return CLI::IsMember(std::vector<int>(kOrientations.begin(), kOrientations.end())); }
+
 void add_detector_options(CLI::App& command, DetectorChoice& choice) {
   command
       .add_option("--detector", choice.name,
@@ -62,7 +65,7 @@ void add_detector_options(CLI::App& command, DetectorChoice& choice) {
       .add_option("--orientations", choice.orientations,
                   "1, 4 or 8: mean over turned and mirrored copies of the picture; slower, better, for maps")
       ->capture_default_str()
-      ->check(CLI::IsMember({1, 4, 8}));
+      ->check(orientations());
   add_tree_options(command, choice.tree);
 }
 

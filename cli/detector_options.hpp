@@ -10,4 +10,7 @@ namespace roadfix::cli {
 /// as long as the command.
 void add_detector_options(CLI::App& command, DetectorChoice& choice);
 
+/// What an option of NeuralOptions::orientations may be.
+CLI::Validator orientations();
+
 }  // namespace roadfix::cli

@@ -15,8 +15,7 @@ namespace roadfix::evaluation {
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
 
 /// The picture alone; gsd_m is that of the CSV, which says nothing where the frame has a camera. `folder` is that of
-/// the CSV. Throws NotFound "file-not-found", and what decode_frame() and
-/// frame_image() do with the file's name.
+/// the CSV. Throws NotFound "file-not-found", and what decode_frame() and frame_image() do with the file's name.
 GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border);
 
 /// The ground that its picture shows, as `roadfix fix` with this detector sees it. Throws what ground_seen() does, as

@@ -104,7 +104,7 @@ class NeuralRoadDetector::NetPool {
 
 NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options)
     : options_(options) {
-  if (options.orientations != 1 && options.orientations != 4 && options.orientations != 8) {
+  if (std::ranges::find(kOrientations, options.orientations) == kOrientations.end()) {
     throw InvalidInput("orientations-unknown", fmt::format("{} orientations: choose 1, 4 or 8.", options.orientations));
   }
   const auto onnx = read_model(model);

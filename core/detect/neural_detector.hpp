@@ -1,6 +1,7 @@
 // Road probability by a convolutional network that OpenCV's DNN module runs on the processor.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -9,8 +10,11 @@
 
 namespace roadfix {
 
+/// As it is, quarter turns, and these mirrored as well.
+inline constexpr std::array kOrientations{1, 4, 8};
+
 struct NeuralOptions {
-  /// Mean over the picture turned and mirrored in so many ways: 1, 4 (quarter turns) or 8 (mirrored as well).
+  /// Mean over the picture turned and mirrored in so many ways, one of kOrientations.
   /// More costs that many times as much and is for maps, which have no real-time limit.
   int orientations = 1;
 };

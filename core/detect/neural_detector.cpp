@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
-#include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
 #include "core/detect/network_picture.hpp"
 #include "core/detect/tiling.hpp"
+#include "core/network/network.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/fnv.hpp"
@@ -57,51 +56,6 @@ cv::Mat upright(const cv::Mat& picture, int k) {
 
 }  // namespace
 
-/// cv::dnn::Net keeps its intermediate results in itself: each caller borrows one, and a new one is made when all are
-/// lent. There are never more of them than callers at the same time.
-class NeuralRoadDetector::NetPool {
- public:
-  explicit NetPool(std::vector<unsigned char> onnx) : onnx_(std::move(onnx)) { idle_.push_back(make()); }
-
-  /// Output of the network for one normalised picture (CV_32FC3) as CV_32FC1. cv::Exception when the shapes do not fit.
-  cv::Mat forward(const cv::Mat& picture) {
-    cv::dnn::Net net = borrow();
-    net.setInput(cv::dnn::blobFromImage(picture));
-    const cv::Mat blob = net.forward();
-    if (blob.dims != 4 || blob.size[0] != 1 || blob.size[1] != 1 || blob.type() != CV_32FC1) {
-      CV_Error(cv::Error::StsUnmatchedSizes, "the output is not 1 x 1 x rows x columns");
-    }
-    cv::Mat result = cv::Mat(blob.size[2], blob.size[3], CV_32FC1, const_cast<float*>(blob.ptr<float>())).clone();
-    const std::scoped_lock lock(mutex_);
-    idle_.push_back(net);
-    return result;
-  }
-
- private:
-  cv::dnn::Net make() const {
-    cv::dnn::Net net = cv::dnn::readNetFromONNX(onnx_);
-    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-    return net;
-  }
-
-  cv::dnn::Net borrow() {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!idle_.empty()) {
-        cv::dnn::Net net = idle_.back();
-        idle_.pop_back();
-        return net;
-      }
-    }
-    return make();
-  }
-
-  std::vector<unsigned char> onnx_;
-  std::mutex mutex_;
-  std::vector<cv::dnn::Net> idle_;
-};
-
 NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options)
     : options_(options) {
   if (std::ranges::find(kOrientations, options.orientations) == kOrientations.end()) {
@@ -116,7 +70,7 @@ NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const
                                                      model.string(), checksum_, network_.fnv1a64));
   }
   try {
-    nets_ = std::make_unique<NetPool>(onnx);
+    runner_ = load_network(onnx);
   } catch (const cv::Exception& error) {
     throw InvalidInput("model-unreadable", fmt::format("{} is not an ONNX network that OpenCV {} runs (export with "
                                                        "opset 11): {}",
@@ -130,7 +84,7 @@ void NeuralRoadDetector::check_shape(const std::filesystem::path& model) const {
   const cv::Size expected(sample.width / network_.stride, sample.height / network_.stride);
   std::string found;
   try {
-    const cv::Size size = nets_->forward(cv::Mat::zeros(sample, CV_32FC3)).size();
+    const cv::Size size = runner_->output_size(sample);
     if (size == expected) return;
     found = fmt::format("{} x {} cells", size.width, size.height);
   } catch (const cv::Exception& error) {
@@ -148,19 +102,22 @@ NeuralRoadDetector::~NeuralRoadDetector() = default;
 CellArray NeuralRoadDetector::detect(const GroundImage& image, double cell_m, std::uint64_t /*seed*/,
                                      const std::stop_token& stop) const {
   const NetworkPicture picture = network_picture(image, network_);
-  const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride, network_.multiple};
   cv::Mat mean;
   for (int k = 0; k < options_.orientations; ++k) {
-    const cv::Mat pixels = oriented(picture.pixels, k);
-    const cv::Mat answer = blend_tiles(oriented(picture.observed, k), plan, [&](const cv::Rect& tile) {
-      require_time(stop);
-      return nets_->forward(pixels(tile));
-    });
-    const cv::Mat back = upright(answer, k);
-    mean = mean.empty() ? back.clone() : cv::Mat(mean + back);
+    const cv::Mat answer = upright(answer_to(oriented(picture.pixels, k), oriented(picture.observed, k), stop), k);
+    mean = mean.empty() ? answer.clone() : cv::Mat(mean + answer);
   }
   mean /= options_.orientations;
   return road_cells(calibrated(mean, network_), network_.gsd_m * network_.stride, image, cell_m);
+}
+
+cv::Mat NeuralRoadDetector::answer_to(const cv::Mat& pixels, const cv::Mat& observed,
+                                      const std::stop_token& stop) const {
+  const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride, network_.multiple};
+  return blend_tiles(observed, plan, [&](const cv::Rect& tile) {
+    require_time(stop);
+    return runner_->run(pixels(tile));
+  });
 }
 
 double NeuralRoadDetector::preferred_gsd_m() const { return network_.gsd_m; }

@@ -1,4 +1,4 @@
-// Road probability by a convolutional network that OpenCV's DNN module runs on the processor.
+// Road probability by a convolutional network.
 #pragma once
 
 #include <array>
@@ -9,6 +9,8 @@
 #include "core/detect/road_detector.hpp"
 
 namespace roadfix {
+
+class Network;
 
 /// As it is, quarter turns, and these mirrored as well.
 inline constexpr std::array kOrientations{1, 4, 8};
@@ -38,14 +40,14 @@ class NeuralRoadDetector : public RoadDetector {
   std::string settings() const override;
 
  private:
-  class NetPool;
-
   void check_shape(const std::filesystem::path& model) const;
+  /// The network's answer to a picture of it, CV_32FC3, of which what CV_8UC1 says was seen.
+  cv::Mat answer_to(const cv::Mat& pixels, const cv::Mat& observed, const std::stop_token& stop) const;
 
   NetworkDescription network_;
   NeuralOptions options_;
   std::string checksum_;
-  std::unique_ptr<NetPool> nets_;
+  std::unique_ptr<Network> runner_;
 };
 
 }  // namespace roadfix

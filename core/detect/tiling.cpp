@@ -1,5 +1,8 @@
 #include "core/detect/tiling.hpp"
 
+#include <tbb/parallel_for_each.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cassert>
 #include <opencv2/imgproc.hpp>
@@ -51,26 +54,38 @@ cv::Rect part_to_run(const cv::Mat& wanted, const cv::Rect& tile, int multiple) 
 }  // namespace
 
 cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::function<cv::Mat(const cv::Rect&)>& run) {
-  const cv::Size cells(wanted.cols / plan.stride, wanted.rows / plan.stride);
-  cv::Mat sum = cv::Mat::zeros(cells, CV_32FC1);
-  cv::Mat weight_sum = cv::Mat::zeros(cells, CV_32FC1);
+  struct Part {
+    cv::Rect tile;
+    cv::Rect wanted;
+    cv::Mat result;
+  };
+  std::vector<Part> parts;
   const cv::Size side(tile_side(wanted.cols, plan), tile_side(wanted.rows, plan));
   for (const int top : tile_starts(wanted.rows, plan)) {
     for (const int left : tile_starts(wanted.cols, plan)) {
       const cv::Rect tile({left, top}, side);
       const cv::Rect part = part_to_run(wanted, tile, plan.multiple);
-      if (part.empty()) continue;
-      const cv::Mat result = run(part);
-      const cv::Rect place(part.x / plan.stride, part.y / plan.stride, part.width / plan.stride,
-                           part.height / plan.stride);
-      assert(result.size() == place.size() && result.type() == CV_32FC1);
-      const auto down = blend_weights(tile.height / plan.stride, plan.overlap / plan.stride);
-      const auto right = blend_weights(tile.width / plan.stride, plan.overlap / plan.stride);
-      const cv::Mat whole = cv::Mat(down, true) * cv::Mat(right, true).t();
-      const cv::Mat weight = whole(place - cv::Point(left / plan.stride, top / plan.stride));
-      sum(place) += result.mul(weight);
-      weight_sum(place) += weight;
+      if (!part.empty()) parts.push_back({tile, part, {}});
     }
+  }
+  // Who waits here takes no other work of the caller meanwhile, such as another picture.
+  tbb::this_task_arena::isolate(
+      [&] { tbb::parallel_for_each(parts, [&](Part& part) { part.result = run(part.wanted); }); });
+  const auto in_cells = [&](const cv::Rect& pixels) {
+    return cv::Rect(pixels.tl() / plan.stride, cv::Size(pixels.width / plan.stride, pixels.height / plan.stride));
+  };
+  const cv::Size cells(wanted.cols / plan.stride, wanted.rows / plan.stride);
+  cv::Mat sum = cv::Mat::zeros(cells, CV_32FC1);
+  cv::Mat weight_sum = cv::Mat::zeros(cells, CV_32FC1);
+  const auto down = blend_weights(side.height / plan.stride, plan.overlap / plan.stride);
+  const auto right = blend_weights(side.width / plan.stride, plan.overlap / plan.stride);
+  const cv::Mat weight_of_tile = cv::Mat(down, true) * cv::Mat(right, true).t();
+  for (const Part& part : parts) {
+    const cv::Rect place = in_cells(part.wanted);
+    assert(part.result.size() == place.size() && part.result.type() == CV_32FC1);
+    const cv::Mat weight = weight_of_tile(place - in_cells(part.tile).tl());
+    sum(place) += part.result.mul(weight);
+    weight_sum(place) += weight;
   }
   cv::Mat blended;
   cv::divide(sum, weight_sum, blended);  // where nothing was added OpenCV answers 0

@@ -1,0 +1,33 @@
+// Runs a network by oneDNN.
+#pragma once
+
+#include <list>
+#include <mutex>
+#include <vector>
+
+#include "core/network/layers.hpp"
+#include "core/network/network.hpp"
+#include "core/network/onednn_plan.hpp"
+
+namespace roadfix {
+
+/// Each caller borrows a plan. Where none for its size is idle, one is made in place of that which has been idle
+/// longest: there are never more of them than callers at the same time.
+class OneDnnNetwork : public Network {
+ public:
+  /// As read_layers() gives them.
+  explicit OneDnnNetwork(std::vector<Layer> layers) : layers_(std::move(layers)) {}
+
+  cv::Size output_size(cv::Size picture) override;
+  cv::Mat run(const cv::Mat& picture) override;
+
+ private:
+  OneDnnPlan borrowed(cv::Size size);
+
+  std::vector<Layer> layers_;
+  OneDnnConstants constants_;
+  std::mutex mutex_;
+  std::list<OneDnnPlan> idle_;  ///< last used first
+};
+
+}  // namespace roadfix

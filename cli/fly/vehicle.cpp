@@ -25,7 +25,7 @@ Odometry OdometrySensor::measure(const Odometry& moved, double length_m, double 
                                  evaluation::Random& random) const {
   const double spread = errors_.share * length_m;
   return {scale_ * moved.forward_m + spread * normal(random), scale_ * moved.right_m + spread * normal(random),
-          moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn};
+          (moved.turn + seconds * turn_drift_ + normal(random) * errors_.turn).wrapped()};
 }
 
 GridPose OdometrySensor::drifted(const GridPose& pose, double seconds) const {

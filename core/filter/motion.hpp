@@ -32,7 +32,8 @@ struct PlanarMotion {
   void operator()(ParticleState& state, RandomStream& random) const;
 };
 
-/// The pose after a step, seen from that before it.
+/// The pose after a step, seen from that before it. What a track is told turns the shorter way round, by 180 degrees at
+/// most: noise and rates follow from the turn.
 using Odometry = BodyOffset;
 
 /// Covariance of (forward m, right m, turn rad).

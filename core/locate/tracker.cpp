@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/locate/prepare.hpp"
@@ -64,6 +67,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
 }
 
 void Tracker::require_possible(const TrackerState& before, const StepInput& step) {
+  assert(!step.odometry || !(std::abs(step.odometry->turn.radians()) > std::numbers::pi));
   require_in_order(before, step);
   require_possible_speed(before, step);
 }

@@ -23,7 +23,7 @@ namespace roadfix {
 struct StepInput {
   std::int64_t sequence = 0;                     ///< counts up by 1; numbers left out count as lost steps
   std::int64_t time_us = 0;                      ///< when the frame was taken, microseconds since any epoch
-  std::optional<Odometry> odometry;              ///< since the step before
+  std::optional<Odometry> odometry;              ///< since the step before; turns within [-180, 180] degrees
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
 };

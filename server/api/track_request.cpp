@@ -45,7 +45,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
 Odometry parse_odometry(const Fields& fields) {
   constexpr Range kMetres{-1e5, 1e5};
   return {fields.number("forward_m", kMetres), fields.number("right_m", kMetres),
-          Angle::degrees(fields.number("turn_deg", kDegrees))};
+          Angle::degrees(fields.number("turn_deg", kDegrees)).wrapped()};
 }
 
 }  // namespace

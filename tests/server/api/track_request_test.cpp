@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "tests/server/api/request_fixture.hpp"
 
@@ -159,6 +161,15 @@ TEST(StepRequest, TellsOdometryWholeOrNotAtAll) {
     json far = odometry;
     far[name] = 100'001;
     EXPECT_EQ(refused_step(far), "parameter-out-of-range " + name);
+  }
+}
+
+TEST(StepRequest, TakesATurnTheShorterWayRound) {
+  const std::vector<std::pair<double, double>> told_and_taken{
+      {-359.0, 1.0}, {181.0, -179.0}, {360.0, 0.0}, {-180.0, 180.0}};
+  for (const auto& [told_deg, turned_deg] : told_and_taken) {
+    const StepInput step = step_of({{"forward_m", 1}, {"right_m", 0}, {"turn_deg", told_deg}});
+    EXPECT_NEAR(step.odometry.value().turn.degrees(), turned_deg, 1e-9) << "a heading less the one before, past north";
   }
 }
 

@@ -128,6 +128,7 @@ double Filter::keep_within_region() {
 Correction Filter::correct(std::span<const double> log_likelihoods) {
   Particles& p = state_.particles;
   assert(log_likelihoods.size() == p.size());
+  assert(std::ranges::all_of(log_likelihoods, [](double x) { return x <= kMaxLogLikelihood; }));
   Correction result;
   const double largest = *std::ranges::max_element(log_likelihoods);
   if (!std::isfinite(largest)) return result;

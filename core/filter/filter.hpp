@@ -58,6 +58,9 @@ struct FilterState {
   friend bool operator==(const FilterState&, const FilterState&) = default;
 };
 
+/// The mean of likelihoods up to its exponential is a finite number.
+inline constexpr double kMaxLogLikelihood = 700.0;
+
 struct Correction {
   /// Mean likelihood under the belief. Where likelihoods are ratios to chance, 1 says that the measurement fits the
   /// belief as well as any place.
@@ -96,8 +99,8 @@ class Filter {
     return keep_within_region();
   }
 
-  /// Weights the particles by the measurement's log-likelihood from each of them (-inf = impossible), then resamples as
-  /// the options say.
+  /// Weights the particles by the measurement's log-likelihood from each of them, in [-inf, kMaxLogLikelihood] with
+  /// -inf = impossible, then resamples as the options say.
   Correction correct(std::span<const double> log_likelihoods);
 
   /// Replaces a share of the particles by draws around the proposals.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/filter/filter.hpp"
 #include "core/match/score.hpp"
 
 namespace roadfix {
@@ -34,7 +35,8 @@ double MeasurementModel::log_likelihood(const MatchSums& sums, std::int64_t fram
     const double seen = samples_per_cell * static_cast<double>(sums.n);
     log_ratio = expected_correlation * (seen * contrasted_pearson(sums) - 0.5 * samples * expected_correlation);
   }
-  constexpr double kMax = 300.0;  // exp() overflows beyond 709, and large footprints may give thousands
+  constexpr double kMax = 300.0;  // large footprints may give thousands
+  static_assert(kMax < kMaxLogLikelihood);
   return std::log(useless_share + (1.0 - useless_share) * std::exp(std::min(temper * log_ratio, kMax)));
 }
 

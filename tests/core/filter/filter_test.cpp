@@ -94,6 +94,15 @@ TEST(Filter, MovesCopiesOfAParticleApartAndLeavesWhatWasDrawnOnce) {
               6.0 * options.roughening_m);
 }
 
+TEST(Filter, KeepsFiniteAveragesOfTheLargestLikelihood) {
+  Filter filter(FilterOptions(), {kSquare}, 7);
+  filter.start_uniformly(kSquare);
+  const Correction correction = filter.correct(std::vector<double>(filter.particles().size(), kMaxLogLikelihood));
+  EXPECT_TRUE(correction.usable && std::isfinite(correction.mean_likelihood));
+  EXPECT_GT(filter.state().fast_support, 0.5);
+  EXPECT_EQ(filter.doubt(), 0.0);
+}
+
 TEST(Filter, AgreesWithTheKalmanFilterWhereAllIsNormal) {
   FilterOptions options;
   options.max_particles = options.min_particles = 20'000;

@@ -32,7 +32,7 @@ struct Particles {
   std::vector<double> drift_east_m_s;
   std::vector<double> drift_north_m_s;
   std::vector<double> log_scale;
-  std::vector<double> weight;  ///< sum to 1
+  std::vector<double> weight;  ///< sum to 1; of those that left the region 0, until they are drawn anew
 
   std::size_t size() const { return weight.size(); }
   void resize(std::size_t count) {

@@ -19,16 +19,13 @@ std::optional<Prior> prior_within(const MapView& map, const GridCircle& circle) 
 }  // namespace
 
 std::optional<Prior> prior_around(const MapView& map, const Particles& p) {
-  GridBox box = kEmptyBox;
+  std::vector<GridPoint> places;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const GridPoint at{p.east_m[i], p.north_m[i]};
-    box = united(box, {at, at});
+    if (p.weight[i] > 0.0) places.push_back({p.east_m[i], p.north_m[i]});
   }
-  const GridPoint centre = box.centre();
+  const GridPoint centre = box_around(places).centre();
   double radius_m = 0.0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    radius_m = std::max(radius_m, distance_m(centre, {p.east_m[i], p.north_m[i]}));
-  }
+  for (const GridPoint place : places) radius_m = std::max(radius_m, distance_m(centre, place));
   return prior_within(map, {centre, radius_m});
 }
 

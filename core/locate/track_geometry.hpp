@@ -11,7 +11,8 @@
 
 namespace roadfix {
 
-/// A circle around all places that the particles hold for possible; nullopt where it lies beyond the map.
+/// A circle around all places that the particles hold for possible, which are those with weight; nullopt where it lies
+/// beyond the map.
 std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 
 /// All poses within this distance and turn of a pose; nullopt where they lie beyond the map.

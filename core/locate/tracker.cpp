@@ -82,7 +82,7 @@ std::vector<GeoPose> Tracker::particles(const TrackerState& state, std::size_t c
   std::vector<GeoPose> poses;
   const std::size_t stride = std::max<std::size_t>(1, (p.size() + count - 1) / std::max<std::size_t>(1, count));
   for (std::size_t i = 0; i < p.size(); i += stride) {
-    poses.push_back(on_earth(p.at(i).pose(), map_.zone));
+    if (p.weight[i] > 0.0) poses.push_back(on_earth(p.at(i).pose(), map_.zone));
   }
   return poses;
 }

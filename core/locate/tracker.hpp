@@ -67,7 +67,7 @@ class Tracker {
   /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted when
   /// asked to stop, and at the deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
-  /// Thinned to at most `count` poses, every k-th particle.
+  /// Thinned to at most `count` poses, every k-th particle; none of those without weight.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;
 
   const MapView& map() const { return map_; }

@@ -103,13 +103,15 @@ TEST_F(TrackGeometry, GivesTheHeadingsNearAPoseAsTheyAreOnTheEarth) {
   EXPECT_FALSE(prior_near(view_, {{place_.east_m + 5'000.0, place_.north_m}, Angle()}, 80.0, Angle::degrees(15.0)));
 }
 
-TEST_F(TrackGeometry, LooksAroundAllParticles) {
+TEST_F(TrackGeometry, LooksAroundAllParticlesWithWeight) {
   Particles particles;
+  const auto add = [&](double east_m, double north_m, double weight) {
+    particles.resize(particles.size() + 1);
+    particles.set(particles.size() - 1, {place_.east_m + east_m, place_.north_m + north_m, 0.0});
+    particles.weight.back() = weight;
+  };
   for (const double east_m : {-300.0, 10.0, 200.0}) {
-    for (const double north_m : {-50.0, 90.0}) {
-      particles.resize(particles.size() + 1);
-      particles.set(particles.size() - 1, {place_.east_m + east_m, place_.north_m + north_m, 0.0});
-    }
+    for (const double north_m : {-50.0, 90.0}) add(east_m, north_m, 1.0 / 6.0);
   }
   const auto prior = prior_around(view_, particles);
   ASSERT_TRUE(prior && prior->circle);
@@ -118,6 +120,8 @@ TEST_F(TrackGeometry, LooksAroundAllParticles) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     EXPECT_LE(distance_m(centre, {particles.east_m[i], particles.north_m[i]}), prior->circle->radius_m);
   }
+  add(5'000.0, 0.0, 0.0);
+  EXPECT_EQ(prior_around(view_, particles).value().circle->radius_m, prior->circle->radius_m) << "one has left";
 }
 
 }  // namespace

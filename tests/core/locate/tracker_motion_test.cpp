@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <optional>
+#include <vector>
 
 #include "core/filter/clusters.hpp"
 #include "tests/core/locate/track_fixture.hpp"
@@ -90,8 +92,13 @@ TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGrou
     TrackSettings ending = settings();  // so far from the belief
     ending.beyond_map_m = sigmas * belief.sigma_m() - to_rim_m;
     state_ = before;
-    EXPECT_EQ(advance(Tracker(view_, ending), hover).converged, sigmas > 10.0) << sigmas;
+    const Tracker tracker(view_, ending);
+    EXPECT_EQ(advance(tracker, hover).converged, sigmas > 10.0) << sigmas;
     EXPECT_EQ(state_.filter.resets, before.filter.resets) << sigmas;
+    const std::vector<double>& weights = state_.filter.particles.weight;
+    const auto left = static_cast<std::size_t>(std::ranges::count(weights, 0.0));
+    EXPECT_EQ(left == 0, sigmas > 10.0) << sigmas;
+    EXPECT_EQ(tracker.particles(state_, weights.size()).size(), weights.size() - left) << "none of those that left";
   }
 }
 

@@ -8,10 +8,10 @@ constexpr double kConvergedSigmaM = 25.0;
 
 /// Equation (7) is no ratio to chance, and bears out what it does not reject. Where no look has borne the place out of
 /// late there is no time of one.
-bool is_borne_out(const TrackSettings& settings, const TrackerState& state) {
+bool is_told_from_others(const TrackSettings& settings, const TrackerState& state) {
   if (settings.measurement_model.kind == LikelihoodKind::kEquation7) return true;
-  if (!state.claim.outweighs_chance()) return false;
-  return !settings.recovers || (state.claim.confirmed && state.claim.looked_time_us);
+  if (!settings.recovers) return state.claim.outweighs_chance();
+  return state.claim.is_told_apart() && state.claim.looked_time_us;
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ bool has_converged(const TrackSettings& settings, const TrackerState& state, con
                    Measurement measurement, double doubt) {
   return best.weight >= kConvergedWeight && best.sigma_m() <= kConvergedSigmaM &&
          measurement != Measurement::kRejected && measurement != Measurement::kRepeated &&
-         !state.last_view.stands_still && state.claim.is_supported() && is_borne_out(settings, state) &&
+         !state.last_view.stands_still && state.claim.is_supported() && is_told_from_others(settings, state) &&
          doubt <= kMaxDoubt && state.since_accepted_s(state.time_us).value_or(kStaleAfterS) < kStaleAfterS;
 }
 

@@ -17,7 +17,7 @@ void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 void TrackClaim::reject() {
   supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
   if (!is_supported()) confirmed = false;
-  looked_time_us.reset();
+  lose_look();
 }
 
 void TrackClaim::weigh(double log_ratio) {
@@ -29,18 +29,22 @@ void TrackClaim::confirm(double probability) {
   accept();
   weigh(std::log(probability / (1.0 - probability)));
   confirmed = true;
-  looked_time_us.reset();
+  lose_look();
 }
+
+void TrackClaim::tell_apart(bool from_all_others) { confirmed = from_all_others; }
 
 void TrackClaim::reopen() {
   confirmed = false;
-  looked_time_us.reset();
+  lose_look();
 }
 
 void TrackClaim::bear_out(std::int64_t time_us) {
   looked_time_us = time_us;
   flown_m = 0.0;
 }
+
+void TrackClaim::lose_look() { looked_time_us.reset(); }
 
 void TrackClaim::fly(double way_m) {
   if (!looked_time_us) flown_m = 0.0;
@@ -50,5 +54,9 @@ void TrackClaim::fly(double way_m) {
 bool TrackClaim::is_supported() const { return supported >= kMinSupport; }
 
 bool TrackClaim::outweighs_chance() const { return log_odds >= kMinLogOdds; }
+
+bool TrackClaim::is_told_apart() const { return outweighs_chance() && confirmed; }
+
+bool TrackClaim::waits_for_search() const { return outweighs_chance() && !confirmed; }
 
 }  // namespace roadfix

@@ -44,16 +44,22 @@ struct TrackClaim {
   /// whether the odometry carries the place on rightly.
   void confirm(double probability);
 
+  /// A search found the place that was believed, and told it from all others, or could not.
+  void tell_apart(bool from_all_others);
   /// The belief took other places in, or went over to one: it is to be told from them anew.
   void reopen();
 
   /// A search around the place found it there.
   void bear_out(std::int64_t time_us);
+  /// It holds no longer that one did.
+  void lose_look();
   void fly(double way_m);
 
   bool is_supported() const;
   /// A hundred to one against chance.
   bool outweighs_chance() const;
+  bool is_told_apart() const;
+  bool waits_for_search() const;
 
   friend bool operator==(const TrackClaim&, const TrackClaim&) = default;
 };

@@ -49,8 +49,7 @@ bool Tracker::Step::start_by_search() {
 }
 
 void Tracker::Step::look_around_if_due() {
-  const bool sure = state_.claim.outweighs_chance() && state_.claim.confirmed;
-  if (!settings_.recovers || !sure || outcome_.measurement == Measurement::kUseless) return;
+  if (!settings_.recovers || !state_.claim.is_told_apart() || outcome_.measurement == Measurement::kUseless) return;
   const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
   const LookAge last{since_us, state_.claim.flown_m};
   const Cluster belief = clusters_of(filter_.particles()).front();
@@ -66,7 +65,7 @@ void Tracker::Step::take(const Look& look, LookAge last) {
       motion_.try_drifts(filter_);
       break;
     case Look::Outcome::kOpen:
-      if (last.is_outdated()) state_.claim.looked_time_us.reset();
+      if (last.is_outdated()) state_.claim.lose_look();
       break;
     case Look::Outcome::kBeside:
       motion_.learn_drift(filter_);
@@ -78,8 +77,7 @@ void Tracker::Step::take(const Look& look, LookAge last) {
 }
 
 void Tracker::Step::search_if_due() {
-  const bool claim_waits = state_.claim.outweighs_chance() && !state_.claim.confirmed;
-  const std::int64_t wait = claim_waits ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
+  const std::int64_t wait = state_.claim.waits_for_search() ? kMeasurementsBeforeClaim : kMeasurementsBetweenSearches;
   if (settings_.recovers && wants_search() && state_.measured - state_.last_search >= wait) recover();
 }
 
@@ -87,8 +85,8 @@ bool Tracker::Step::wants_search() const {
   // Nothing has spoken for the belief for long, be it that nothing could.
   const bool stale = state_.since_accepted_s(input_.time_us).value_or(kStaleAfterS) >= kStaleAfterS;
   if (filter_.doubt() > kMaxDoubt || stale) return true;
-  if (state_.claim.outweighs_chance()) return !state_.claim.confirmed;
-  return state_.claim.log_odds == 0.0 && outcome_.measurement != Measurement::kUseless;
+  return state_.claim.waits_for_search() ||
+         (state_.claim.log_odds == 0.0 && outcome_.measurement != Measurement::kUseless);
 }
 
 void Tracker::Step::recover() {
@@ -103,7 +101,7 @@ void Tracker::Step::recover() {
   if (!fix || fix->modes.empty()) return;
   const bool agrees = is_same_place(on_grid(fix->modes.front().pose, map_.zone), believed);
   if (agrees && fix->probability >= kProbabilityForClaim) {
-    state_.claim.confirmed = search_.holds_at_other_scales(*fix, seen, prior);
+    state_.claim.tell_apart(search_.holds_at_other_scales(*fix, seen, prior));
   } else if (fix->status != FixStatus::kFix || !search_.holds_at_other_scales(*fix, seen, prior)) {
     filter_.inject(proposals_of(map_, *fix, *features_), kInjectedShare);
     state_.claim.reopen();

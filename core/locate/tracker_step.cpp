@@ -52,7 +52,7 @@ StepResult Tracker::Step::run() {
   state_.motion = motion_.learned();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, outcome_);
   // Particles that part and gather again bring no claim back that ended unseen.
-  if (saw_nothing() && !estimate.converged) state_.claim.looked_time_us.reset();
+  if (saw_nothing() && !estimate.converged) state_.claim.lose_look();
   if (estimate.converged) state_.recent.clear();
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};

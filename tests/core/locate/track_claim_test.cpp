@@ -67,6 +67,17 @@ TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
   EXPECT_TRUE(claim.outweighs_chance());
 }
 
+TEST(TrackClaim, WaitsForASearchOnceItOutweighsChanceUntilOneTellsItApart) {
+  TrackClaim claim;
+  claim.tell_apart(true);
+  EXPECT_FALSE(claim.is_told_apart() || claim.waits_for_search()) << "it is no more than chance";
+  claim.weigh(kHundredToOne);
+  EXPECT_TRUE(claim.is_told_apart());
+  claim.tell_apart(false);
+  EXPECT_FALSE(claim.is_told_apart());
+  EXPECT_TRUE(claim.waits_for_search());
+}
+
 TEST(TrackClaim, ForgetsWhatSpokeAgainstItBeforeMeasurementsSpeakForIt) {
   TrackClaim claim;
   claim.confirmed = true;

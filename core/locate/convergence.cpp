@@ -21,7 +21,7 @@ bool has_converged(const TrackSettings& settings, const TrackerState& state, con
   return best.weight >= kConvergedWeight && best.sigma_m() <= kConvergedSigmaM &&
          measurement != Measurement::kRejected && measurement != Measurement::kRepeated &&
          !state.last_view.stands_still && state.claim.is_supported() && is_told_from_others(settings, state) &&
-         doubt <= kMaxDoubt && state.since_accepted_s(state.time_us).value_or(kStaleAfterS) < kStaleAfterS;
+         doubt <= kMaxDoubt && state.since_accepted_s(state.last->time_us).value_or(kStaleAfterS) < kStaleAfterS;
 }
 
 }  // namespace roadfix

@@ -13,8 +13,8 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
                           const StepOutcome& outcome) {
   const TrackSettings& settings = tracker.settings();
   TrackEstimate estimate;
-  estimate.sequence = state.sequence;
-  estimate.time_us = state.time_us;
+  estimate.sequence = state.last->sequence;
+  estimate.time_us = state.last->time_us;
   const std::vector<Cluster> clusters = clusters_of(filter.particles());
   estimate.cluster_count = clusters.size();
   const double nadir_sigma_m = settings.vehicle.nadir_sigma_m.value_or(state.nadir_sigma_m);
@@ -26,7 +26,7 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   estimate.measurement = outcome.measurement;
   estimate.mean_likelihood = outcome.mean_likelihood;
   estimate.doubt = filter.doubt();
-  estimate.since_accepted_s = state.since_accepted_s(state.time_us);
+  estimate.since_accepted_s = state.since_accepted_s(estimate.time_us);
   estimate.drifts = state.motion.drifts;
   estimate.missed_steps = outcome.missed_steps;
   estimate.converged = has_converged(settings, state, clusters.front(), estimate.measurement, estimate.doubt);

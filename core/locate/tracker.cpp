@@ -23,17 +23,17 @@ AcceptanceRegion region_of_flight(const MapView& map, const TrackSettings& setti
 }
 
 void require_in_order(const TrackerState& before, const StepInput& step) {
-  if (!before.started) return;
-  if (step.sequence <= before.sequence) {
+  if (!before.last) return;
+  if (step.sequence <= before.last->sequence) {
     throw InvalidInput("step-late", fmt::format("step {} arrived after step {}: numbers must increase; drop late steps",
-                                                step.sequence, before.sequence));
+                                                step.sequence, before.last->sequence));
   }
-  if (step.time_us <= before.time_us) {
+  if (step.time_us <= before.last->time_us) {
     throw InvalidInput(
         "time-backwards",
         fmt::format(
             "the capture time {} us is not after that of the last step, {} us: set the clock, or begin a new track",
-            step.time_us, before.time_us));
+            step.time_us, before.last->time_us));
   }
 }
 
@@ -41,9 +41,9 @@ void require_in_order(const TrackerState& before, const StepInput& step) {
 void require_possible_speed(const TrackerState& before, const StepInput& step) {
   constexpr double kFastestMS = 1000.0;
   constexpr double kRoundingM = 1.0;  // of positions taken at nearly the same time
-  if (!before.started || !step.odometry) return;
+  if (!before.last || !step.odometry) return;
   const double moved_m = distance_m(*step.odometry);
-  const double seconds = 1e-6 * static_cast<double>(step.time_us - before.time_us);
+  const double seconds = 1e-6 * static_cast<double>(step.time_us - before.last->time_us);
   if (!(moved_m > kRoundingM + kFastestMS * seconds)) return;
   throw InvalidInput("impossible-speed",
                      fmt::format("the step moves by {:.1f} m in {:g} s: time_us counts microseconds, movements metres",
@@ -67,6 +67,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
 }
 
 void Tracker::require_possible(const TrackerState& before, const StepInput& step) {
+  assert(step.sequence >= 0 && step.time_us >= 0);
   assert(!step.odometry || !(std::abs(step.odometry->turn.radians()) > std::numbers::pi));
   require_in_order(before, step);
   require_possible_speed(before, step);

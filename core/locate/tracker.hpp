@@ -21,22 +21,27 @@
 namespace roadfix {
 
 struct StepInput {
-  std::int64_t sequence = 0;                     ///< counts up by 1; numbers left out count as lost steps
-  std::int64_t time_us = 0;                      ///< when the frame was taken, microseconds since any epoch
+  std::int64_t sequence = 0;                     ///< >= 0, counts up by 1; numbers left out count as lost steps
+  std::int64_t time_us = 0;                      ///< >= 0: when the frame was taken, microseconds since any epoch
   std::optional<Odometry> odometry;              ///< since the step before; turns within [-180, 180] degrees
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
 };
 
+/// Of StepInput.
+struct StepStamp {
+  std::int64_t sequence = 0;
+  std::int64_t time_us = 0;
+  friend bool operator==(const StepStamp&, const StepStamp&) = default;
+};
+
 struct TrackerState {
   FilterState filter;
-  bool started = false;
-  bool searched = false;  ///< the search of the start has been tried
-  std::int64_t sequence = -1;
-  std::int64_t time_us = 0;
-  std::int64_t measured = 0;     ///< feature maps so far
-  std::int64_t last_search = 0;  ///< `measured` at the last search
-  double nadir_sigma_m = 0.0;    ///< of the last feature map
+  bool searched = false;          ///< the search of the start has been tried
+  std::optional<StepStamp> last;  ///< the step that led here; nullopt = none yet
+  std::int64_t measured = 0;      ///< feature maps so far
+  std::int64_t last_search = 0;   ///< `measured` at the last search
+  double nadir_sigma_m = 0.0;     ///< of the last feature map
   TrackClaim claim;
   std::optional<std::int64_t> accepted_time_us;  ///< time of the last accepted measurement
   /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen

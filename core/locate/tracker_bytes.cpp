@@ -31,9 +31,9 @@ constexpr std::uint64_t kMagic = 0x3430'5354'4652ULL;  // "RFTS04"
 // What is stored, in the order of the bytes: `io` writes or reads it. Each list is for both, so that they agree.
 
 void pass_members(auto& io, auto& state) {
-  auto& [filter, started, searched, sequence, time_us, measured, last_search, nadir_sigma_m, claim, accepted_time_us,
-         recent, last_view, motion] = state;
-  io(searched, sequence, time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
+  auto& [filter, searched, last, measured, last_search, nadir_sigma_m, claim, accepted_time_us, recent, last_view,
+         motion] = state;
+  io(searched, last->sequence, last->time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
   io(motion.velocity, motion.turn_rate_rad_s, motion.drifts, motion.coasts, motion.coasted_s);
   io(last_view.seen, last_view.stands_still, last_view.earlier);
@@ -196,14 +196,15 @@ bool can_be(const LastView& view) {
 }
 
 bool can_be(const TrackerState& state) {
-  return state.measured - 1 <= state.sequence && state.last_search <= state.measured && state.nadir_sigma_m >= 0.0 &&
-         can_be(state.claim) && can_be(state.last_view) && can_be(state.filter) && can_be(state.recent);
+  return state.measured - 1 <= state.last->sequence && state.last_search <= state.measured &&
+         state.nadir_sigma_m >= 0.0 && can_be(state.claim) && can_be(state.last_view) && can_be(state.filter) &&
+         can_be(state.recent);
 }
 
 }  // namespace
 
 std::vector<std::byte> to_bytes(const TrackerState& state) {
-  assert(state.started);
+  assert(state.last);
   Writer writer;
   writer(kMagic);
   pass_members(writer, state);
@@ -216,10 +217,10 @@ TrackerState tracker_state_of(std::span<const std::byte> bytes) {
   reader(magic);
   if (magic != kMagic) refuse("is of no known version");
   TrackerState state;
+  state.last.emplace();
   pass_members(reader, state);
   if (!reader.is_at_end()) refuse("goes on beyond its end");
   if (!can_be(state)) refuse("holds values that no track has");
-  state.started = true;
   return state;
 }
 

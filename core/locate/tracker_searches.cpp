@@ -33,8 +33,7 @@ bool Tracker::Step::may_search() const { return settings_.recovers || settings_.
 
 /// The prior as it was given holds for the first step only. False where the particles stay as they are.
 bool Tracker::Step::start_by_search() {
-  const bool first = state_.sequence < 0;
-  const std::optional<Prior> prior = first ? settings_.prior : prior_around(map_, filter_.particles());
+  const std::optional<Prior> prior = is_first() ? settings_.prior : prior_around(map_, filter_.particles());
   if (!prior) return false;
   state_.searched = true;
   const FeatureMap seen = state_.recent.laid_around(*features_);
@@ -42,7 +41,7 @@ bool Tracker::Step::start_by_search() {
   if (!fix || fix->modes.empty()) return false;
   const double uniform_share = std::clamp(1.0 - probability_of_all(*fix), 1.0 - kMaxFixShare, 0.9);
   filter_.redraw_from(proposals_of(map_, *fix, *features_), uniform_share,
-                      first ? tracker_.start_ : tracker_.region_.poses);
+                      is_first() ? tracker_.start_ : tracker_.region_.poses);
   outcome_.measurement = Measurement::kSearched;
   if (fix->status == FixStatus::kFix && search_.holds_at_other_scales(*fix, seen, *prior)) confirm(*fix);
   return true;
@@ -50,7 +49,7 @@ bool Tracker::Step::start_by_search() {
 
 void Tracker::Step::look_around_if_due() {
   if (!settings_.recovers || !state_.claim.is_told_apart() || outcome_.measurement == Measurement::kUseless) return;
-  const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(state_.time_us);
+  const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(input_.time_us);
   const LookAge last{since_us, state_.claim.flown_m};
   const Cluster belief = clusters_of(filter_.particles()).front();
   const bool due = !state_.claim.looked_time_us || last.is_due();
@@ -128,7 +127,7 @@ std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const Featur
       seen, prior, {.own_frame = features_, .search = {.scale_range = settings_.vehicle.scale_range}}, time_share);
   if (!fix || fix->complete) return fix;
   // What it has depends on the machine, and a track must come out the same.
-  if (state_.sequence < 0) throw Interrupted("search-time-limit", fix->explanation);
+  if (is_first()) throw Interrupted("search-time-limit", fix->explanation);
   return std::nullopt;
 }
 

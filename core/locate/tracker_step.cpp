@@ -19,9 +19,9 @@ constexpr double kLongestGapS = 600.0;  // after it the belief is thrown away
 constexpr double kLeastKept = 0.99;     // of the weight: what leaves the region may be where the vehicle is
 
 ToldMotion told_motion(const TrackerState& before, const StepInput& input) {
-  if (!before.started) return {input.odometry, input.covariance, 0.0, 0};
-  return {input.odometry, input.covariance, 1e-6 * static_cast<double>(input.time_us - before.time_us),
-          input.sequence - before.sequence - 1};
+  if (!before.last) return {input.odometry, input.covariance, 0.0, 0};
+  return {input.odometry, input.covariance, 1e-6 * static_cast<double>(input.time_us - before.last->time_us),
+          input.sequence - before.last->sequence - 1};
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const St
       search_(map_, settings_, limits),
       state_(before),
       motion_(settings_.vehicle, tracker.region_, told_motion(before, input), before.motion),
-      filter_(before.started ? Filter(settings_.filter, motion_.region(), std::move(state_.filter), limits.threads)
-                             : Filter(settings_.filter, motion_.region(), settings_.seed, limits.threads)) {}
+      filter_(before.last ? Filter(settings_.filter, motion_.region(), std::move(state_.filter), limits.threads)
+                          : Filter(settings_.filter, motion_.region(), settings_.seed, limits.threads)) {}
 
 StepResult Tracker::Step::run() {
   if (input_.features) {
@@ -47,8 +47,7 @@ StepResult Tracker::Step::run() {
   }
   begin_or_move();
   if (features_) see();
-  state_.sequence = input_.sequence;
-  state_.time_us = input_.time_us;
+  state_.last = StepStamp{input_.sequence, input_.time_us};
   state_.motion = motion_.learned();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, outcome_);
   // Particles that part and gather again bring no claim back that ended unseen.
@@ -59,12 +58,11 @@ StepResult Tracker::Step::run() {
 }
 
 void Tracker::Step::begin_or_move() {
-  if (state_.started) {
+  if (is_first()) {
+    filter_.start_uniformly(tracker_.start_);
+  } else {
     outcome_.missed_steps = motion_.told().lost_steps;
     move();
-  } else {
-    filter_.start_uniformly(tracker_.start_);
-    state_.started = true;
   }
 }
 

@@ -26,6 +26,7 @@ class Tracker::Step {
   StepResult run();
 
  private:
+  bool is_first() const { return !state_.last; }
   void begin_or_move();
   void move();
   void see();

@@ -15,11 +15,11 @@ std::shared_ptr<const TrackerState> LiveTrack::last_state() const {
 }
 
 std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
-  const std::shared_ptr<const TrackerState> last = last_state();
-  return last->started ? tracker_.particles(*last, count) : std::vector<GeoPose>();
+  const std::shared_ptr<const TrackerState> state = last_state();
+  return state->last ? tracker_.particles(*state, count) : std::vector<GeoPose>();
 }
 
-bool LiveTrack::is_next(std::int64_t sequence) const { return !state_->started || sequence <= state_->sequence + 1; }
+bool LiveTrack::is_next(std::int64_t sequence) const { return !state_->last || sequence <= state_->last->sequence + 1; }
 
 void LiveTrack::await_predecessor(std::int64_t sequence, std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);

@@ -20,7 +20,7 @@ struct Belief {
   double doubt = 0.4;
 
   Belief() {
-    state.time_us = 59'999'999;
+    state.last = StepStamp{0, 59'999'999};
     state.accepted_time_us = 0;
     state.claim.supported = 3;
     state.claim.log_odds = std::log(100.0);
@@ -46,7 +46,7 @@ const std::vector<Broken> kOfAllFilters{
     {"the picture was seen before", [](Belief& b) { b.measurement = Measurement::kRepeated; }},
     {"the camera stands still", [](Belief& b) { b.state.last_view.stands_still = true; }},
     {"two more accepted than rejected", [](Belief& b) { b.state.claim.supported = 2; }},
-    {"the last accepted a minute ago", [](Belief& b) { b.state.time_us = 60'000'000; }},
+    {"the last accepted a minute ago", [](Belief& b) { b.state.last->time_us = 60'000'000; }},
     {"none was accepted", [](Belief& b) { b.state.accepted_time_us.reset(); }},
     {"more doubt", [](Belief& b) { b.doubt = 0.401; }},
 };

@@ -37,10 +37,8 @@ TrackerState flown() {
   state.filter.resets = 2;
   state.filter.slow_support = 0.625;
   state.filter.fast_support = 0.0;
-  state.started = true;
   state.searched = true;
-  state.sequence = 41;
-  state.time_us = 42'000'000;
+  state.last = StepStamp{41, 42'000'000};
   state.measured = 40;
   state.last_search = 11;
   state.nadir_sigma_m = 5.25;
@@ -153,7 +151,7 @@ TEST(TrackerBytes, WithValuesThatNoTrackHasAreRefused) {
       [](TrackerState& s) { s.filter.particles.log_scale[1] = 1.5; },
       [](TrackerState& s) { s.filter.slow_support = 0.0; },
       [](TrackerState& s) { s.filter.fast_support = 1.5; },
-      [](TrackerState& s) { s.sequence = -1; },
+      [](TrackerState& s) { s.last->sequence = -1; },
       [](TrackerState& s) { s.measured = std::numeric_limits<std::int64_t>::max(); },
       [](TrackerState& s) { s.last_search = s.measured + 1; },
       [](TrackerState& s) { s.nadir_sigma_m = -1.0; },

@@ -155,7 +155,7 @@ TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   limits.deadline = Deadline({}, std::chrono::steady_clock::now());
   ASSERT_NO_THROW(state_ = tracker.advance(state_, late, limits).state);
   EXPECT_EQ(state_.last_search, state_.measured) << "it was tried";
-  EXPECT_EQ(state_.sequence, late.sequence);
+  EXPECT_EQ(state_.last.value().sequence, late.sequence);
 }
 
 TEST_F(Track, NoticesAKidnappingAndRecovers) {
@@ -337,9 +337,11 @@ class TrackBeyondTheMap : public Track {
 
   TrackEstimate fly_to(const Tracker& tracker, const GridPose& pose, double seconds) {
     StepInput step;
-    step.sequence = state_.sequence + 1;
-    step.time_us = state_.time_us + static_cast<std::int64_t>(1e6 * seconds);
-    if (step.sequence > 0) step.odometry = Odometry{20.0, 0.0, Angle()};
+    if (state_.last) {
+      step.sequence = state_.last->sequence + 1;
+      step.time_us = state_.last->time_us + static_cast<std::int64_t>(1e6 * seconds);
+      step.odometry = Odometry{20.0, 0.0, Angle()};
+    }
     step.features = testing::observed_at(map_, pose, 128, 128, 2.0, {0.1, 0.1}, random_);
     return advance(tracker, step);
   }
@@ -383,8 +385,8 @@ TEST_F(TrackBeyondTheMap, ClaimsNoPlaceOnTheMapForGroundFarBesideIt) {
   GridPose pose{{600'650.0 + 20.0 * 28, 6'399'400.0}, Angle::degrees(90.0)};
   for (int i = 0; i < 150; ++i, pose.position.east_m += 20.0) {
     StepInput step;
-    step.sequence = state_.sequence + 1;
-    step.time_us = state_.time_us + 2'000'000;
+    step.sequence = state_.last.value().sequence + 1;
+    step.time_us = state_.last.value().time_us + 2'000'000;
     step.odometry = Odometry{20.0, 0.0, Angle()};
     step.features = testing::observed_at(elsewhere, pose, 128, 128, 2.0, {0.1, 0.1}, random_);
     const TrackEstimate estimate = advance(tracker, step);

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
-#include "core/locate/convergence.hpp"
 #include "core/locate/track_geometry.hpp"
 
 namespace roadfix {
 
 TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, const Filter& filter,
-                          const StepOutcome& outcome) {
-  const TrackSettings& settings = tracker.settings();
+                          std::span<const Cluster> clusters, const StepOutcome& outcome) {
   TrackEstimate estimate;
   estimate.sequence = state.last->sequence;
   estimate.time_us = state.last->time_us;
-  const std::vector<Cluster> clusters = clusters_of(filter.particles());
+  estimate.converged = outcome.converged;
   estimate.cluster_count = clusters.size();
-  const double nadir_sigma_m = settings.vehicle.nadir_sigma_m.value_or(state.nadir_sigma_m);
+  const double nadir_sigma_m = tracker.settings().vehicle.nadir_sigma_m.value_or(state.nadir_sigma_m);
   for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {
     estimate.clusters.push_back(to_geographic(tracker.map(), clusters[i], nadir_sigma_m));
   }
@@ -29,7 +26,6 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   estimate.since_accepted_s = state.since_accepted_s(estimate.time_us);
   estimate.drifts = state.motion.drifts;
   estimate.missed_steps = outcome.missed_steps;
-  estimate.converged = has_converged(settings, state, clusters.front(), estimate.measurement, estimate.doubt);
   return estimate;
 }
 

@@ -1,8 +1,10 @@
-// What a step answers: where the vehicle is taken to be, and whether that may be claimed.
+// What a step answers.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
 #include "core/locate/tracker.hpp"
 
@@ -13,10 +15,11 @@ struct StepOutcome {
   Measurement measurement = Measurement::kNone;
   double mean_likelihood = 0.0;  ///< see TrackEstimate
   std::int64_t missed_steps = 0;
+  bool converged = false;
 };
 
-/// `state` after the step but for its filter, which is `filter`.
+/// `state` after the step but for its filter, which is `filter`; `clusters` of its particles.
 TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, const Filter& filter,
-                          const StepOutcome& outcome);
+                          std::span<const Cluster> clusters, const StepOutcome& outcome);
 
 }  // namespace roadfix

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/locate/convergence.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/particle_likelihoods.hpp"
 #include "core/locate/prepare.hpp"
@@ -49,10 +50,12 @@ StepResult Tracker::Step::run() {
   if (features_) see();
   state_.last = StepStamp{input_.sequence, input_.time_us};
   state_.motion = motion_.learned();
-  TrackEstimate estimate = estimate_of(tracker_, state_, filter_, outcome_);
+  const std::vector<Cluster> clusters = clusters_of(filter_.particles());
+  outcome_.converged = has_converged(settings_, state_, clusters.front(), outcome_.measurement, filter_.doubt());
   // Particles that part and gather again bring no claim back that ended unseen.
-  if (saw_nothing() && !estimate.converged) state_.claim.lose_look();
-  if (estimate.converged) state_.recent.clear();
+  if (saw_nothing() && !outcome_.converged) state_.claim.lose_look();
+  if (outcome_.converged) state_.recent.clear();
+  TrackEstimate estimate = estimate_of(tracker_, state_, filter_, clusters, outcome_);
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};
 }

@@ -1,9 +1,11 @@
 #include "core/filter/clusters.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace roadfix {
 namespace {
@@ -108,6 +110,20 @@ Cluster summary(const Particles& p, const std::vector<std::size_t>& members) {
   return cluster;
 }
 
+/// Of the particles with weight those that hang together; none is empty.
+std::vector<std::vector<std::size_t>> groups_of(const Particles& particles) {
+  std::vector<std::size_t> members;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (particles.weight[i] > 0.0) members.push_back(i);
+  }
+  const Binning binning = binned(particles, members);
+  UnionFind joined_bins = joined(binning.bins);
+  std::vector<std::vector<std::size_t>> groups(binning.bins.size());
+  for (std::size_t m = 0; m < members.size(); ++m) groups[joined_bins.root(binning.bin_of[m])].push_back(members[m]);
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
 }  // namespace
 
 double Cluster::sigma_m() const {
@@ -116,20 +132,20 @@ double Cluster::sigma_m() const {
 }
 
 std::vector<Cluster> clusters_of(const Particles& particles) {
-  std::vector<std::size_t> members;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (particles.weight[i] > 0.0) members.push_back(i);
-  }
-  const Binning binning = binned(particles, members);
-  UnionFind groups = joined(binning.bins);
-  std::vector<std::vector<std::size_t>> of_root(binning.bins.size());
-  for (std::size_t m = 0; m < members.size(); ++m) of_root[groups.root(binning.bin_of[m])].push_back(members[m]);
   std::vector<Cluster> clusters;
-  for (const auto& group : of_root) {
-    if (!group.empty()) clusters.push_back(summary(particles, group));
-  }
+  for (const auto& group : groups_of(particles)) clusters.push_back(summary(particles, group));
   std::ranges::stable_sort(clusters, std::ranges::greater{}, &Cluster::weight);
   return clusters;
+}
+
+Cluster heaviest_of(const Particles& particles) {
+  const auto groups = groups_of(particles);
+  assert(!groups.empty());
+  const auto weight = [&](const std::vector<std::size_t>& group) {
+    return std::accumulate(group.begin(), group.end(), 0.0,
+                           [&](double sum, std::size_t i) { return sum + particles.weight[i]; });
+  };
+  return summary(particles, *std::ranges::max_element(groups, {}, weight));
 }
 
 }  // namespace roadfix

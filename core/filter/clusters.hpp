@@ -20,7 +20,10 @@ struct Cluster {
   double sigma_m() const;
 };
 
-/// Heaviest first. Particles without weight are left out.
+/// Heaviest first. Particles without weight are left out; none where no other is.
 std::vector<Cluster> clusters_of(const Particles& particles);
+
+/// The first of them; some particle has weight.
+Cluster heaviest_of(const Particles& particles);
 
 }  // namespace roadfix

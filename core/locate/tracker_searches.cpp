@@ -51,7 +51,7 @@ void Tracker::Step::look_around_if_due() {
   if (!settings_.recovers || !state_.claim.is_told_apart() || outcome_.measurement == Measurement::kUseless) return;
   const std::int64_t since_us = input_.time_us - state_.claim.looked_time_us.value_or(input_.time_us);
   const LookAge last{since_us, state_.claim.flown_m};
-  const Cluster belief = clusters_of(filter_.particles()).front();
+  const Cluster belief = heaviest_of(filter_.particles());
   const bool due = !state_.claim.looked_time_us || last.is_due();
   if (!due && !fits_better_turned(map_, *features_, belief)) return;
   take(look_around(search_, map_, *features_, belief, last.flown_m), last);
@@ -89,7 +89,7 @@ bool Tracker::Step::wants_search() const {
 }
 
 void Tracker::Step::recover() {
-  const GridPose believed = clusters_of(filter_.particles()).front().mean;
+  const GridPose believed = heaviest_of(filter_.particles()).mean;
   const FeatureMap seen = state_.recent.laid_around(*features_);
   Prior prior;
   std::optional<Fix> fix = search_within(prior, seen, kWholeMapTimeShare);

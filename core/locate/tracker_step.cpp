@@ -138,7 +138,7 @@ void Tracker::Step::measure() {
 }
 
 void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
-  const GridPose believed = clusters_of(filter_.particles()).front().mean;
+  const GridPose believed = heaviest_of(filter_.particles()).mean;
   const Correction correction = filter_.correct(log_likelihoods);
   outcome_.mean_likelihood = correction.mean_likelihood;
   if (!correction.usable) {
@@ -155,7 +155,7 @@ void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
     if (settings_.recovers) filter_.widen(kWidenedM);
   }
   state_.claim.weigh(std::log(correction.mean_likelihood));
-  if (!is_same_place(clusters_of(filter_.particles()).front().mean, believed)) state_.claim.reopen();
+  if (!is_same_place(heaviest_of(filter_.particles()).mean, believed)) state_.claim.reopen();
 }
 
 /// No frame, none that says anything of the place, or none that is new.

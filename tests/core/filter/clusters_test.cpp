@@ -31,13 +31,18 @@ Particles particles_of(const std::vector<Blob>& blobs, int each) {
 }
 
 TEST(Clusters, SeparatePlacesAndHeadingsHeaviestFirst) {
-  const auto clusters =
-      clusters_of(particles_of({{0, 0, 90, 5, 2, 0.2}, {500, 0, 90, 5, 2, 0.5}, {0, 0, -90, 5, 2, 0.3}}, 2000));
+  const Particles particles =
+      particles_of({{0, 0, 90, 5, 2, 0.2}, {500, 0, 90, 5, 2, 0.5}, {0, 0, -90, 5, 2, 0.3}}, 2000);
+  const auto clusters = clusters_of(particles);
   ASSERT_EQ(clusters.size(), 3U);
   EXPECT_NEAR(clusters[0].weight, 0.5, 1e-9);
   EXPECT_NEAR(clusters[0].mean.position.east_m, 500.0, 0.6);
   EXPECT_NEAR(clusters[1].mean.heading.degrees(), -90.0, 0.3);
   EXPECT_NEAR(clusters[2].weight, 0.2, 1e-9);
+  const Cluster heaviest = heaviest_of(particles);
+  EXPECT_EQ(heaviest.mean.position, clusters[0].mean.position);
+  EXPECT_EQ(heaviest.covariance, clusters[0].covariance);
+  EXPECT_EQ(heaviest.weight, clusters[0].weight);
 }
 
 TEST(Clusters, GoRoundSouth) {

@@ -83,7 +83,7 @@ TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGrou
   const TrackerState before = state_;
   StepInput hover = flight.step(false);
   hover.odometry = Odometry{};
-  const Cluster belief = clusters_of(before.filter.particles).front();
+  const Cluster belief = heaviest_of(before.filter.particles);
   const GridPoint at = belief.mean.position;
   const GridBox box = map_.geometry.box();
   const double to_rim_m = std::min({at.east_m - box.min.east_m, box.max.east_m - at.east_m,

@@ -19,7 +19,8 @@ constexpr double kTurnedRad = 0.01;
 // Views are compared in cells so many times as large at least, and at most so many across: noise of single cells is
 // evened out, and a state stays small.
 constexpr double kCoarser = 2.0;
-constexpr int kMaxAcross = 128;
+constexpr int kMaxAcrossCompared = 128;
+static_assert(kMaxAcrossCompared <= RecentFrames::kMaxAcross, "LastView::earlier keeps no larger one");
 
 constexpr double kApartCells = 3.0;  // by which roads must have moved before views are compared
 constexpr double kMinShareInCommon = 0.25;
@@ -40,7 +41,7 @@ std::uint64_t digest_of(const FeatureMap& features) {
 
 FeatureMap coarser(const FeatureMap& features) {
   const int across = std::max(features.cells.cols(), features.cells.rows());
-  return resampled(features, features.cell_m * std::max(kCoarser, std::ceil(1.0 * across / kMaxAcross)));
+  return resampled(features, features.cell_m * std::max(kCoarser, std::ceil(1.0 * across / kMaxAcrossCompared)));
 }
 
 bool has_same_shape(const FeatureMap& a, const FeatureMap& b) {

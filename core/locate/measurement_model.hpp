@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/locate/search_figures.hpp"
 #include "core/match/correlation.hpp"
 
 namespace roadfix {
@@ -25,7 +26,7 @@ struct MeasurementModel {
   double expected_correlation = 0.25;  ///< mean correlation at the true pose, 0 to 1
   /// Square metres of ground that count as one independent sample, since errors of near cells go together. Four times
   /// the kSampleM2 of a search: a sample that is counted twice makes a track sure too early.
-  double independent_m2 = 900.0;
+  double independent_m2 = 4.0 * kSampleM2;
   double temper = 0.5;         ///< exponent of each likelihood, below 1 since consecutive frames see the same ground
   double useless_share = 0.1;  ///< how many of all frames say nothing even at the true pose, 0 to 1
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace roadfix {
 namespace {
@@ -48,6 +49,7 @@ void RecentFrames::move(const Odometry& odometry, const OdometryCovariance& cova
 }
 
 void RecentFrames::keep(const FeatureMap& features) {
+  static_assert(kMaxCells >= std::size_t{kMaxAcross} * kMaxAcross, "the newest frame is kept, however large it may be");
   if (!is_small_enough(features)) return;
   if (!frames_.empty() && frames_.front().placed.features.cell_m != features.cell_m) frames_.clear();
   const double apart_m = kApartShare * features.cell_m * std::min(features.cells.cols(), features.cells.rows());

@@ -7,6 +7,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::int64_t kMinSupport = 3;
+static_assert(TrackClaim::kMaxSupport - kMinSupport + 1 == 3, "so many rejections take a claim back");
 const double kMinLogOdds = std::log(100.0);
 const double kMaxLogOdds = 2.0 * kMinLogOdds;
 

@@ -57,7 +57,8 @@ struct TrackSettings {
   VehicleNoise vehicle;
   std::uint64_t seed = 1;
   /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
-  /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there.
+  /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there. The
+  /// circle that is searched around a belief (TrackSearch::kAroundM) meets the map from wherever that is.
   double beyond_map_m = 1000.0;
   /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
   /// place.

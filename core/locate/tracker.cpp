@@ -10,6 +10,7 @@
 
 #include "core/locate/prepare.hpp"
 #include "core/locate/track_geometry.hpp"
+#include "core/locate/track_search.hpp"
 #include "core/locate/tracker_step.hpp"
 #include "core/match/scales.hpp"
 #include "core/units/error.hpp"
@@ -62,6 +63,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
       settings_(std::move(settings)),
       start_(region_of(map_, settings_.prior)),
       region_(region_of_flight(map_, settings_)) {
+  assert(std::numbers::sqrt2 * settings_.beyond_map_m < TrackSearch::kAroundM);
   // Particles alone would not find the vehicle there either, and each step would read the whole map for them.
   if (settings_.start == TrackStart::kSearch) require_searchable(start_.area_km2(), settings_.max_search_km2);
 }

@@ -52,7 +52,7 @@ SearchResult searched(const GridReader& read, double finest_cell_m, const Featur
   result.refined = refine(levels.coarse(), {.cells = 1, .bins = 1}, options.deadline, candidates);
   prove_at(levels.coarsest());
   for (int k = levels.coarsest() - 1; k >= 0; --k) {
-    candidates = levels.distinct(candidates, levels.at(k + 1), 2.5 * result.coarse_cell_m, 2, levels.followed(k + 1));
+    candidates = levels.apart(std::move(candidates), levels.at(k + 1), levels.followed(k + 1));
     descend(candidates);
     result.refined = refine(levels.at(k), {.cells = 2, .bins = 2}, options.deadline, candidates) && result.refined;
     prove_at(k);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/grid/resample.hpp"
 
@@ -115,12 +116,13 @@ int SearchLevels::spread_level() const {
   return level;
 }
 
-PoseRegion SearchLevels::wide_region(const Level& level) const {
-  return region_.grown(0.71 * level.cell_m(), level.bins.step());
+PoseRegion SearchLevels::widened(const PoseRegion& region, const Level& level) {
+  constexpr double kHalfDiagonalCells = 0.71;
+  return region.grown(kHalfDiagonalCells * level.cell_m(), level.bins.step());
 }
 
 bool SearchLevels::within_region(const Level& level, const LatticePose& pose) const {
-  return wide_region(level).contains(level.pose_of(pose));
+  return widened(region_, level).contains(level.pose_of(pose));
 }
 
 std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
@@ -144,6 +146,11 @@ std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, 
     ++same_side;
   }
   return kept;
+}
+
+std::vector<LatticePose> SearchLevels::apart(std::vector<LatticePose> poses, const Level& level,
+                                             std::size_t keep) const {
+  return distinct(std::move(poses), level, kCandidatesApartCells * coarse().cell_m(), kCandidatesApartBins, keep);
 }
 
 std::vector<int> bins_within(const HeadingBins& bins, const PoseRegion& region) {

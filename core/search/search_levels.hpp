@@ -12,7 +12,10 @@
 namespace roadfix {
 
 inline constexpr std::size_t kSurvivors = 96;  ///< followed from each finer level
-inline constexpr int kDistinctBins = 3;        ///< of the scan's headings, between places of their own
+/// Of the scan's cells and headings, between candidates that are followed.
+inline constexpr double kCandidatesApartCells = 2.5;
+inline constexpr int kCandidatesApartBins = 2;
+inline constexpr int kDistinctBins = 3;  ///< of the scan's headings, between places of their own
 
 /// So far beside the headings of a region a place that fits better is looked for, as around it: the flanks of such a
 /// peak reach into the region.
@@ -42,12 +45,14 @@ class SearchLevels {
   int spread_level() const;
 
   /// With a step of the level's lattice around, so that each pose of the region has one of the lattice beside it.
-  PoseRegion wide_region(const Level& level) const;
-  /// The wide region.
+  static PoseRegion widened(const PoseRegion& region, const Level& level);
+  /// The widened region.
   bool within_region(const Level& level, const LatticePose& pose) const;
   /// Those that are apart from every better one, best first: up to `keep` from within the region, and as many others.
   std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
                                     int coarse_bins_apart, std::size_t keep) const;
+  /// Those that are followed: distinct() ones.
+  std::vector<LatticePose> apart(std::vector<LatticePose> poses, const Level& level, std::size_t keep) const;
 
  private:
   const PoseRegion& region_;

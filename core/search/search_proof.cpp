@@ -11,7 +11,7 @@ namespace {
 /// All but the feature map and the map.
 BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, const SearchOptions& options,
                              const std::vector<LatticePose>& candidates) {
-  const PoseRegion wide = levels.wide_region(level);
+  const PoseRegion wide = SearchLevels::widened(levels.region(), level);
   BoundedSearch bounded;
   bounded.bins = level.bins;
   bounded.headings = bins_within(level.bins, wide);

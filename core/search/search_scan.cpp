@@ -23,7 +23,7 @@ constexpr double kLeastKm2 = 4.0;
 SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
     : levels_(levels),
       options_(options),
-      separation_m_(std::max(2.5 * levels.coarse().cell_m(), 0.1 * levels.side_m())),
+      separation_m_(std::max(kCandidatesApartCells * levels.coarse().cell_m(), 0.1 * levels.side_m())),
       scanned_(enlarged()) {}
 
 /// What chance gives is told from the best places at all headings, whatever range of them is asked for: among the few
@@ -61,7 +61,7 @@ ScanRequest SearchScan::request() const {
   ScanRequest request;
   request.positions = GridGeometry::covering(scanned_.box, coarse.cell_m());
   request.bins = coarse.bins;
-  const PoseRegion wide = scanned_.grown(0.71 * coarse.cell_m(), coarse.bins.step());
+  const PoseRegion wide = SearchLevels::widened(scanned_, coarse);
   request.headings = bins_within(request.bins, wide);
   request.eligible = cells_within(request.positions, wide);
   request.keep = kScanMaxima;
@@ -129,11 +129,8 @@ Scanned SearchScan::run() const {
     const double sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
     scanned.sd = finer_spread().value_or(sd);
   }
-  const auto apart = [&](const std::vector<LatticePose>& poses, std::size_t keep) {
-    return levels_.distinct(poses, coarse, 2.5 * coarse.cell_m(), 2, keep);
-  };
-  scanned.candidates = apart(found.inside, levels_.followed(levels_.coarsest()));
-  const std::vector<LatticePose> others = apart(found.outside, kCandidatesAround);
+  scanned.candidates = levels_.apart(found.inside, coarse, levels_.followed(levels_.coarsest()));
+  const std::vector<LatticePose> others = levels_.apart(found.outside, coarse, kCandidatesAround);
   scanned.candidates.insert(scanned.candidates.end(), others.begin(), others.end());
   return scanned;
 }

@@ -13,7 +13,7 @@ int padded_for_vectors(int cols) { return cols + kRowOverrun; }
 }  // namespace
 
 std::size_t ScanDirection::count() const {
-  return static_cast<std::size_t>(std::ranges::count_if(bins, [](int bin) { return bin >= 0; }));
+  return static_cast<std::size_t>(std::ranges::count_if(bins, [](const auto& bin) { return bin.has_value(); }));
 }
 
 ScanBuffers::ScanBuffers(const ScanMap& map)
@@ -54,10 +54,10 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
   const std::ptrdiff_t start =
       (at.rows.first + lead_row_ + shift - sums.row) * sums.stride + at.cols.first + lead_col_ + shift - sums.col;
   for (std::size_t i = 0; i < direction.bins.size(); ++i) {
-    if (direction.bins[i] < 0) continue;
+    if (!direction.bins[i]) continue;
     const float* from = (i == 0 ? sums.first : sums.second) + start;
     score(half_turn, at, {from, sums.stride, i == 0 ? sums.first_scale : sums.second_scale}, buffers);
-    collect(direction.bins[i], at, floor, buffers, found);
+    collect(*direction.bins[i], at, floor, buffers, found);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/scan/coarse_scan.hpp"
@@ -16,7 +17,7 @@ namespace roadfix {
 /// the footprint, which hardly change from one to the next, and the two parts of a complex transform.
 struct ScanDirection {
   bool half_turn = false;
-  std::array<int, 2> bins{-1, -1};  ///< -1 for one that is not asked for
+  std::array<std::optional<int>, 2> bins{};  ///< nullopt for one that is not asked for
 
   std::size_t count() const;
 };

@@ -45,9 +45,7 @@ SearchResult searched(const GridReader& read, double finest_cell_m, const Featur
   SearchResult result = result_of(levels, scanned);
   std::vector<LatticePose> candidates = std::move(scanned.candidates);
   const auto prove_at = [&](int level) {
-    if (options.proof_time.count() > 0 && level == levels.proof_level()) {
-      result.proof = prove(levels, options, candidates);
-    }
+    if (options.proof_time && level == levels.proof_level()) result.proof = prove(levels, options, candidates);
   };
   result.refined = refine(levels.coarse(), {.cells = 1, .bins = 1}, options.deadline, candidates);
   prove_at(levels.coarsest());

@@ -54,8 +54,8 @@ struct SearchOptions {
   /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
   /// at a time.
   OnProgress progress{};
-  /// How long to look for a better pose than the best candidate, within the deadline; 0 = no proof.
-  std::chrono::milliseconds proof_time{0};
+  /// How long to look for a better pose than the best candidate, within the deadline; nullopt = no proof.
+  std::optional<std::chrono::milliseconds> proof_time{};
 };
 
 /// What is known of all poses of the region, not just of the candidates.

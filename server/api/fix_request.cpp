@@ -83,7 +83,7 @@ FixOptions parse_fix_options(const Fields& fields, const Limits& limits) {
   options.max_search_km2 = limits.search_km2;
   options.search.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(0.0);
   const double proof_s = fields.optional_number("proof_s", {0.0, 3600.0}).value_or(0.0);
-  options.search.proof_time = milliseconds_of(proof_s);
+  if (proof_s > 0.0) options.search.proof_time = milliseconds_of(proof_s);
   return options;
 }
 

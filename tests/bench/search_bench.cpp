@@ -80,7 +80,7 @@ void search_city(benchmark::State& state) {
   MapView view = city()->view;
   const bool warm = state.range(1) != 0;
   FixOptions options;
-  options.search.proof_time = std::chrono::seconds(state.range(2));
+  if (state.range(2) > 0) options.search.proof_time = std::chrono::seconds(state.range(2));
   options.search.scale_range = static_cast<double>(state.range(3)) / 100.0;
   int asked = 0;
   int right = 0;

@@ -96,7 +96,7 @@ TEST(FixOptionsRequest, SearchesWithoutProofOrLimitUnlessItIsAskedTo) {
   EXPECT_EQ(options.confidence, 0.99);
   EXPECT_EQ(options.search.max_modes, 8);
   EXPECT_EQ(options.search.scale_range, 0.0);
-  EXPECT_EQ(options.search.proof_time, milliseconds(0));
+  EXPECT_FALSE(options.search.proof_time);
   EXPECT_FALSE(parse_time_limit(fields_of(json::object(), fix_option_fields())));
   EXPECT_EQ(options.max_search_km2, 12.5) << "which is the operator's to say";
 }
@@ -115,7 +115,7 @@ TEST(FixOptionsRequest, TakesWhatItIsToldWithinTheLimits) {
 
 TEST(FixOptionsRequest, RoundsTimesUpSoThatALittleIsNotNone) {
   const auto proof = [](double seconds) { return options_of({{"proof_s", seconds}}).search.proof_time; };
-  EXPECT_EQ(proof(0.0), milliseconds(0));
+  EXPECT_FALSE(proof(0.0));
   EXPECT_EQ(proof(1e-6), milliseconds(1));
   EXPECT_EQ(proof(1.5), milliseconds(1500));
   const auto limit = [](double seconds) {

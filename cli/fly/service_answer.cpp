@@ -50,7 +50,7 @@ TrackEstimate estimate_of(const json& answer) {
     estimate.doubt = answer.at("doubt");
     const json& accepted = answer.at("since_accepted_s");
     if (!accepted.is_null()) estimate.since_accepted_s = accepted.get<double>();
-    estimate.drifts = answer.at("drifts");
+    estimate.odometry_is_wrong = answer.at("drifts");
     estimate.missed_steps = answer.at("missed_steps");
   } catch (const json::exception& error) {
     throw unreadable(error.what());

@@ -9,7 +9,7 @@
 namespace roadfix {
 namespace {
 
-// Of the averages of what measurements gave the belief.
+// Of the averages of how well measurements fit the belief.
 constexpr double kSlowRate = 0.02;
 constexpr double kFastRate = 0.2;
 constexpr double kCalmDoubt = 0.15;  // below it doubt is but their fluctuation, and nothing is drawn anew
@@ -92,7 +92,7 @@ void Filter::start_anew_from(std::span<const Proposal> proposals, double uniform
 
 void Filter::redraw_from(std::span<const Proposal> proposals, double uniform_share, const PoseRegion& over) {
   ++state_.step;
-  state_.slow_support = state_.fast_support = 0.5;
+  state_.slow_fit = state_.fast_fit = 0.5;
   const ProposalDraw around(proposals, region_);
   const auto count = static_cast<std::size_t>(options_.max_particles);
   const auto uniform = proposals.empty() ? count : static_cast<std::size_t>(uniform_share * static_cast<double>(count));
@@ -143,9 +143,9 @@ Correction Filter::correct(std::span<const double> log_likelihoods) {
   result.usable = true;
   result.mean_likelihood = sum * std::exp(largest);
   // Odds of the belief against chance, as a probability: one lucky or useless frame cannot swamp the averages.
-  const double support = result.mean_likelihood / (1.0 + result.mean_likelihood);
-  state_.slow_support += kSlowRate * (support - state_.slow_support);
-  state_.fast_support += kFastRate * (support - state_.fast_support);
+  const double fit = result.mean_likelihood / (1.0 + result.mean_likelihood);
+  state_.slow_fit += kSlowRate * (fit - state_.slow_fit);
+  state_.fast_fit += kFastRate * (fit - state_.fast_fit);
   const double effective = effective_sample_size(p.weight) / static_cast<double>(p.size());
   result.resampled =
       options_.effective_share >= 1.0 || effective < options_.effective_share || share_to_inject() > 0.01;
@@ -153,7 +153,7 @@ Correction Filter::correct(std::span<const double> log_likelihoods) {
   return result;
 }
 
-double Filter::doubt() const { return std::clamp(1.0 - state_.fast_support / state_.slow_support, 0.0, 1.0); }
+double Filter::doubt() const { return std::clamp(1.0 - state_.fast_fit / state_.slow_fit, 0.0, 1.0); }
 
 double Filter::share_to_inject() const {
   if (options_.injection == Injection::kFixedShare) return 0.0;

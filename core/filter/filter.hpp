@@ -51,10 +51,10 @@ struct Proposal {
 struct FilterState {
   Particles particles;
   std::uint64_t seed = 0;
-  std::uint64_t step = 0;     ///< predictions and draws so far: addresses the random numbers
-  std::uint64_t resets = 0;   ///< times that the belief was thrown away
-  double slow_support = 0.5;  ///< averages of the support that measurements gave the belief
-  double fast_support = 0.5;
+  std::uint64_t step = 0;    ///< predictions and draws so far: addresses the random numbers
+  std::uint64_t resets = 0;  ///< times that the belief was thrown away
+  double slow_fit = 0.5;     ///< averages of how well measurements fit the belief, 0 to 1
+  double fast_fit = 0.5;
   friend bool operator==(const FilterState&, const FilterState&) = default;
 };
 

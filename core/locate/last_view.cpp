@@ -93,7 +93,7 @@ void LastView::move(const std::optional<Odometry>& odometry, bool tells_ground) 
   }
 }
 
-View LastView::look(const FeatureMap& features) {
+View LastView::take_in(const FeatureMap& features) {
   if (!shows_road(features)) {
     earlier.clear();
     stands_still = false;

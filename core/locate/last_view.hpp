@@ -45,7 +45,8 @@ struct LastView {
   /// The vehicle has moved on; a step that tells no odometry may have led anywhere. `tells_ground`: the odometry tells
   /// the motion over the ground (no wind, no lost steps), so that it says where roads should be seen next.
   void move(const std::optional<Odometry>& odometry, bool tells_ground);
-  View look(const FeatureMap& features);
+  /// Compares it with earlier ones, and remembers it.
+  View take_in(const FeatureMap& features);
 
   friend bool operator==(const LastView&, const LastView&) = default;
 

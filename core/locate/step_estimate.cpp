@@ -24,7 +24,7 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   estimate.mean_likelihood = outcome.mean_likelihood;
   estimate.doubt = filter.doubt();
   estimate.since_accepted_s = state.since_accepted_s(estimate.time_us);
-  estimate.drifts = state.motion.drifts;
+  estimate.odometry_is_wrong = state.motion.odometry_is_wrong;
   estimate.missed_steps = outcome.missed_steps;
   return estimate;
 }

@@ -39,7 +39,7 @@ struct TrackEstimate {
   double mean_likelihood = 0.0;
   double doubt = 0.0;                      ///< how much worse late measurements fit than earlier ones, 0 to 1
   std::optional<double> since_accepted_s;  ///< nullopt = no measurement was accepted yet
-  bool drifts = false;                     ///< the odometry was found wrong, and a drift of it is learned
+  bool odometry_is_wrong = false;          ///< was found so, and a drift of it is learned
   std::int64_t missed_steps = 0;           ///< sequence numbers left out before this step
   static constexpr std::size_t kMaxClusters = 8;
 };

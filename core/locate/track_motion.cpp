@@ -49,7 +49,7 @@ double StepMotion::way_m() const {
 
 Wind StepMotion::wind() const {
   const Wind& told = vehicle_.wind;
-  if (!learned_.drifts) return told;
+  if (!learned_.odometry_is_wrong) return told;
   const Wind found = Wind::of(std::max(kLeastFoundWindMS, kFoundWindShare * speed_m_s()), std::nullopt);
   return {std::max(told.sigma_m_s, found.sigma_m_s), std::max(told.walk, found.walk)};
 }
@@ -69,7 +69,7 @@ double StepMotion::move(Filter& filter) {
   return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk});
 }
 
-void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.drifts, coasts(), 0.0}; }
+void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }
 
 /// Where the step before told no motion, the drift of the particles was all of their velocity: they draw a new one.
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
@@ -127,8 +127,8 @@ void StepMotion::try_drifts(Filter& filter) const {
 }
 
 void StepMotion::learn_drift(Filter& filter) {
-  if (learned_.drifts || coasts()) return;
-  learned_.drifts = true;
+  if (learned_.odometry_is_wrong || coasts()) return;
+  learned_.odometry_is_wrong = true;
   filter.widen_drift(wind().sigma_m_s);
 }
 

@@ -22,7 +22,7 @@ struct ToldMotion {
 struct LearnedMotion {
   std::optional<BodyVelocity> velocity;  ///< that the last odometry told, seen from the pose at its end
   double turn_rate_rad_s = 0.0;          ///< likewise, clockwise
-  bool drifts = false;                   ///< the odometry was found wrong: a wind is learned though none was told
+  bool odometry_is_wrong = false;        ///< was found so: a wind is learned though none was told
   bool coasts = false;     ///< the last step told no motion: the drift of the particles is all of their velocity
   double coasted_s = 0.0;  ///< since motion was told
   friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;

@@ -35,9 +35,9 @@ void pass_members(auto& io, auto& state) {
          motion] = state;
   io(searched, last->sequence, last->time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
-  io(motion.velocity, motion.turn_rate_rad_s, motion.drifts, motion.coasts, motion.coasted_s);
+  io(motion.velocity, motion.turn_rate_rad_s, motion.odometry_is_wrong, motion.coasts, motion.coasted_s);
   io(last_view.seen, last_view.stands_still, last_view.earlier);
-  io(filter.seed, filter.step, filter.resets, filter.slow_support, filter.fast_support, filter.particles);
+  io(filter.seed, filter.step, filter.resets, filter.slow_fit, filter.fast_fit, filter.particles);
   io(recent);
 }
 
@@ -176,7 +176,7 @@ bool can_be(const FilterState& filter) {
   return std::ranges::all_of(weights, is_share) &&
          std::abs(std::accumulate(weights.begin(), weights.end(), -1.0)) <= kRounding &&
          std::ranges::all_of(filter.particles.log_scale, [](double s) { return std::abs(s) <= 1.0; }) &&
-         filter.slow_support > 0.0 && is_share(filter.slow_support) && is_share(filter.fast_support);
+         filter.slow_fit > 0.0 && is_share(filter.slow_fit) && is_share(filter.fast_fit);
 }
 
 bool can_be(const RecentFrames& recent) {

@@ -107,7 +107,7 @@ void Tracker::Step::recover() {
   } else {
     filter_.start_anew_from(proposals_of(map_, *fix, *features_), 1.0 - kMaxFixShare, tracker_.region_.poses);
     outcome_.measurement = Measurement::kSearched;
-    forget_support();
+    begin_claim_anew();
     state_.searched = true;
     confirm(*fix);
   }

@@ -74,13 +74,13 @@ void Tracker::Step::move() {
   if (motion_.told().seconds > kLongestGapS) {
     filter_.start_uniformly(tracker_.region_.poses);
     motion_.begin_anew();
-    forget_support();
+    begin_claim_anew();
     state_.recent.clear();
     return;
   }
   const double kept = motion_.move(filter_);
   if (kept == 0.0) {
-    forget_support();
+    begin_claim_anew();
   } else if (kept < kLeastKept) {
     state_.claim = {};
   }
@@ -94,7 +94,7 @@ void Tracker::Step::move() {
 }
 
 void Tracker::Step::see() {
-  const View view = state_.last_view.look(*input_.features);
+  const View view = state_.last_view.take_in(*input_.features);
   if (view == View::kNew) {
     measure();
     if (may_search()) state_.recent.keep(*features_);
@@ -164,7 +164,7 @@ bool Tracker::Step::saw_nothing() const {
          outcome_.measurement == Measurement::kRepeated;
 }
 
-void Tracker::Step::forget_support() {
+void Tracker::Step::begin_claim_anew() {
   state_.claim = {};
   state_.searched = false;
 }

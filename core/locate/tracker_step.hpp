@@ -36,7 +36,7 @@ class Tracker::Step {
   void measure();
   void weigh(std::span<const double> log_likelihoods);
   bool saw_nothing() const;
-  void forget_support();
+  void begin_claim_anew();
 
   // tracker_searches.cpp; `seen` is the last feature map, with the frames before it laid around
   bool may_search() const;

@@ -8,12 +8,12 @@
 
 namespace roadfix {
 
-/// The nadir lies in this cell, the heading is this bin, the scale this index (Scales).
+/// The nadir lies in this cell, the heading is this bin, the scale this step of Scales.
 struct LatticePose {
   LatticeIndex cell;
   int bin = 0;
   double score = 0.0;
-  int scale = 0;
+  int scale_step = 0;
 };
 
 /// A total order of poses at one scale: which of equal ones is the best does not depend on which thread was first.

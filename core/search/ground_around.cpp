@@ -18,7 +18,7 @@ GridGeometry joined(const GridGeometry& a, const GridGeometry& b) {
 }  // namespace
 
 GridGeometry window_around(const Level& level, const LatticePose& pose, int cells) {
-  const int reach = level.reach(std::min(pose.scale + 1, level.scales.reach())) + cells;
+  const int reach = level.reach(std::min(pose.scale_step + 1, level.scales.reach())) + cells;
   return GridGeometry{level.cell_m(), pose.cell, 1, 1}.padded(reach);
 }
 

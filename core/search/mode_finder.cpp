@@ -15,7 +15,7 @@ SearchMode ModeFinder::at(LatticePose pose) const {
   for (int moves = 0; moves < kMaxMoves; ++moves) {
     const std::array<int, 3> top = highest(peak.scores);
     if (top == std::array<int, 3>{}) break;
-    pose = {{pose.cell.col + top[0], pose.cell.row + top[1]}, pose.bin + top[2], 0.0, pose.scale};
+    pose = {{pose.cell.col + top[0], pose.cell.row + top[1]}, pose.bin + top[2], 0.0, pose.scale_step};
     peak = peak_around(finest_, bins_, pose);
   }
   const PeakShape shape = shape_of(peak.scores, background_);
@@ -26,7 +26,7 @@ SearchMode ModeFinder::at(LatticePose pose) const {
   mode.pose.position.east_m += unit[0] * shape.offset[0];
   mode.pose.position.north_m += unit[1] * shape.offset[1];
   mode.pose.heading += Angle::radians(unit[2] * shape.offset[2]);
-  mode.scale = finest_.scales.factor(pose.scale);
+  mode.scale = finest_.scales.factor(pose.scale_step);
   mode.score = peak.scores.at(0, 0, 0);
   mode.pearson = pearson(peak.centre).value_or(0.0);
   mode.observed_cells = peak.centre.n;

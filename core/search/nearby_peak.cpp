@@ -20,7 +20,7 @@ class ScoresAround {
   ScoresAround(const Level& level, const LatticePose& place, int step, int reach) : reach_(reach) {
     const MapPlane plane(level.read(window_around(level, place, reach * step)).cells);
     const std::vector<PlaneCell> places = places_around({plane.cols() / 2, plane.rows() / 2}, reach, step);
-    const LevelFeatures features = level.at_scale(place.scale);
+    const LevelFeatures features = level.at_scale(place.scale_step);
     std::vector<MatchSums> sums(places.size());
     match_sums(plane, footprint_at(features.rotator, level.bins.heading(place.bin)), places, sums);
     for (const MatchSums& of_place : sums) {
@@ -60,7 +60,7 @@ std::optional<LatticePose> nearby_peak(const Level& level, const LatticePose& pl
       if (own || col * col + row * row > apart * apart) continue;
       const double score = scores.at(col, row);
       if (score <= (best ? best->score : 0.0) || !scores.is_peak(col, row)) continue;
-      best = {{place.cell.col + col * step, place.cell.row + row * step}, place.bin, score, place.scale};
+      best = {{place.cell.col + col * step, place.cell.row + row * step}, place.bin, score, place.scale_step};
     }
   }
   return best;

@@ -31,7 +31,7 @@ double vertex(double before, double middle, double after) {
 }  // namespace
 
 Peak peak_around(const Level& level, const HeadingBins& bins, const LatticePose& pose) {
-  const LevelFeatures features = level.at_scale(pose.scale);
+  const LevelFeatures features = level.at_scale(pose.scale_step);
   const MapPlane plane(level.read(window_around(level, pose, kPeakRadius)).cells);
   const std::vector<PlaneCell> places = places_around({plane.cols() / 2, plane.rows() / 2}, kPeakRadius);
   std::vector<MatchSums> sums(places.size());

@@ -36,7 +36,7 @@ using CandidatesOf = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 CandidatesOf by_scale_and_bin(const Level& level, int bins, const std::vector<LatticePose>& candidates) {
   CandidatesOf result;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (int scale = candidates[i].scale - 1; scale <= candidates[i].scale + 1; ++scale) {
+    for (int scale = candidates[i].scale_step - 1; scale <= candidates[i].scale_step + 1; ++scale) {
       if (std::abs(scale) > level.scales.reach()) continue;
       for (int d = -bins; d <= bins; ++d) result[{scale, level.bins.wrapped(candidates[i].bin + d)}].push_back(i);
     }
@@ -70,33 +70,33 @@ struct Neighbour {
 };
 
 /// Looks around what was found best, at cells that are farther than `seen` from where its candidate was.
-std::vector<Neighbour> looks_beyond(int seen, const RefineTask& task, const std::vector<LatticePose>& poses) {
-  std::vector<Neighbour> looks;
+std::vector<Neighbour> neighbours_beyond(int seen, const RefineTask& task, const std::vector<LatticePose>& poses) {
+  std::vector<Neighbour> neighbours;
   for (std::size_t member = 0; member < task.best.size(); ++member) {
     const LatticeIndex begin = poses[task.candidates[member]].cell;
     const LatticeIndex best = task.best[member].cell;
     for (int row = best.row - 1; row <= best.row + 1; ++row) {
       for (int col = best.col - 1; col <= best.col + 1; ++col) {
         const bool beyond = std::max(std::abs(col - begin.col), std::abs(row - begin.row)) > seen;
-        if (beyond) looks.push_back({member, {col, row}});
+        if (beyond) neighbours.push_back({member, {col, row}});
       }
     }
   }
-  return looks;
+  return neighbours;
 }
 
-void look(std::span<const Neighbour> looks, const GroundAround& ground, const PackedFootprint& footprint,
-          const FootprintCells& full, RefineTask& task) {
+void score_at(std::span<const Neighbour> neighbours, const GroundAround& ground, const PackedFootprint& footprint,
+              const FootprintCells& full, RefineTask& task) {
   std::vector<std::size_t> poses;
   std::vector<LatticeIndex> cells;
-  for (const Neighbour& each : looks) {
+  for (const Neighbour& each : neighbours) {
     poses.push_back(task.candidates[each.member]);
     cells.push_back(each.cell);
   }
-  std::vector<MatchSums> sums(looks.size());
+  std::vector<MatchSums> sums(neighbours.size());
   ground.match(footprint, task.quarters, poses, cells, sums);
-  for (std::size_t k = 0; k < looks.size(); ++k) {
-    LatticePose& best = task.best[looks[k].member];
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    LatticePose& best = task.best[neighbours[k].member];
     const double score = score_of(sums[k], full);
     if (score <= best.score) continue;
     best.cell = cells[k];
@@ -105,14 +105,14 @@ void look(std::span<const Neighbour> looks, const GroundAround& ground, const Pa
 }
 
 /// Up the score from where the candidates are. A peak is hardly narrower than the step, so that this ends on the best
-/// of all poses within reach but for a few of them, at half the looks.
+/// of all poses within reach but for a few of them, at half the cost.
 void climb(RefineFamily& family, int cells, const GroundAround& ground, const std::vector<LatticePose>& poses) {
   const PackedFootprint footprint = footprint_at(family.features->rotator, family.heading);
   for (RefineTask& task : family.tasks) {
     constexpr int kNone = -1;
-    look(looks_beyond(kNone, task, poses), ground, footprint, family.features->cells, task);
+    score_at(neighbours_beyond(kNone, task, poses), ground, footprint, family.features->cells, task);
     for (int seen = 1; seen < cells; ++seen) {
-      look(looks_beyond(seen, task, poses), ground, footprint, family.features->cells, task);
+      score_at(neighbours_beyond(seen, task, poses), ground, footprint, family.features->cells, task);
     }
   }
 }

@@ -169,7 +169,7 @@ void descend(std::vector<LatticePose>& candidates) {
   for (LatticePose& pose : candidates) {
     pose.cell = {2 * pose.cell.col, 2 * pose.cell.row};
     pose.bin *= 2;
-    pose.scale *= 2;
+    pose.scale_step *= 2;
   }
 }
 

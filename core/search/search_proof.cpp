@@ -50,7 +50,7 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
     const BoundedResult found = search_with_bound(bounded, deadline);
     if (found.better) {
       better = found.better;
-      better->scale = scale;
+      better->scale_step = scale;
       bounded.known = better->score;
     }
     proof.bound = std::max(proof.bound, found.bound);

@@ -39,7 +39,7 @@ json to_json(const TrackEstimate& estimate) {
   answer["mean_likelihood"] = estimate.mean_likelihood;
   answer["doubt"] = estimate.doubt;
   answer["since_accepted_s"] = estimate.since_accepted_s ? json(*estimate.since_accepted_s) : json();
-  answer["drifts"] = estimate.drifts;
+  answer["drifts"] = estimate.odometry_is_wrong;
   answer["missed_steps"] = estimate.missed_steps;
   return answer;
 }

@@ -33,7 +33,7 @@ TrackEstimate estimate() {
   e.mean_likelihood = 0.75;
   e.doubt = 0.125;
   e.since_accepted_s = 2.5;
-  e.drifts = true;
+  e.odometry_is_wrong = true;
   e.missed_steps = 3;
   return e;
 }

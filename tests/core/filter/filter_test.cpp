@@ -99,7 +99,7 @@ TEST(Filter, KeepsFiniteAveragesOfTheLargestLikelihood) {
   filter.start_uniformly(kSquare);
   const Correction correction = filter.correct(std::vector<double>(filter.particles().size(), kMaxLogLikelihood));
   EXPECT_TRUE(correction.usable && std::isfinite(correction.mean_likelihood));
-  EXPECT_GT(filter.state().fast_support, 0.5);
+  EXPECT_GT(filter.state().fast_fit, 0.5);
   EXPECT_EQ(filter.doubt(), 0.0);
 }
 

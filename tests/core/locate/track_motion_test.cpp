@@ -119,7 +119,7 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
   Filter filter = filter_at(flown, {{500.0, 500.0}, Angle()});
   EXPECT_TRUE(flown.covers_ground());
   flown.learn_drift(filter);
-  EXPECT_TRUE(flown.learned().drifts);
+  EXPECT_TRUE(flown.learned().odometry_is_wrong);
   EXPECT_EQ(flown.region().drift_sigma_m_s, 6.0) << "three tenths of the speed";
   EXPECT_FALSE(flown.covers_ground());
 
@@ -127,7 +127,7 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
   const Particles before = filter.particles();
   coasting.learn_drift(filter);
   coasting.try_drifts(filter);
-  EXPECT_FALSE(coasting.learned().drifts);
+  EXPECT_FALSE(coasting.learned().odometry_is_wrong);
   EXPECT_TRUE(filter.particles() == before);
 }
 

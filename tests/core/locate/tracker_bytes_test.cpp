@@ -35,8 +35,8 @@ TrackerState flown() {
   state.filter.seed = 0xfedcba9876543210U;
   state.filter.step = 80;
   state.filter.resets = 2;
-  state.filter.slow_support = 0.625;
-  state.filter.fast_support = 0.0;
+  state.filter.slow_fit = 0.625;
+  state.filter.fast_fit = 0.0;
   state.searched = true;
   state.last = StepStamp{41, 42'000'000};
   state.measured = 40;
@@ -149,8 +149,8 @@ TEST(TrackerBytes, WithValuesThatNoTrackHasAreRefused) {
         s.filter.particles.weight = {1.5, -0.5};
       },
       [](TrackerState& s) { s.filter.particles.log_scale[1] = 1.5; },
-      [](TrackerState& s) { s.filter.slow_support = 0.0; },
-      [](TrackerState& s) { s.filter.fast_support = 1.5; },
+      [](TrackerState& s) { s.filter.slow_fit = 0.0; },
+      [](TrackerState& s) { s.filter.fast_fit = 1.5; },
       [](TrackerState& s) { s.last->sequence = -1; },
       [](TrackerState& s) { s.measured = std::numeric_limits<std::int64_t>::max(); },
       [](TrackerState& s) { s.last_search = s.measured + 1; },

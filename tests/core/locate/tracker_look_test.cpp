@@ -22,7 +22,7 @@ class TrackOfAVehicleThatDrifts : public Track {
     int claims = 0;
     int false_claims = 0;          ///< more than 25 m off
     double largest_error_m = 0.0;  ///< of the last half
-    bool drifts = false;
+    bool odometry_is_wrong = false;
   };
 
   Outcome flown(const TrackSettings& s, GridPoint unfelt_m, std::uint64_t seed, int steps = 40) {
@@ -40,7 +40,7 @@ class TrackOfAVehicleThatDrifts : public Track {
       outcome.claims += estimate.converged ? 1 : 0;
       outcome.false_claims += estimate.converged && error > 25.0 ? 1 : 0;
       if (i >= steps / 2) outcome.largest_error_m = std::max(outcome.largest_error_m, error);
-      outcome.drifts = estimate.drifts;
+      outcome.odometry_is_wrong = estimate.odometry_is_wrong;
     }
     return outcome;
   }
@@ -64,7 +64,7 @@ TEST_F(TrackOfAVehicleThatDrifts, LearnsALargerOneThanWasTold) {
   TrackSettings told = settings();
   told.vehicle.wind = Wind::of(0.5, std::nullopt);
   const Outcome outcome = flown(told, {7.0, 4.0}, 4);
-  EXPECT_TRUE(outcome.drifts);
+  EXPECT_TRUE(outcome.odometry_is_wrong);
   EXPECT_LT(outcome.largest_error_m, 15.0);
 }
 
@@ -153,12 +153,12 @@ TEST_F(Track, ForgetsWhatLooksSawOfABeliefThatItThrowsAway) {
 
 TEST_F(TrackOfAVehicleThatDrifts, TakesOdometryThatIsAsItSaysAtItsWord) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    EXPECT_FALSE(flown(settings(), {}, seed).drifts) << "seed " << seed;
+    EXPECT_FALSE(flown(settings(), {}, seed).odometry_is_wrong) << "seed " << seed;
   }
 }
 
 TEST_F(TrackOfAVehicleThatDrifts, IsNotNoticedByThePapersFilter) {
-  EXPECT_FALSE(flown(TrackSettings::paper(1000), {5.0, -3.0}, 1).drifts);
+  EXPECT_FALSE(flown(TrackSettings::paper(1000), {5.0, -3.0}, 1).odometry_is_wrong);
 }
 
 TEST_F(Track, LooksAroundEveryThreeSecondsWhereItIsSureOfItsPlace) {

@@ -1,6 +1,6 @@
 #include "cli/fly/campaign.hpp"
 
-#include <atomic>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <utility>
@@ -18,9 +18,10 @@ class Counter {
 
   void step() {
     if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
-    rethrow_failure();
-    const std::int64_t done = ++done_;
-    if (campaign_.progress) campaign_.progress(done, total_);
+    const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(failure_);
+    ++done_;
+    if (campaign_.progress) campaign_.progress(done_, total_);
   }
 
   /// Of one flight: it ends the others at their next step, since their figures would not be told.
@@ -30,14 +31,9 @@ class Counter {
   }
 
  private:
-  void rethrow_failure() {
-    const std::lock_guard lock(mutex_);
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
   const Campaign& campaign_;
   std::int64_t total_;
-  std::atomic<std::int64_t> done_ = 0;
+  std::int64_t done_ = 0;
   std::mutex mutex_;
   std::exception_ptr failure_;
 };

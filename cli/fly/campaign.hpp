@@ -40,7 +40,7 @@ struct Campaign {
   int jobs = 1;            ///< flights at a time; results do not depend on it
   /// Of the first flight, from one thread, filter by filter; may be empty.
   std::function<void(const std::string& filter, const Record& record, const Localizer& localizer)> watch;
-  OnProgress progress;  ///< in steps; from any of the threads, several at a time
+  OnProgress progress;  ///< in steps
   std::stop_token stop;
 };
 

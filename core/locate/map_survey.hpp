@@ -13,7 +13,7 @@ struct SurveyOptions {
   LocalizabilityQuery query;
   std::int64_t max_places = 1000;  ///< each takes about a second of one core
   int threads = 1;
-  OnProgress progress{};  ///< in places; from any thread, one call at a time
+  OnProgress progress{};  ///< in places
 };
 
 /// Of the places of whose footprint the map has observed half or more; of others it cannot say.

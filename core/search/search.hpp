@@ -51,8 +51,7 @@ struct SearchOptions {
   int straight_roads = 2;
   std::shared_ptr<SearchCache> cache{};  ///< of this map; nullptr = what is built is not kept
   Deadline deadline{};                   ///< at it the search ends with what it has; Interrupted when asked to stop
-  /// How far the scan is, which is the longest part: so many headings at a scale of all. From any of the threads, one
-  /// at a time.
+  /// How far the scan is, which is the longest part: so many headings at a scale of all.
   OnProgress progress{};
   /// How long to look for a better pose than the best candidate, within the deadline; nullopt = no proof.
   std::optional<std::chrono::milliseconds> proof_time{};

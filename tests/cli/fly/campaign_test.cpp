@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
+#include <vector>
 
 #include "cli/fly/flight_pictures.hpp"
 #include "core/units/error.hpp"
@@ -65,6 +68,16 @@ TEST_F(Campaigns, TheDefaultFilterFollowsAVehicleOverGoodFeatureMaps) {
   const auto results = run(campaign, map.zone);
   ASSERT_EQ(results[0].runs.size(), static_cast<std::size_t>(campaign.flights.number));
   for (const fly::Run& flight : results[0].runs) EXPECT_LT(flight.records.back().error_m, 25.0);
+}
+
+TEST_F(Campaigns, TellOneStepAfterAnotherHoweverManyFlyAtATime) {
+  campaign.jobs = 2;
+  std::vector<std::int64_t> told;
+  campaign.progress = [&](std::int64_t done, std::int64_t) { told.push_back(done); };
+  run(campaign, map.zone);
+  std::vector<std::int64_t> counted(2 * 6 * 3);  // of each flight all steps as they are flown, and by each filter
+  std::iota(counted.begin(), counted.end(), 1);
+  EXPECT_EQ(told, counted);
 }
 
 TEST_F(Campaigns, StopWhenTheyAreAskedTo) {

@@ -42,7 +42,8 @@ struct PeakShape {
 /// Offsets from the middle (columns, rows, bins, each up to kPeakRadius) of the largest score.
 std::array<int, 3> highest(const PeakScores& scores);
 
-/// The middle must hold the largest score.
+/// Meant for a middle that holds the largest score. On the flank of a ridge that is followed no further (ModeFinder)
+/// the offset ends at its bounds, and the higher neighbours count for the spread, too.
 PeakShape shape_of(const PeakScores& scores, const ScoreBackground& background);
 
 }  // namespace roadfix

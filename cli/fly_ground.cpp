@@ -12,6 +12,7 @@
 #include "cli/map_notes.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
+#include "core/units/index_range.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
 
@@ -122,8 +123,8 @@ int frames_of_the_longest(const std::vector<fly::Recording>& recordings) {
   return static_cast<int>(frames);
 }
 
-fly::StepRange outage_of(const FlyOptions& options, int steps) {
-  const fly::StepRange outage{options.outage[0], options.outage[1]};
+IndexRange outage_of(const FlyOptions& options, int steps) {
+  const IndexRange outage{options.outage[0], options.outage[1]};
   if (outage.first < std::min(outage.end, steps)) return outage;
   throw InvalidInput("outage-empty",
                      fmt::format("--outage {},{} leaves out no frame: FIRST comes before END, and before "

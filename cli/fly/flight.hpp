@@ -12,15 +12,9 @@
 #include "cli/fly/sensor.hpp"
 #include "cli/fly/vehicle.hpp"
 #include "core/locate/tracker.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix::fly {
-
-/// Steps first <= k < end.
-struct StepRange {
-  int first = 0;
-  int end = 0;
-  bool contains(int step) const { return step >= first && step < end; }
-};
 
 struct Kidnapping {
   int step = 0;
@@ -32,9 +26,9 @@ struct FlightPlan {
   Handling handling;
   OdometryErrors odometry;
   bool tells_odometry = true;
-  int frame_every = 1;              ///< a frame in every k-th step
-  double missing_share = 0.0;       ///< of the frames, at random
-  std::optional<StepRange> outage;  ///< steps without frames
+  int frame_every = 1;               ///< a frame in every k-th step
+  double missing_share = 0.0;        ///< of the frames, at random
+  std::optional<IndexRange> outage;  ///< steps without frames
   std::optional<Kidnapping> kidnapping;
   /// 1 sigma per axis by which all that is seen lies elsewhere than on the map, once for the flight: what a map that is
   /// told to be so far off may do. Of no use where imagery has an error of its own.

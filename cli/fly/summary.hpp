@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/fly/localizer.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix::fly {
 
@@ -29,7 +30,7 @@ std::optional<std::size_t> found_at(std::span<const Record> records, std::size_t
 /// Steps of a flight at which something happened, for what came of it.
 struct Events {
   std::optional<Kidnapping> kidnapping;
-  std::optional<StepRange> outage;
+  std::optional<IndexRange> outage;
 };
 
 struct Summary {

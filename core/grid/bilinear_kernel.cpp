@@ -135,25 +135,22 @@ HWY_AFTER_NAMESPACE();
 #include <cassert>
 #include <cmath>
 
+#include "core/units/index_range.hpp"
+
 namespace roadfix {
 
 HWY_EXPORT(sample_run);
 
 namespace {
 
-struct Range {
-  int first = 0;
-  int last = 0;  ///< behind the last one
-};
-
 /// Narrowed to about where -1 < start + (col + 0.5) * step < size + 1.
-Range narrowed(Range range, double start, double step, double size) {
+IndexRange narrowed(IndexRange range, double start, double step, double size) {
   constexpr double kFlat = 1e-6;
-  if (std::abs(step) < kFlat) return start > -2.0 && start < size + 2.0 ? range : Range{};
+  if (std::abs(step) < kFlat) return start > -2.0 && start < size + 2.0 ? range : IndexRange{};
   const double a = (-1.0 - start) / step;
   const double b = (size + 1.0 - start) / step;
   const auto bounded = [&](double col) {
-    return static_cast<int>(std::clamp(col, static_cast<double>(range.first), static_cast<double>(range.last)));
+    return static_cast<int>(std::clamp(col, static_cast<double>(range.first), static_cast<double>(range.end)));
   };
   return {bounded(std::min(a, b) - 1.0), bounded(std::max(a, b) + 2.0)};
 }
@@ -186,11 +183,11 @@ CellArray BilinearSource::sampled(const Placement& placement, int cols, int rows
   const SnappedPlacement snapped(placement);
   for (int row = 0; row < rows; ++row) {
     const GridGeometry::CellPosition start = placement.source_of(0.0, row + 0.5);
-    Range range{0, cols};
+    IndexRange range{0, cols};
     range = narrowed(range, start.col, placement.right.col, cols_);
     range = narrowed(range, start.row, placement.right.row, rows_);
-    while (range.first < range.last) {
-      const int count = std::min(range.last - range.first, SnappedPlacement::cells_left(range.first));
+    while (range.count() > 0) {
+      const int count = std::min(range.count(), SnappedPlacement::cells_left(range.first));
       HWY_DYNAMIC_DISPATCH(sample_run)
       (plane, snapped.run_at(range.first, row), count, result.row(row).data() + range.first);
       range.first += count;

@@ -4,11 +4,11 @@
 
 namespace roadfix {
 
-std::optional<ColumnRange> observed_in(std::span<const Cell> row) {
+std::optional<IndexRange> observed_in(std::span<const Cell> row) {
   const auto first = std::ranges::find_if(row, is_observed);
   if (first == row.end()) return std::nullopt;
   const auto last = std::find_if(row.rbegin(), row.rend(), is_observed);
-  return ColumnRange{static_cast<int>(first - row.begin()), static_cast<int>(last.base() - row.begin())};
+  return IndexRange{static_cast<int>(first - row.begin()), static_cast<int>(last.base() - row.begin())};
 }
 
 }  // namespace roadfix

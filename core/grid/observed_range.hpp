@@ -5,16 +5,11 @@
 #include <span>
 
 #include "core/grid/cell.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix {
 
-/// Columns [first, end).
-struct ColumnRange {
-  int first = 0;
-  int end = 0;
-};
-
 /// From the first observed cell of the row to the last; nullopt where none is.
-std::optional<ColumnRange> observed_in(std::span<const Cell> row);
+std::optional<IndexRange> observed_in(std::span<const Cell> row);
 
 }  // namespace roadfix

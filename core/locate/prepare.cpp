@@ -9,6 +9,7 @@
 #include "core/grid/resample.hpp"
 #include "core/search/search.hpp"
 #include "core/units/error.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix {
 namespace {
@@ -66,21 +67,19 @@ FeatureMap nothing_observed_of(FeatureMap features) {
 /// left too far from the nadir is as good as nothing.
 FeatureMap cropped_to_observed(const FeatureMap& features) {
   const CellArray& cells = features.cells;
-  ColumnRange cols{cells.cols(), 0};
-  int first_row = cells.rows();
-  int last_row = -1;
+  IndexRange cols{cells.cols(), 0};
+  IndexRange rows{cells.rows(), 0};
   for (int row = 0; row < cells.rows(); ++row) {
     const auto seen = observed_in(cells.row(row));
     if (!seen) continue;
     cols = {std::min(cols.first, seen->first), std::max(cols.end, seen->end)};
-    first_row = std::min(first_row, row);
-    last_row = row;
+    rows = {std::min(rows.first, row), row + 1};
   }
-  if (last_row < 0) return nothing_observed_of(features);
+  if (rows.count() <= 0) return nothing_observed_of(features);
   FeatureMap result = features;
-  result.cells = CellArray(cols.end - cols.first, last_row - first_row + 1);
-  paste(cells, result.cells, -cols.first, -first_row);
-  result.nadir = {features.nadir.col - cols.first, features.nadir.row - first_row};
+  result.cells = CellArray(cols.count(), rows.count());
+  paste(cells, result.cells, -cols.first, -rows.first);
+  result.nadir = {features.nadir.col - cols.first, features.nadir.row - rows.first};
   return is_near_nadir(result) ? result : nothing_observed_of(result);
 }
 

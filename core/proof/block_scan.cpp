@@ -59,7 +59,7 @@ BlockScanResult BlockScan::scan(const BlockTile& tile, const Deadline& deadline)
   for (const Sector& sector : headings_.sectors()) {
     if (deadline.over()) return {{}, 0, false};
     cover(sector, tile, rows);
-    for (std::size_t h = sector.first; h < sector.last; ++h) {
+    for (std::size_t h = sector.first; h < sector.end; ++h) {
       for (std::size_t r = 0; r < rows.size(); ++r) {
         if (rows[r].excluded) continue;
         scan_row(h, tile.col, tile.row + static_cast<int>(r), rows[r], ground, result.nodes);

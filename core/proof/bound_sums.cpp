@@ -25,8 +25,7 @@ HWY_ATTR void add_runs(std::span<const RowRun> runs, const Sum* before, std::ptr
     auto sum = hn::Zero(kLanes);
     for (const RowRun& run : runs) {
       const Sum* row = before + run.row * stride + start;
-      sum =
-          hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + kStep * run.last), hn::LoadU(kLanes, row + kStep * run.first)));
+      sum = hn::Add(sum, hn::Sub(hn::LoadU(kLanes, row + kStep * run.end), hn::LoadU(kLanes, row + kStep * run.first)));
     }
     hn::StoreU(sum, kLanes, out + start);
   }

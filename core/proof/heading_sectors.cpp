@@ -50,8 +50,8 @@ bool HeadingSectors::turn(const Deadline& deadline) {
   return true;
 }
 
-Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const {
-  Sector sector{first, last, {}, {}, 0.0, {}};
+Sector HeadingSectors::sector_between(std::size_t first, std::size_t end) const {
+  Sector sector{first, end, {}, {}, 0.0, {}};
   std::vector<const BlockCover*> covers;
   BlockSums& sums = sector.features;
   constexpr double kMax = std::numeric_limits<double>::max();
@@ -60,7 +60,7 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
   sums.feature_square_min = kMax;
   sums.base = problem_.base;
   sums.span = problem_.map.span();
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = first; i < end; ++i) {
     const TurnedFeatures& turned = *turned_[i];
     covers.push_back(&turned.cover);
     sums.cells = {std::min(sums.cells.min, turned.cells), std::max(sums.cells.max, turned.cells)};
@@ -74,7 +74,7 @@ Sector HeadingSectors::sector_between(std::size_t first, std::size_t last) const
   };
   sector.inner = runs(common.inner);
   sector.outer = runs(common.outer);
-  for (const RowRun& run : sector.outer) sector.outer_blocks += run.last - run.first;
+  for (const RowRun& run : sector.outer) sector.outer_blocks += run.end - run.first;
   return sector;
 }
 

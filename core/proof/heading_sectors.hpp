@@ -12,10 +12,10 @@
 
 namespace roadfix {
 
-/// Headings beside each other, and what any or all of them cover.
+/// Headings beside each other, first <= heading < end, and what any or all of them cover.
 struct Sector {
   std::size_t first = 0;
-  std::size_t last = 0;  ///< after the last heading
+  std::size_t end = 0;
   std::vector<RowRun> inner, outer;
   double outer_blocks = 0.0;
   BlockSums features;  ///< what holds for all of them; map sums are left out
@@ -57,7 +57,7 @@ class HeadingSectors {
  private:
   static constexpr std::size_t kSectorHeadings = 4;  // share what they cover of the map
 
-  Sector sector_between(std::size_t first, std::size_t last) const;
+  Sector sector_between(std::size_t first, std::size_t end) const;
 
   const BoundProblem& problem_;
   std::vector<std::optional<TurnedFeatures>> turned_;

@@ -7,11 +7,11 @@
 
 namespace roadfix {
 
-/// Relative to a middle: [first, last) of a row.
+/// Relative to a middle: first <= column < end of a row.
 struct RowRun {
   int row = 0;
   int first = 0;
-  int last = 0;
+  int end = 0;
 };
 
 /// Those of cols x rows that marked(col, row) is true of, relative to `middle`.

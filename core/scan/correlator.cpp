@@ -129,7 +129,7 @@ Correlator::TileSums Correlator::correlate_tile(std::size_t index, const Spectru
     std::fill_n(workspace.sums.im(inset), side(), pair_ ? tile.second * patch_first : tile.first * patch_second);
     return result;
   }
-  const Columns wanted{inset, inset + result.cols};
+  const IndexRange wanted{inset, inset + result.cols};
   fourier_.backward_of_product(*tile.spectrum, patch_spectrum, !half_turn, wanted, workspace.sums, workspace.scratch);
   result.stride = workspace.sums.stride();
   result.first_scale = 1.0F / (static_cast<float>(side()) * static_cast<float>(side()));

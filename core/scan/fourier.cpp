@@ -51,10 +51,10 @@ void FourierTransform::forward(const ComplexPlane& plane, Filled filled, Complex
   forward_transform(plane, filled, scratch, twiddles_.data(), spectrum);
 }
 
-void FourierTransform::backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, Columns wanted,
+void FourierTransform::backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, IndexRange wanted,
                                            ComplexPlane& sums, ComplexPlane& scratch) const {
   assert(a.side() == side_ && b.side() == side_ && sums.side() == side_ && scratch.side() == side_);
-  assert(wanted.first >= 0 && wanted.last <= side_);
+  assert(wanted.first >= 0 && wanted.end <= side_);
   backward_transform_of_product(a, b, conjugate, twiddles_.data() + twiddles_.size(), wanted, sums, scratch);
 }
 

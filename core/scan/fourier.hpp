@@ -4,14 +4,9 @@
 #include <vector>
 
 #include "core/scan/spectrum.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix {
-
-/// Some columns of a plane: [first, last).
-struct Columns {
-  int first = 0;
-  int last = 0;
-};
 
 /// The first columns and rows of a plane, the columns rounded up to kStripCols. What it holds beyond them counts as 0.
 struct Filled {
@@ -34,7 +29,7 @@ class FourierTransform {
   void forward(const ComplexPlane& plane, Filled filled, ComplexPlane& scratch, Spectrum& spectrum) const;
   /// `sums` = side^2 times the plane that has the spectrum a * b or a * conj(b); outside of the wanted columns it holds
   /// anything. The content of `scratch` is lost.
-  void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, Columns wanted, ComplexPlane& sums,
+  void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, IndexRange wanted, ComplexPlane& sums,
                            ComplexPlane& scratch) const;
 
  private:

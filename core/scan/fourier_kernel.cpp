@@ -199,12 +199,12 @@ struct ProductStrip {
 };
 
 template <bool kConjugate>
-HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* twiddles, Columns wanted, ComplexPlane& sums,
-                       ComplexPlane& scratch) {
+HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* twiddles, IndexRange wanted,
+                       ComplexPlane& sums, ComplexPlane& scratch) {
   const int lanes = static_cast<int>(hn::Lanes(kFloats));
   const int side = a.side();
   const int first = wanted.first / kStripCols * kStripCols;
-  const int last = (wanted.last + kStripCols - 1) / kStripCols * kStripCols;
+  const int last = (wanted.end + kStripCols - 1) / kStripCols * kStripCols;
   // Half of the transform in a strip that the first cache holds; then its wanted rows become columns.
   const Strip strip{scratch.re(), scratch.im(), lanes};
   for (int col = 0; col < side; col += lanes) {
@@ -221,7 +221,7 @@ HWY_ATTR void backward(const Spectrum& a, const Spectrum& b, const float* twiddl
 }
 
 HWY_ATTR void backward_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* twiddles,
-                                  Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
+                                  IndexRange wanted, ComplexPlane& sums, ComplexPlane& scratch) {
   if (conjugate) {
     backward<true>(a, b, twiddles, wanted, sums, scratch);
   } else {
@@ -246,7 +246,7 @@ void forward_transform(const ComplexPlane& plane, Filled filled, ComplexPlane& s
 }
 
 void backward_transform_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* twiddles,
-                                   Columns wanted, ComplexPlane& sums, ComplexPlane& scratch) {
+                                   IndexRange wanted, ComplexPlane& sums, ComplexPlane& scratch) {
   HWY_DYNAMIC_DISPATCH(backward_of_product)(a, b, conjugate, twiddles, wanted, sums, scratch);
 }
 

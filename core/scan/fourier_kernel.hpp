@@ -14,6 +14,6 @@ void forward_transform(const ComplexPlane& plane, Filled filled, ComplexPlane& s
                        Spectrum& spectrum);
 /// `twiddles` points behind the last ones.
 void backward_transform_of_product(const Spectrum& a, const Spectrum& b, bool conjugate, const float* twiddles,
-                                   Columns wanted, ComplexPlane& sums, ComplexPlane& scratch);
+                                   IndexRange wanted, ComplexPlane& sums, ComplexPlane& scratch);
 
 }  // namespace roadfix

@@ -45,7 +45,7 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
   const int shift = (half_turn ? map_.reach() : -map_.reach()) + Correlator::kLead;
   const auto positions = [&](int place, int count, int lead, int size) {
     const int first = place - lead - shift;
-    return Range{std::max(first, -1), std::min(first + count, size + 1)};
+    return IndexRange{std::max(first, -1), std::min(first + count, size + 1)};
   };
   const Positions at{positions(sums.col, sums.cols, lead_col_, request_.positions.cols),
                      positions(sums.row, sums.rows, lead_row_, request_.positions.rows)};
@@ -64,16 +64,16 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
 /// The means at the columns of a tile, for the rows of blocks that its rows lie between.
 void TileScan::interpolate_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const {
   const InterpolationTaps& row_taps = alignment_.row_taps(half_turn);
-  const Range blocks{row_taps.first[static_cast<std::size_t>(at.rows.first + 1)],
-                     row_taps.second[static_cast<std::size_t>(at.rows.last)] + 1};
+  const IndexRange blocks{row_taps.first[static_cast<std::size_t>(at.rows.first + 1)],
+                          row_taps.second[static_cast<std::size_t>(at.rows.end)] + 1};
   const ScanMeans& means = buffers.means[half_turn ? 1 : 0];
   const InterpolationTaps& col_taps = alignment_.col_taps(half_turn);
   interpolate_cols(means.correction, col_taps, at.cols, blocks, buffers.correction);
   interpolate_cols(means.gain, col_taps, at.cols, blocks, buffers.gain);
 }
 
-void TileScan::interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, Range cols, Range rows,
-                                FloatPlane& out) {
+void TileScan::interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, IndexRange cols,
+                                IndexRange rows, FloatPlane& out) {
   out.resize(padded_for_vectors(cols.count()), rows.count());
   const std::ptrdiff_t from = cols.first + 1;
   for (int row = 0; row < out.rows; ++row) {
@@ -85,7 +85,7 @@ void TileScan::interpolate_cols(const FloatPlane& blocks, const InterpolationTap
 void TileScan::score(bool half_turn, const Positions& at, const Cross& cross, ScanBuffers& buffers) const {
   const InterpolationTaps& row_taps = alignment_.row_taps(half_turn);
   const int first_block = row_taps.first[static_cast<std::size_t>(at.rows.first + 1)];
-  for (int row = at.rows.first; row < at.rows.last; ++row) {
+  for (int row = at.rows.first; row < at.rows.end; ++row) {
     const auto place = static_cast<std::size_t>(row + 1);
     const int above = row_taps.first[place] - first_block;
     const int below = row_taps.second[place] - first_block;

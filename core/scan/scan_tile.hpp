@@ -10,6 +10,7 @@
 #include "core/scan/coarse_scan.hpp"
 #include "core/scan/correlator.hpp"
 #include "core/scan/scan_means.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix {
 
@@ -55,14 +56,9 @@ class TileScan {
             ScanFindings& found) const;
 
  private:
-  struct Range {
-    int first = 0;
-    int last = 0;  ///< behind the last one
-    int count() const { return last - first; }
-  };
   /// Positions from -1 to cols or rows, so that every position of the request is within some tile's inner part.
   struct Positions {
-    Range cols, rows;
+    IndexRange cols, rows;
   };
   struct Cross {
     const float* sums;
@@ -71,8 +67,8 @@ class TileScan {
   };
   void interpolate_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const;
   void score(bool half_turn, const Positions& at, const Cross& cross, ScanBuffers& buffers) const;
-  static void interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, Range cols, Range rows,
-                               FloatPlane& out);
+  static void interpolate_cols(const FloatPlane& blocks, const InterpolationTaps& taps, IndexRange cols,
+                               IndexRange rows, FloatPlane& out);
   static void collect(int bin, const Positions& at, float floor, ScanBuffers& buffers, ScanFindings& found);
 
   const ScanMap& map_;

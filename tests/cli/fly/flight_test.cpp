@@ -99,7 +99,7 @@ TEST_F(Flights, OdometryErrorsHaveTheSizeThatWasAskedFor) {
 }
 
 TEST_F(Flights, FramesAreMissingDuringAnOutageAtRandomAndBetween) {
-  plan.outage = StepRange{20, 40};
+  plan.outage = IndexRange{20, 40};
   EXPECT_EQ(frames(flown()), 80);
   plan.outage.reset();
   plan.frame_every = 4;

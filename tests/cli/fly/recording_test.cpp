@@ -110,7 +110,7 @@ TEST_F(Recordings, HaveOdometryErrorsAndLostFramesByTheSeedAndThePlan) {
   const auto forward = [&](std::uint64_t seed) { return replayed(recording, seed)[1].input.odometry->forward_m; };
   EXPECT_EQ(forward(1), forward(1));
   EXPECT_NE(forward(1), forward(2));
-  plan.outage = StepRange{1, 2};
+  plan.outage = IndexRange{1, 2};
   const Flight flight = replayed(recording);
   EXPECT_TRUE(flight[0].input.saw());
   EXPECT_FALSE(flight[1].input.saw());

@@ -29,7 +29,7 @@ GroundRange counted(const RoadGrid& ground, const BoundMap& map, const std::vect
     double value = 0.0;
     double square = 0.0;
     for (const RowRun& run : footprint) {
-      for (int i = run.first; i < run.last; ++i) {
+      for (int i = run.first; i < run.end; ++i) {
         const int col = kBlockCells * block_col + position % kBlockCells + i;
         const int row = kBlockCells * block_row + position / kBlockCells + run.row;
         const bool within = col >= 0 && row >= 0 && col < kSide && row < kSide;

@@ -42,8 +42,8 @@ api::FrameScale scale_of(const std::string& path, const FrameOptions& options) {
     const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
     return decoded(path, [&](const auto& bytes) { return api::scale_in_file(bytes, known); });
   }
-  if (!options.has_camera()) return {options.gsd_m, std::nullopt};
-  return {0.0, told_camera(options.camera)};
+  if (!options.has_camera()) return {StraightDown{options.gsd_m}};
+  return {told_camera(options.camera)};
 }
 
 }  // namespace

@@ -16,22 +16,20 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
   return parse_frames_csv(read_named_file(csv, "frames-missing"));
 }
 
-GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
+FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
   const std::string file = read_named_file(folder / frame.file, "file-not-found");
   const std::vector<std::uint8_t> bytes(file.begin(), file.end());
-  return said_of(frame.file.string(),
-                 [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), frame.gsd_m, border); });
+  return said_of(frame.file.string(), [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), border); });
 }
 
-GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector) {
+GroundView view_of(const FramePixels& picture, const FrameTruth& frame, const RoadDetector& detector) {
   return said_of(frame.file.string(),
-                 [&] { return ground_seen(picture, frame.camera, detector, static_cast<double>(cli::kMaxPixels)); });
+                 [&] { return ground_seen(picture, frame.view, detector, static_cast<double>(cli::kMaxPixels)); });
 }
 
-Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame) {
+Footprint footprint_of(const FramePixels& picture, const FrameTruth& frame) {
   const cv::Size size = picture.pixels.size();
-  const double gsd_m =
-      frame.camera ? said_of(frame.file.string(), [&] { return nominal_gsd_m(*frame.camera, size); }) : frame.gsd_m;
+  const double gsd_m = said_of(frame.file.string(), [&] { return nominal_gsd_m(frame.view, size); });
   return {size.width * gsd_m, size.height * gsd_m};
 }
 

@@ -14,15 +14,15 @@ namespace roadfix::evaluation {
 /// Throws NotFound "frames-missing", and as parse_frames_csv.
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
 
-/// The picture alone; gsd_m is that of the CSV, which says nothing where the frame has a camera. `folder` is that of
-/// the CSV. Throws NotFound "file-not-found", and what decode_frame() and frame_image() do with the file's name.
-GroundImage read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border);
+/// The picture alone. `folder` is that of the CSV. Throws NotFound "file-not-found", and what decode_frame() and
+/// frame_image() do with the file's name.
+FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border);
 
 /// The ground that its picture shows, as `roadfix fix` with this detector sees it. Throws what ground_seen() does, as
 /// InvalidInput with the file's name.
-GroundView view_of(const GroundImage& picture, const FrameTruth& frame, const RoadDetector& detector);
+GroundView view_of(const FramePixels& picture, const FrameTruth& frame, const RoadDetector& detector);
 
 /// Of a camera as if it looked straight down through a lens without distortion. Throws likewise.
-Footprint footprint_of(const GroundImage& picture, const FrameTruth& frame);
+Footprint footprint_of(const FramePixels& picture, const FrameTruth& frame);
 
 }  // namespace roadfix::evaluation

@@ -106,9 +106,9 @@ FrameTruth frame_of(const Row& row) {
     row.refuse("give gsd_m for a frame seen straight from above, or agl_m with fov_deg or focal_px for any other");
   }
   if (row.has("agl_m")) {
-    frame.camera = camera_of(row);
+    frame.view = camera_of(row);
   } else {
-    frame.gsd_m = row.number("gsd_m", 1e-3, 1e3);
+    frame.view = StraightDown{row.number("gsd_m", 1e-3, 1e3)};
   }
   frame.sequence = std::string(row.text("sequence"));
   frame.time_s = row.optional_number("time_s", -kAnyNumber, kAnyNumber);

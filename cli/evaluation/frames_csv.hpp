@@ -16,12 +16,11 @@
 namespace roadfix::evaluation {
 
 struct FrameTruth {
-  std::filesystem::path file;         ///< relative to the CSV
-  GeoPose pose;                       ///< of the UAV; below it lies the centre of a frame seen straight from above
-  double gsd_m = 0.0;                 ///< of a frame seen straight from above
-  std::optional<FrameCamera> camera;  ///< of any other frame
-  std::string sequence;               ///< frames of one flight share it; empty where the CSV does not say
-  std::optional<double> time_s;       ///< when it was taken, from any one moment on
+  std::filesystem::path file;  ///< relative to the CSV
+  GeoPose pose;                ///< of the UAV; below it lies the centre of a frame seen straight from above
+  FrameView view;
+  std::string sequence;          ///< frames of one flight share it; empty where the CSV does not say
+  std::optional<double> time_s;  ///< when it was taken, from any one moment on
 };
 
 /// Throws InvalidInput ("frames-csv") naming line and column.

@@ -53,7 +53,7 @@ std::vector<double> times_of(const Sequence& sequence, double step_s) {
 
 RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& truth, double time_s, const UtmZone& zone,
                        const RecordingOptions& options) {
-  const GroundImage picture = evaluation::read_frame(folder, truth, options.border);
+  const FramePixels picture = evaluation::read_frame(folder, truth, options.border);
   RecordedFrame frame;
   frame.truth = on_grid(truth.pose, zone);
   frame.time_s = time_s;
@@ -63,7 +63,7 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
     frame.observation.features = detect_features(*options.detector, view, options.cell_m, options.seed);
   } else {
     frame.observation.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
-      return CameraFrame{evaluation::read_frame(folder, truth, border), truth.camera, cell_m, seed};
+      return CameraFrame{evaluation::read_frame(folder, truth, border), truth.view, cell_m, seed};
     };
   }
   return frame;

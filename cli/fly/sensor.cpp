@@ -32,13 +32,15 @@ class Camera {
     return {moved(pose, {forward, right, {}}), scale * now, random() >> (64 - kSeedBits)};
   }
 
-  CameraFrame take(const Shot& shot) const {
+  GroundImage take(const Shot& shot) const {
     const double gsd_m = imagery_.image.gsd_m;
     const Footprint covered{shot.scale * footprint_.width_m, shot.scale * footprint_.height_m};
     GroundImage frame = cut_out(imagery_, shot.pose, covered, shot.scale * gsd_m);
     frame.gsd_m = gsd_m;
-    return {std::move(frame), std::nullopt, cell_m_, shot.seed};
+    return frame;
   }
+
+  double cell_m() const { return cell_m_; }
 
   bool shows(GridPoint point) const { return sees(imagery_, point); }
 
@@ -54,8 +56,8 @@ class ImagingSensor : public Sensor {
   ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
 
   Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
-    CameraFrame frame = camera_.take(camera_.aim(pose, scale, random));
-    return {detect_features(detector_, rectified(std::move(frame.image)), frame.cell_m, frame.seed), {}};
+    const Shot shot = camera_.aim(pose, scale, random);
+    return {detect_features(detector_, rectified(camera_.take(shot)), camera_.cell_m(), shot.seed), {}};
   }
 
   bool shows(GridPoint point) const override { return camera_.shows(point); }
@@ -70,7 +72,13 @@ class CameraSensor : public Sensor {
   explicit CameraSensor(const Camera& camera) : camera_(camera) {}
 
   Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
-    return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] { return camera.take(shot); }};
+    return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] {
+              GroundImage image = camera.take(shot);
+              return CameraFrame{{std::move(image.pixels), std::move(image.observed)},
+                                 StraightDown{image.gsd_m},
+                                 camera.cell_m(),
+                                 shot.seed};
+            }};
   }
 
   bool shows(GridPoint point) const override { return camera_.shows(point); }

@@ -9,6 +9,7 @@
 
 #include "cli/evaluation/random.hpp"
 #include "core/detect/frame_camera.hpp"
+#include "core/detect/frame_image.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
@@ -19,10 +20,10 @@ namespace roadfix::fly {
 
 /// A picture of the ground, before its roads are detected.
 struct CameraFrame {
-  GroundImage image;
-  std::optional<FrameCamera> camera;  ///< nullopt = seen straight from above, in pixels of image.gsd_m
-  double cell_m = 0.0;                ///< of the feature map that is to be made of it
-  std::uint64_t seed = 0;             ///< of the detector; below 2^31, as a service takes it
+  FramePixels picture;
+  FrameView view;
+  double cell_m = 0.0;     ///< of the feature map that is to be made of it
+  std::uint64_t seed = 0;  ///< of the detector; below 2^31, as a service takes it
 };
 
 /// Called when the picture is needed: those of whole flights would fill the memory. Equal calls give equal pictures.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <variant>
 #include <vector>
 
 #include "core/detect/feature_map_codec.hpp"
@@ -45,12 +46,12 @@ json camera_fields(const FrameCamera& camera) {
 }
 
 Picture picture_of(const CameraFrame& frame) {
-  const auto png = encode_frame(frame.image);
+  const auto png = encode_frame(frame.picture);
   Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}, {"seed", frame.seed}}, {png.begin(), png.end()}};
-  if (frame.camera) {
-    picture.fields.update(camera_fields(*frame.camera));
+  if (const auto* camera = std::get_if<FrameCamera>(&frame.view)) {
+    picture.fields.update(camera_fields(*camera));
   } else {
-    picture.fields["gsd_m"] = frame.image.gsd_m;
+    picture.fields["gsd_m"] = std::get<StraightDown>(frame.view).gsd_m;
   }
   return picture;
 }

@@ -24,7 +24,7 @@ namespace {
 constexpr std::string_view kKeyword = "Roadfix feature map";
 
 /// A frame that was sent as a feature map would be searched for as if its brightness were road.
-void refuse_coloured(const GroundImage& picture) {
+void refuse_coloured(const FramePixels& picture) {
   constexpr int kStillGrey = 12;
   constexpr double kStray = 0.01;
   if (picture.pixels.channels() == 1) return;
@@ -41,9 +41,9 @@ void refuse_coloured(const GroundImage& picture) {
 }
 
 CellArray cells_of(const cv::Mat& image) {
-  const GroundImage frame = frame_image(image, 1.0);
+  const FramePixels frame = frame_image(image);
   refuse_coloured(frame);
-  const cv::Mat grey = brightness_of(frame);
+  const cv::Mat grey = brightness_of(frame.pixels);
   CellArray cells(grey.cols, grey.rows);
   for (int row = 0; row < grey.rows; ++row) {
     for (int col = 0; col < grey.cols; ++col) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "core/detect/blank_ground.hpp"
 #include "core/detect/painted_border.hpp"
@@ -25,21 +26,23 @@ void require_roads_visible(double gsd_m) {
                                  gsd_m, kCoarsestGsdM));
 }
 
-GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
-                       double max_pixels) {
+GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels) {
   // Farther away ground is seen too flat to tell a road.
   constexpr double kFarthestGroundM = 3000.0;
   constexpr double kFarthestHeights = 5.0;
-  const double nominal_m = camera ? nominal_gsd_m(*camera, frame.pixels.size()) : frame.gsd_m;
+  const double nominal_m = nominal_gsd_m(view, frame.pixels.size());
   require_roads_visible(nominal_m);
-  const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-  const double farthest_m = camera ? std::min(kFarthestGroundM, kFarthestHeights * camera->agl_m) : 0.0;
-  GroundImage seen = frame;
-  exclude_painted_border(seen);
-  GroundView view = camera ? rectify(seen.pixels, seen.observed, *camera, {gsd_m, farthest_m, max_pixels})
-                           : rectified(std::move(seen));
-  exclude_blank(view.image);
-  return view;
+  exclude_painted_border(frame);
+  GroundView seen;
+  if (const auto* camera = std::get_if<FrameCamera>(&view)) {
+    const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
+    const double farthest_m = std::min(kFarthestGroundM, kFarthestHeights * camera->agl_m);
+    seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_m, max_pixels});
+  } else {
+    seen = rectified({std::move(frame.pixels), std::move(frame.observed), nominal_m});
+  }
+  exclude_blank(seen.image);
+  return seen;
 }
 
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <stop_token>
 
 #include "core/detect/frame_camera.hpp"
+#include "core/detect/frame_image.hpp"
 #include "core/detect/rectify.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
@@ -20,13 +20,11 @@ inline constexpr double kFinestGsdM = 0.001;
 /// Throws InvalidInput ("frame-too-coarse", "frame-too-fine") beyond these.
 void require_roads_visible(double gsd_m);
 
-/// What the frame shows of the ground. Without a camera it was seen straight from above, in pixels of frame.gsd_m. With
-/// one, which says what gsd_m does not: rectify() up to five times its height from the nadir point, and 3 km, farther
-/// than which ground is seen too flat to tell a road, in pixels that the detector makes use of. A painted border
-/// (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws what rectify() and
+/// What the frame shows of the ground. Of a camera: rectify() up to five times its height from the nadir point, and
+/// 3 km, farther than which ground is seen too flat to tell a road, in pixels that the detector makes use of. A painted
+/// border (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws what rectify() and
 /// require_roads_visible() do.
-GroundView ground_seen(const GroundImage& frame, const std::optional<FrameCamera>& camera, const RoadDetector& detector,
-                       double max_pixels);
+GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels);
 
 /// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,

@@ -100,7 +100,9 @@ void require_looking_down(const FrameCamera& camera) {
           camera.assumed_roll().degrees(), camera.assumed_pitch().degrees()));
 }
 
-double nominal_gsd_m(const FrameCamera& camera, cv::Size frame) {
+double nominal_gsd_m(const FrameView& view, cv::Size frame) {
+  if (const auto* straight = std::get_if<StraightDown>(&view)) return straight->gsd_m;
+  const auto& camera = std::get<FrameCamera>(view);
   validate(camera, frame);
   return camera.agl_m / lens_of(camera, frame).focal_px();
 }

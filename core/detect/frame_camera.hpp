@@ -7,6 +7,7 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "core/detect/lens.hpp"
@@ -38,6 +39,14 @@ struct FrameCamera {
   Angle assumed_pitch() const { return pitch.value_or(Angle()); }
 };
 
+/// A frame that was rectified already: its pixels are squares on the ground.
+struct StraightDown {
+  double gsd_m = 1.0;
+};
+
+/// How a frame looks at the ground.
+using FrameView = std::variant<StraightDown, FrameCamera>;
+
 /// Throws InvalidInput ("frame-camera") that names the field and its range.
 void validate(const FrameCamera& camera, cv::Size frame);
 
@@ -54,8 +63,8 @@ inline constexpr Angle kFlattestView = Angle::degrees(80.0);
 /// Throws InvalidInput ("frame-sees-no-ground") where the optical axis is farther from straight down than that.
 void require_looking_down(const FrameCamera& camera);
 
-/// Ground sample distance straight below the UAV with the camera level.
-double nominal_gsd_m(const FrameCamera& camera, cv::Size frame);
+/// Ground sample distance straight below the UAV with the camera level. Throws as validate().
+double nominal_gsd_m(const FrameView& view, cv::Size frame);
 
 /// Relative, 1 sigma: barometers drift, and the ground is not as flat as it is told to be.
 inline constexpr double kHeightSigma = 0.05;

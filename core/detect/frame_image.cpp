@@ -50,7 +50,7 @@ cv::Mat in_eight_bits(const cv::Mat& pixels, const cv::Mat& observed) {
 
 }  // namespace
 
-GroundImage frame_image(cv::Mat decoded, double gsd_m, Border border) {
+FramePixels frame_image(cv::Mat decoded, Border border) {
   const int channels = decoded.channels();
   const bool sixteen = decoded.depth() == CV_16U;
   if (decoded.empty() || (decoded.depth() != CV_8U && !sixteen) || (channels != 1 && channels != 3 && channels != 4)) {
@@ -59,7 +59,7 @@ GroundImage frame_image(cv::Mat decoded, double gsd_m, Border border) {
                                    "BGR or BGR with alpha.",
                                    decoded.cols, decoded.rows, channels));
   }
-  GroundImage image{decoded, cv::Mat(decoded.size(), CV_8UC1, cv::Scalar(255)), gsd_m};
+  FramePixels image{decoded, cv::Mat(decoded.size(), CV_8UC1, cv::Scalar(255))};
   if (channels == 4) {
     cv::Mat alpha;
     cv::extractChannel(decoded, alpha, 3);

@@ -1,9 +1,15 @@
-// A decoded frame as a picture of the ground: which of its pixels were seen.
+// The pixels of a decoded frame, and which of them were seen.
 #pragma once
 
-#include "core/detect/road_detector.hpp"
+#include <opencv2/core.hpp>
 
 namespace roadfix {
+
+/// As in a GroundImage, but of whatever view of the ground.
+struct FramePixels {
+  cv::Mat pixels;
+  cv::Mat observed;
+};
 
 enum class Border {
   kSeen,        ///< every pixel counts, unless an alpha channel says otherwise
@@ -14,6 +20,6 @@ enum class Border {
 /// from the 0.5th to the 99.5th percentile of what was seen, and black is 0 in them (at most 4 in 8 bits, which lossy
 /// codecs blur). InvalidInput "image-shape" for anything else.
 /// Moved in, it takes memory no longer than it has to.
-GroundImage frame_image(cv::Mat decoded, double gsd_m, Border border = Border::kSeen);
+FramePixels frame_image(cv::Mat decoded, Border border = Border::kSeen);
 
 }  // namespace roadfix

@@ -18,10 +18,10 @@ GroundImage at_gsd(const GroundImage& image, double gsd_m) {
   return result;
 }
 
-cv::Mat brightness_of(const GroundImage& image) {
-  if (image.pixels.channels() == 1) return image.pixels;
+cv::Mat brightness_of(const cv::Mat& pixels) {
+  if (pixels.channels() == 1) return pixels;
   cv::Mat grey;
-  cv::cvtColor(image.pixels, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(pixels, grey, cv::COLOR_BGR2GRAY);
   return grey;
 }
 

@@ -10,6 +10,6 @@ namespace roadfix {
 GroundImage at_gsd(const GroundImage& image, double gsd_m);
 
 /// CV_8UC1 brightness.
-cv::Mat brightness_of(const GroundImage& image);
+cv::Mat brightness_of(const cv::Mat& pixels);
 
 }  // namespace roadfix

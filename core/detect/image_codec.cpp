@@ -76,11 +76,11 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels, const std::stop_token
   return image;
 }
 
-std::vector<std::uint8_t> encode_frame(const GroundImage& image) {
-  cv::Mat picture = image.pixels;
-  if (cv::countNonZero(image.observed) != static_cast<int>(image.observed.total())) {
-    cv::cvtColor(image.pixels, picture, image.pixels.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
-    cv::insertChannel(image.observed, picture, 3);
+std::vector<std::uint8_t> encode_frame(const FramePixels& frame) {
+  cv::Mat picture = frame.pixels;
+  if (cv::countNonZero(frame.observed) != static_cast<int>(frame.observed.total())) {
+    cv::cvtColor(frame.pixels, picture, frame.pixels.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
+    cv::insertChannel(frame.observed, picture, 3);
   }
   std::vector<std::uint8_t> png;
   cv::imencode(".png", picture, png);

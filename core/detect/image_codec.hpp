@@ -9,7 +9,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/detect/road_detector.hpp"
+#include "core/detect/frame_image.hpp"
 
 namespace roadfix {
 
@@ -27,12 +27,12 @@ struct ImageHeader {
 std::optional<ImageHeader> read_image_header(Bytes bytes);
 
 /// The image as it is stored, whatever EXIF says of how it is to be turned: 8 or 16 bits; grey, BGR or BGR with alpha;
-/// frame_image() makes a picture of the ground of it. Throws InvalidInput ("image-format", "image-damaged"),
-/// LimitExceeded ("image-too-large") and, when a stop is requested, Interrupted.
+/// frame_image() tells what of it was seen. Throws InvalidInput ("image-format", "image-damaged"), LimitExceeded
+/// ("image-too-large") and, when a stop is requested, Interrupted.
 cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels, const std::stop_token& stop = {});
 
-/// A picture of the ground as PNG, of which decode_image() and frame_image() make the same again (grey as BGR where not
-/// all of it was seen): what was not seen is transparent. At least one pixel.
-std::vector<std::uint8_t> encode_frame(const GroundImage& image);
+/// A frame as PNG, of which decode_image() and frame_image() make the same again (grey as BGR where not all of it was
+/// seen): what was not seen is transparent. At least one pixel.
+std::vector<std::uint8_t> encode_frame(const FramePixels& frame);
 
 }  // namespace roadfix

@@ -7,10 +7,10 @@ namespace roadfix {
 namespace {
 
 /// 255 where pixels of that level in each channel, or pixels that were not seen, lead to the rim.
-cv::Mat border_of(const GroundImage& image, std::uint8_t level) {
+cv::Mat border_of(const FramePixels& frame, std::uint8_t level) {
   cv::Mat like;
-  cv::inRange(image.pixels, cv::Scalar::all(level - kBorderTolerance), cv::Scalar::all(level + kBorderTolerance), like);
-  return joined_to_rim(like | (image.observed == 0));
+  cv::inRange(frame.pixels, cv::Scalar::all(level - kBorderTolerance), cv::Scalar::all(level + kBorderTolerance), like);
+  return joined_to_rim(like | (frame.observed == 0));
 }
 
 }  // namespace
@@ -44,15 +44,15 @@ std::vector<cv::Rect> corner_squares(cv::Size picture) {
   return corners;
 }
 
-void exclude_painted_border(GroundImage& image) {
-  cv::Mat observed = image.observed.clone();
-  for (const cv::Rect& corner : corner_squares(image.pixels.size())) {
+void exclude_painted_border(FramePixels& frame) {
+  cv::Mat observed = frame.observed.clone();
+  for (const cv::Rect& corner : corner_squares(frame.pixels.size())) {
     if (cv::countNonZero(observed(corner)) < corner.area()) continue;
-    if (const auto level = painted_level(image.pixels(corner))) {
-      observed &= ~border_of({image.pixels, observed, image.gsd_m}, *level);
+    if (const auto level = painted_level(frame.pixels(corner))) {
+      observed &= ~border_of({frame.pixels, observed}, *level);
     }
   }
-  image.observed = observed;
+  frame.observed = observed;
 }
 
 }  // namespace roadfix

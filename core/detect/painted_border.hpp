@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/detect/road_detector.hpp"
+#include "core/detect/frame_image.hpp"
 
 namespace roadfix {
 
@@ -25,6 +25,6 @@ std::optional<std::uint8_t> painted_level(const cv::Mat& corner);
 cv::Mat joined_to_rim(const cv::Mat& marked);
 
 /// Marks as not observed what is connected to the picture's rim in the colour of a painted corner.
-void exclude_painted_border(GroundImage& image);
+void exclude_painted_border(FramePixels& frame);
 
 }  // namespace roadfix

@@ -67,7 +67,7 @@ TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetect
   TreeCounts counts{cv::Mat::zeros(cells, CV_32SC1), cv::Mat::zeros(cells, CV_32SC1)};
   const GroundImage ground = at_gsd(image, options.gsd_m);
   cv::Mat brightness;
-  cv::GaussianBlur(brightness_of(ground), brightness, {}, kSmoothingPx);
+  cv::GaussianBlur(brightness_of(ground.pixels), brightness, {}, kSmoothingPx);
   std::vector<cv::Point> open;
   cv::findNonZero(ground.observed, open);
   if (open.empty()) return counts;

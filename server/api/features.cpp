@@ -1,6 +1,7 @@
 #include "server/api/features.hpp"
 
 #include <utility>
+#include <variant>
 
 #include "core/locate/told_frames.hpp"
 
@@ -8,9 +9,10 @@ namespace roadfix::api {
 
 SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels) {
   const FrameScale& scale = frame.scale;
-  return {ground_seen(frame_image(std::move(frame.pixels), scale.gsd_m, frame.border), scale.camera, detector,
-                      static_cast<double>(max_pixels)),
-          scale.in_file ? scale.camera : std::nullopt};
+  SeenFrame seen{ground_seen(frame_image(std::move(frame.pixels), frame.border), scale.view, detector,
+                             static_cast<double>(max_pixels))};
+  if (scale.in_file) seen.camera_in_file = std::get<FrameCamera>(scale.view);
+  return seen;
 }
 
 Features detected(const SeenFrame& frame, const Detection& detection) {

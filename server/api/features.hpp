@@ -26,9 +26,8 @@ struct Features {
 
 /// What the pixels of a frame measure on the ground.
 struct FrameScale {
-  double gsd_m = 0.0;                 ///< of a frame seen from straight above; 0 = by the camera
-  std::optional<FrameCamera> camera;  ///< where there is no gsd_m
-  bool in_file = false;               ///< the camera was read from the picture's file
+  FrameView view;
+  bool in_file = false;  ///< it is a camera that was read from the picture's file
 };
 
 /// A decoded frame and what is told of it.

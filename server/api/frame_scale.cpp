@@ -74,15 +74,15 @@ FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t>
     const std::vector<std::string> exif_field(exif ? 1 : 0, "exif");
     refuse(fields, joined({exif_field, lens_fields(), view_fields()}),
            "gsd_m, which means a frame seen from straight above");
-    return {*gsd_m, std::nullopt, false};
+    return {StraightDown{*gsd_m}};
   }
-  if (!exif) return {0.0, told_camera(fields), false};
+  if (!exif) return {told_camera(fields)};
   refuse(fields, lens_fields(), "exif=true, by which the file tells the lens");
   return scale_in_file(picture, known_view(fields));
 }
 
 FrameScale scale_in_file(std::span<const std::uint8_t> picture, const KnownView& known) {
-  return {0.0, camera_of(drone_picture(read_picture_tags(picture)), known), true};
+  return {camera_of(drone_picture(read_picture_tags(picture)), known), true};
 }
 
 nlohmann::json to_json(const FrameCamera& camera) {

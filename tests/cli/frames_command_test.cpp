@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/evaluation/frames_csv.hpp"
@@ -62,10 +63,10 @@ TEST_F(FramesCommand, MakesATableThatBenchReads) {
   EXPECT_EQ(table[0].sequence, "flight 1");
   EXPECT_DOUBLE_EQ(table[0].pose.position.lat_deg, 37.76);
   EXPECT_DOUBLE_EQ(table[0].pose.heading.degrees(), 270.0);
-  EXPECT_DOUBLE_EQ(table[0].camera.value().agl_m, 128.0);
-  EXPECT_DOUBLE_EQ(table[1].camera.value().agl_m, 130.0);
-  EXPECT_DOUBLE_EQ(table[0].camera.value().focal_px.value(), 100.0);
-  EXPECT_DOUBLE_EQ(table[0].camera.value().pitch.value().degrees(), 3.0);
+  EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).agl_m, 128.0);
+  EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[1].view).agl_m, 130.0);
+  EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).focal_px.value(), 100.0);
+  EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).pitch.value().degrees(), 3.0);
 }
 
 TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <variant>
+
 #include "core/units/error.hpp"
 
 namespace roadfix::evaluation {
@@ -14,7 +16,7 @@ TEST(FramesCsv, FindsItsColumnsByName) {
   const auto frames = parse_frames_csv("time,gsd_m,file,lat,lon,heading_deg\r\n12:00,0.4,a/1.jpg,32.1,35.2,90\r\n");
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].file, "a/1.jpg");
-  EXPECT_EQ(frames[0].gsd_m, 0.4);
+  EXPECT_EQ(std::get<StraightDown>(frames[0].view).gsd_m, 0.4);
   EXPECT_EQ(frames[0].pose.position.lon_deg, 35.2);
   EXPECT_NEAR(frames[0].pose.heading.degrees(), 90, 1e-12);
 }
@@ -37,7 +39,7 @@ TEST(FramesCsv, TakesNoCellBeyondTheHeaderForAColumnThatIsNotThere) {
   const auto frames = parse_frames_csv("file,lat,lon,heading_deg,gsd_m\na,1,1,0,1,,\n");
   EXPECT_EQ(frames.at(0).sequence, "");
   EXPECT_FALSE(frames.at(0).time_s);
-  EXPECT_FALSE(frames.at(0).camera);
+  EXPECT_TRUE(std::holds_alternative<StraightDown>(frames.at(0).view));
 }
 
 TEST(FramesCsv, OfAnotherSpreadsheetThanCanBeReadIsRefusedForWhatItIs) {
@@ -64,14 +66,14 @@ TEST(FramesCsv, DescribesTheCameraOfAFrame) {
       "a,1,1,0,0.5\n"
       "b,1,1,0,,120,84,,1.5,-3\n"
       "c,1,1,0,,300,,1000,,,811 588.5,fisheye,-0.28  0.08 1e-3 0\n");
-  EXPECT_FALSE(frames.at(0).camera);
-  const FrameCamera simple = frames.at(1).camera.value();
+  EXPECT_TRUE(std::holds_alternative<StraightDown>(frames.at(0).view));
+  const FrameCamera simple = std::get<FrameCamera>(frames.at(1).view);
   EXPECT_EQ(simple.agl_m, 120.0);
   EXPECT_EQ(simple.horizontal_fov, Angle::degrees(84));
   EXPECT_EQ(simple.roll, Angle::degrees(1.5));
   EXPECT_EQ(simple.pitch, Angle::degrees(-3));
   EXPECT_FALSE(simple.focal_px || simple.principal_px);
-  const FrameCamera calibrated = frames.at(2).camera.value();
+  const FrameCamera calibrated = std::get<FrameCamera>(frames.at(2).view);
   EXPECT_EQ(calibrated.focal_px, 1000.0);
   EXPECT_EQ(calibrated.principal_px, cv::Point2d(811, 588.5));
   EXPECT_EQ(calibrated.lens, LensModel::kFisheye);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <variant>
 
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -140,8 +141,8 @@ TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
 
   options.detector = nullptr;
   const CameraFrame sent = read().observation.frame();
-  EXPECT_EQ(sent.image.pixels.size(), cv::Size(20, 30)) << "as it was taken";
-  EXPECT_EQ(sent.camera.value().pitch, Angle::degrees(30));
+  EXPECT_EQ(sent.picture.pixels.size(), cv::Size(20, 30)) << "as it was taken";
+  EXPECT_EQ(std::get<FrameCamera>(sent.view).pitch, Angle::degrees(30));
 }
 
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <variant>
 
 namespace roadfix::fly {
 namespace {
@@ -53,9 +54,9 @@ TEST(Camera, TakesThePictureInWhichTheVehicleItselfWouldDetectRoadsAndTheSameOne
   EXPECT_LT(cv::countNonZero(witness.seen.observed), static_cast<int>(witness.seen.observed.total()));
   for (int i = 0; i < 2; ++i) {
     const CameraFrame frame = sent.frame();
-    EXPECT_EQ(difference(frame.image.pixels, witness.seen.pixels), 0.0);
-    EXPECT_EQ(difference(frame.image.observed, witness.seen.observed), 0.0);
-    EXPECT_EQ(frame.image.gsd_m, witness.seen.gsd_m);
+    EXPECT_EQ(difference(frame.picture.pixels, witness.seen.pixels), 0.0);
+    EXPECT_EQ(difference(frame.picture.observed, witness.seen.observed), 0.0);
+    EXPECT_EQ(std::get<StraightDown>(frame.view).gsd_m, witness.seen.gsd_m);
     EXPECT_EQ(frame.seed, witness.told_seed);
     EXPECT_LT(frame.seed, std::uint64_t{1} << 31);
     EXPECT_EQ(frame.cell_m, 2.0);

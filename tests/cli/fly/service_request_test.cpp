@@ -16,9 +16,7 @@ Report seen_by(const FrameCamera& camera) {
   report.sequence = 3;
   report.time_us = 4'000'000;
   report.odometry = Odometry{20.0, -0.5, Angle::degrees(3.0)};
-  report.frame = [camera] {
-    return CameraFrame{{cv::Mat(20, 30, CV_8UC3, cv::Scalar(7, 7, 7)), {}, 0.0}, camera, 2.0, 5};
-  };
+  report.frame = [camera] { return CameraFrame{{cv::Mat(20, 30, CV_8UC3, cv::Scalar(7, 7, 7)), {}}, camera, 2.0, 5}; };
   return report;
 }
 

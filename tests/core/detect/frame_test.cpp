@@ -31,7 +31,7 @@ class HalfMetreDetector : public RoadDetector {
 
 TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
   const HalfMetreDetector detector;
-  const GroundImage frame{cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))};
+  const FramePixels frame{cv::Mat(kFrame, CV_8UC3, cv::Scalar::all(90)), cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))};
   FrameCamera camera = level_camera();
   const auto gsd_at = [&](double agl_m) {
     camera.agl_m = agl_m;
@@ -63,8 +63,9 @@ TEST(GroundSeen, HasNoPaintedBorderAndNoBlankGround) {
   cv::randu(pixels, 20, 230);
   pixels.colRange(0, 10).setTo(cv::Scalar::all(255));                 // 5 m at the left edge
   pixels(cv::Rect(200, 200, 80, 80)).setTo(cv::Scalar(200, 90, 40));  // 40 m within
-  const GroundImage frame{pixels, cv::Mat(pixels.size(), CV_8UC1, cv::Scalar(255)), 0.5};
-  const GroundImage seen = ground_seen(frame, {}, detector, 1e7).image;
+  const FramePixels frame{pixels, cv::Mat(pixels.size(), CV_8UC1, cv::Scalar(255))};
+  const GroundImage seen = ground_seen(frame, StraightDown{0.5}, detector, 1e7).image;
+  EXPECT_EQ(seen.gsd_m, 0.5);
   EXPECT_EQ(cv::countNonZero(seen.observed.colRange(0, 10)), 0);
   EXPECT_EQ(cv::countNonZero(seen.observed(cv::Rect(200, 200, 80, 80))), 0);
   EXPECT_GT(cv::countNonZero(seen.observed), 400 * 390 - 100 * 100);

@@ -27,9 +27,9 @@ constexpr std::int64_t kMany = 1'000'000;
 
 TEST(FrameCodec, PicturesComeBackAsTheyWereWithWhatWasNotSeen) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
-    GroundImage frame{cv::Mat(40, 31, type), cv::Mat(40, 31, CV_8UC1, cv::Scalar(255)), 0.5};
+    FramePixels frame{cv::Mat(40, 31, type), cv::Mat(40, 31, CV_8UC1, cv::Scalar(255))};
     cv::RNG(3).fill(frame.pixels, cv::RNG::UNIFORM, 0, 256);
-    const auto back = [&] { return frame_image(decode_image(encode_frame(frame), kMany), 0.5); };
+    const auto back = [&] { return frame_image(decode_image(encode_frame(frame), kMany)); };
     EXPECT_EQ(cv::norm(back().pixels, frame.pixels, cv::NORM_INF), 0.0);
     EXPECT_EQ(cv::norm(back().observed, frame.observed, cv::NORM_INF), 0.0);
     frame.observed(cv::Rect(5, 0, 7, 40)) = 0;
@@ -222,7 +222,7 @@ TEST(DecodeImage, LooksUpPalettesAndCountsTheGreyThatStandsForNothingAsUnseen) {
   const cv::Mat colours = decode_image(palette, kMany);
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255));
   EXPECT_EQ(colours.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 255, 0));
-  const GroundImage picture = frame_image(decode_image(grey, kMany), 1.0);
+  const FramePixels picture = frame_image(decode_image(grey, kMany));
   EXPECT_EQ(picture.observed.at<uchar>(0, 0), 0);
   EXPECT_EQ(picture.observed.at<uchar>(0, 1), 255);
 }

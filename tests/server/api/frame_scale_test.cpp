@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <variant>
+
 #include "tests/server/api/request_fixture.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/drone_jpeg.hpp"
@@ -15,7 +17,7 @@ using ::testing::ElementsAre;
 FrameScale scale_of(const json& request, const std::vector<std::uint8_t>& picture = {}) {
   return parse_frame_scale(fields_of(request, frame_scale_fields()), picture);
 }
-FrameCamera camera_of(const json& request) { return scale_of(request).camera.value(); }
+FrameCamera camera_of(const json& request) { return std::get<FrameCamera>(scale_of(request).view); }
 std::string refused_scale(const json& request) {
   return refused([&] { scale_of(request); });
 }
@@ -29,8 +31,7 @@ json told(const json& change) {
 
 TEST(FrameScale, IsToldDirectlyOfAFrameSeenFromStraightAbove) {
   const FrameScale scale = scale_of({{"gsd_m", 0.5}, {"exif", false}});
-  EXPECT_EQ(scale.gsd_m, 0.5);
-  EXPECT_FALSE(scale.camera);
+  EXPECT_EQ(std::get<StraightDown>(scale.view).gsd_m, 0.5);
   EXPECT_FALSE(scale.in_file);
   for (const double mistaken : {0.0, 1e-4, 20.0}) {
     EXPECT_EQ(refused_scale({{"gsd_m", mistaken}}), "parameter-out-of-range gsd_m");
@@ -117,7 +118,7 @@ TEST(FrameScale, OfAPhotoIsReadBackFromWhatIsToldOfIt) {
       "drone-dji:DewarpData=\"2021-05-11;30,30,1.5,-0.5,-0.112,0.015,0.0001,-0.0003,-0.028\"");
   const FrameScale scale = scale_of({{"exif", true}}, photo);
   EXPECT_TRUE(scale.in_file);
-  const FrameCamera& in_file = scale.camera.value();
+  const FrameCamera& in_file = std::get<FrameCamera>(scale.view);
   ASSERT_TRUE(in_file.principal_px && in_file.distortion.size() == 5U);
   const json said = to_json(in_file);
   const FrameCamera again = camera_of(said);
@@ -137,7 +138,8 @@ TEST(FrameScale, OfAPhotoThatDoesNotTellWhereItLookedIsRefusedUntilTheRequestDoe
   const auto code = [&](const json& request) { return testing::code_of([&] { scale_of(request, photo); }); };
   EXPECT_EQ(code({{"exif", true}}), "camera-not-in-file");
   EXPECT_EQ(code({{"exif", true}, {"pitch_deg", 0}}), "camera-not-in-file");
-  const json said = to_json(scale_of({{"exif", true}, {"roll_deg", 0}, {"pitch_deg", 10}}, photo).camera.value());
+  const json said =
+      to_json(std::get<FrameCamera>(scale_of({{"exif", true}, {"roll_deg", 0}, {"pitch_deg", 10}}, photo).view));
   EXPECT_EQ(said["roll_deg"], 0.0);
   EXPECT_NEAR(said["pitch_deg"].get<double>(), 10.0, 1e-12);
 }

@@ -23,7 +23,6 @@
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
 #include "core/locate/fix.hpp"
-#include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -49,7 +48,8 @@ struct FixArguments {
   std::string csv;
 };
 
-constexpr std::chrono::seconds kQuiet{2};  // a search that is over by then says nothing of its progress
+constexpr std::chrono::seconds kQuiet{2};     // a search that is over by then says nothing of its progress
+constexpr std::chrono::seconds kUnsaved{10};  // of answers, at most, where the process is killed
 
 Prior prior_of(const FixArguments& options) {
   Prior prior;
@@ -109,7 +109,7 @@ void fix_one(const FixArguments& options) {
   print_answer(options, options.pictures.front(), input, fix);
 }
 
-/// A table is written also of what was answered before an interruption.
+/// What was answered before the end came is in the table, whatever ended the command.
 void fix_all(const FixArguments& options) {
   if (!options.input.also.empty()) throw CLI::ExcludesError("--also", "several pictures and --csv");
   const auto files = picture_files(options.pictures, kPictureEndings);
@@ -118,9 +118,12 @@ void fix_all(const FixArguments& options) {
   const Search search = search_of(options);
   FeatureInput inputs(options.input, search.view);
   std::string table = fix_columns();
+  auto saved = std::chrono::steady_clock::now();
   const auto save = [&] {
     if (!options.csv.empty()) write_file(options.csv, table);
+    saved = std::chrono::steady_clock::now();
   };
+  const bool grows = !options.csv.empty() && is_replaced(options.csv);
   std::size_t left_out = 0;
   try {
     left_out = for_each_picture(files, "locating", options.csv.empty(), [&](const std::filesystem::path& file) {
@@ -130,9 +133,10 @@ void fix_all(const FixArguments& options) {
         print_answer(options, file, input, fix);
       } else {
         table += row_of(file, fix);
+        if (grows && std::chrono::steady_clock::now() - saved >= kUnsaved) save();
       }
     });
-  } catch (const Interrupted&) {
+  } catch (...) {
     save();
     throw;
   }

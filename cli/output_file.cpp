@@ -41,14 +41,6 @@ void write(const fs::path& path, std::string_view bytes, const fs::path& file) {
   if (!out) unwritable(file, errno);
 }
 
-/// Devices and pipes, and what a shell has opened for the process: no other file can take their place.
-bool is_open_elsewhere(const fs::path& file) {
-  const std::string path = fs::absolute(file).lexically_normal().string();
-  std::error_code none;  // where the file does not exist yet
-  return path.starts_with("/dev/") || path.starts_with("/proc/") || is_standard_output(file) ||
-         (fs::exists(file, none) && !fs::is_regular_file(file, none));
-}
-
 fs::path where_links_lead(const fs::path& file) {
   std::error_code error;
   const fs::path end = fs::weakly_canonical(file, error);
@@ -80,8 +72,15 @@ void require_apart(std::initializer_list<fs::path> outputs, std::initializer_lis
   }
 }
 
+bool is_replaced(const fs::path& file) {
+  const std::string path = fs::absolute(file).lexically_normal().string();
+  std::error_code none;  // where the file does not exist yet
+  return !path.starts_with("/dev/") && !path.starts_with("/proc/") && !is_standard_output(file) &&
+         (!fs::exists(file, none) || fs::is_regular_file(file, none));
+}
+
 void write_file(const fs::path& file, std::string_view bytes) {
-  if (is_open_elsewhere(file)) return write(file, bytes, file);
+  if (!is_replaced(file)) return write(file, bytes, file);
   require_writable({file});
   FileBeside whole(where_links_lead(file));
   errno = 0;

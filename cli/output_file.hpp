@@ -13,6 +13,10 @@ namespace roadfix::cli {
 /// files in folders that take no new ones, may keep a part.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
+/// Whether write_file replaces it, however often it is called: devices and pipes, and what a shell has opened for the
+/// process, take each time in addition.
+bool is_replaced(const std::filesystem::path& file);
+
 /// Nothing is written over what the command reads, or over another of its outputs: throws InvalidInput
 /// "target-is-source" or "target-given-twice", and "target-is-dash" for "-", which stands for no output here. Empty
 /// paths are files that nobody wants.

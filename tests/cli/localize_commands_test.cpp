@@ -1,10 +1,14 @@
 // roadfix fix and match as a script meets them: exit codes, JSON on stdout, one line on stderr.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/detect/feature_map_codec.hpp"
@@ -12,9 +16,11 @@
 #include "core/grid/resample.hpp"
 #include "tests/support/drone_jpeg.hpp"
 #include "tests/support/map_file.hpp"
+#include "tests/support/put_block.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/store/map_writer.hpp"
 
 namespace roadfix {
 namespace {
@@ -139,6 +145,36 @@ TEST_F(FixOfSeveralPictures, IsARowOfATableForEachWithAPlaceOnlyWhereThereIsAFix
   EXPECT_EQ(row.find((flight / "b.PNG").string() + ",no_fix,,,,,,,,0.0000,"), 0U) << row;
   EXPECT_THAT(row, HasSubstr(",town,"));
   EXPECT_FALSE(std::getline(rows, row));
+}
+
+TEST_F(FixOfSeveralPictures, IsInTheTableUpToWhateverEndsTheCommand) {
+  const std::filesystem::path pipe = folder / "pipe.png";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  {
+    // Of less certain ground there is more to be asked of the map for every picture.
+    MapWriter writer = MapWriter::existing(map);
+    const SourceRecord less_certain{
+        .name = "b", .kind = "roads", .fingerprint = "b", .provenance = {.registration_sigma_m = 9.0}};
+    const TileIndex block = tiles_covering(town.geometry).front();
+    writer.begin_source(less_certain, std::vector{block}, false);
+    testing::put_block(writer, "b", block, CellArray(kTileCells, kTileCells));
+    writer.finish_source("b");
+  }
+  const std::vector<std::uint8_t> picture = encode_feature_map(what_is_seen(truth, 160).cells);
+  std::thread second([&] {
+    std::ofstream into(pipe, std::ios::binary);  // opens once the command reads it, with the first one answered
+    MapWriter::existing(map).remove_source("town");
+    into.write(reinterpret_cast<const char*>(picture.data()), static_cast<std::streamsize>(picture.size()));
+  });
+  const std::filesystem::path table = folder / "fixes.csv";
+  const std::string first = (flight / "a, 1.png").string();
+  const ProgramResult result =
+      roadfix("fix " + map.string() + " '" + first + "' " + pipe.string() + " --cell 2 --csv " + table.string());
+  close(open(pipe.c_str(), O_RDONLY | O_NONBLOCK));  // lets the second one end in any case
+  second.join();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("[map-renewed]"));
+  EXPECT_THAT(testing::text_of(table), HasSubstr('"' + first + "\",fix,57."));
 }
 
 TEST_F(FixOfSeveralPictures, IsAskedWithoutWhatHoldsForOneAlone) {

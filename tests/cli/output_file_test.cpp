@@ -1,6 +1,7 @@
 #include "cli/output_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -98,6 +99,19 @@ TEST(OutputFile, IsNeitherWrittenOverWhatIsReadNorOverAnotherResult) {
   const roadfix::testing::TemporaryFolder folder;
   const auto map = folder.path() / "map.gpkg";
   write_file(map, "a map");
+TEST(OutputFile, IsReplacedUnlessItIsADeviceAPipeOrOpenAlready) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "out.json";
+  EXPECT_TRUE(is_replaced(file));
+  write_file(file, "{}");
+  EXPECT_TRUE(is_replaced(file));
+  EXPECT_FALSE(is_replaced("/dev/null"));
+  EXPECT_FALSE(is_replaced("/dev/stdout"));
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(is_replaced(pipe));
+}
+
   std::filesystem::create_symlink(map, folder.path() / "link");
   const auto refusal = [&](const std::filesystem::path& a, const std::filesystem::path& b) {
     return code_of([&] { require_apart({a, b}, {map, ""}); });

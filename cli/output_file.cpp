@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "core/units/file_beside.hpp"
 
 namespace roadfix::cli {
@@ -39,12 +40,6 @@ void write(const fs::path& path, std::string_view bytes, const fs::path& file) {
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (!out) unwritable(file, errno);
-}
-
-fs::path where_links_lead(const fs::path& file) {
-  std::error_code error;
-  const fs::path end = fs::weakly_canonical(file, error);
-  return error ? file : end;
 }
 
 }  // namespace
@@ -82,7 +77,7 @@ bool is_replaced(const fs::path& file) {
 void write_file(const fs::path& file, std::string_view bytes) {
   if (!is_replaced(file)) return write(file, bytes, file);
   require_writable({file});
-  FileBeside whole(where_links_lead(file));
+  FileBeside whole(behind_links(file));
   errno = 0;
   if (!std::ofstream(whole.unfinished())) {
     if (errno == ENOSPC || errno == EDQUOT) unwritable(file, errno);
@@ -109,10 +104,11 @@ std::FILE* printed_beside(std::initializer_list<fs::path> outputs) {
 void require_writable(std::initializer_list<fs::path> files) {
   for (const fs::path& file : files) {
     if (file.empty()) continue;
-    const bool is_new = !fs::exists(file);
+    const fs::path target = behind_links(file);
+    const bool is_new = !fs::exists(target);
     errno = 0;
-    if (!std::ofstream(file, std::ios::binary | std::ios::app)) unwritable(file, errno);
-    if (is_new) fs::remove(file);
+    if (!std::ofstream(target, std::ios::binary | std::ios::app)) unwritable(file, errno);
+    if (is_new) fs::remove(target);
   }
 }
 

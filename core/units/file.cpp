@@ -51,6 +51,15 @@ std::string read_named_file(const std::filesystem::path& file, const char* code)
                                    file.string(), std::generic_category().message(reason)));
 }
 
+std::filesystem::path behind_links(std::filesystem::path path) {
+  constexpr int kMaxLinks = 40;  // as the operating system has it
+  std::error_code error;
+  for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(path, error); ++i) {
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  }
+  return path;
+}
+
 std::optional<std::int64_t> free_bytes_beside(const std::filesystem::path& file) {
   std::error_code unknown;
   const auto space = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", unknown);

@@ -1,4 +1,4 @@
-// Whole files, and the room for them.
+// Whole files, where they are, and the room for them.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,9 @@ std::optional<std::string> read_file(const std::filesystem::path& file);
 
 /// The same of a file that has to be there. Throws NotFound `code`, which tells why the system does not give it.
 std::string read_named_file(const std::filesystem::path& file, const char* code);
+
+/// What a link leads to, though it may not be there.
+std::filesystem::path behind_links(std::filesystem::path path);
 
 /// What the disk of a file's folder has free for this process; nullopt where it does not tell.
 std::optional<std::int64_t> free_bytes_beside(const std::filesystem::path& file);

@@ -67,6 +67,20 @@ TEST(OutputFile, KeepsItsLinkAndItsPermissions) {
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
+TEST(OutputFile, GoesWhereItsLinkLeadsThoughNothingIsThereYet) {
+  namespace fs = std::filesystem;
+  const roadfix::testing::TemporaryFolder folder;
+  const auto link = folder.path() / "link.json";
+  fs::create_directory(folder.path() / "results");
+  fs::create_symlink("results/out.json", link);
+  require_writable({link});
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_FALSE(fs::exists(link)) << "what it leads to";
+  write_file(link, "{}");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content_of(folder.path() / "results" / "out.json"), "{}");
+}
+
 TEST(OutputFile, IsWrittenInItsPlaceWhereItsFolderTakesNoOther) {
   const roadfix::testing::TemporaryFolder folder;
   const std::string longest(255, 'n');  // which leaves no room for a longer name beside it
@@ -85,6 +99,19 @@ TEST(OutputFile, GoesToWhatAProcessHasOpenAlready) {
   EXPECT_EQ(content_of(folder.path() / "printed"), "first, then");
 }
 
+TEST(OutputFile, IsReplacedUnlessItIsADeviceAPipeOrOpenAlready) {
+  const roadfix::testing::TemporaryFolder folder;
+  const auto file = folder.path() / "out.json";
+  EXPECT_TRUE(is_replaced(file));
+  write_file(file, "{}");
+  EXPECT_TRUE(is_replaced(file));
+  EXPECT_FALSE(is_replaced("/dev/null"));
+  EXPECT_FALSE(is_replaced("/dev/stdout"));
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(is_replaced(pipe));
+}
+
 TEST(OutputFile, IsLookedAtBeforehandAndLeftAsItIs) {
   const roadfix::testing::TemporaryFolder folder;
   const auto old = folder.path() / "old.json";
@@ -99,19 +126,6 @@ TEST(OutputFile, IsNeitherWrittenOverWhatIsReadNorOverAnotherResult) {
   const roadfix::testing::TemporaryFolder folder;
   const auto map = folder.path() / "map.gpkg";
   write_file(map, "a map");
-TEST(OutputFile, IsReplacedUnlessItIsADeviceAPipeOrOpenAlready) {
-  const roadfix::testing::TemporaryFolder folder;
-  const auto file = folder.path() / "out.json";
-  EXPECT_TRUE(is_replaced(file));
-  write_file(file, "{}");
-  EXPECT_TRUE(is_replaced(file));
-  EXPECT_FALSE(is_replaced("/dev/null"));
-  EXPECT_FALSE(is_replaced("/dev/stdout"));
-  const auto pipe = folder.path() / "pipe";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_FALSE(is_replaced(pipe));
-}
-
   std::filesystem::create_symlink(map, folder.path() / "link");
   const auto refusal = [&](const std::filesystem::path& a, const std::filesystem::path& b) {
     return code_of([&] { require_apart({a, b}, {map, ""}); });

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "tiles/store/create_map.hpp"
 #include "tiles/store/evidence_table.hpp"
 #include "tiles/store/fusion_queue.hpp"
@@ -23,16 +24,6 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
-
-/// What a link leads to, though it may not be there.
-std::filesystem::path behind_links(std::filesystem::path path) {
-  constexpr int kMaxLinks = 40;  // as the operating system has it
-  std::error_code error;
-  for (int i = 0; i < kMaxLinks && std::filesystem::is_symlink(path, error); ++i) {
-    path = path.parent_path() / std::filesystem::read_symlink(path, error);
-  }
-  return path;
-}
 
 /// Makes the map where there is none, and says so.
 bool create_if_missing(const std::filesystem::path& path, const MapSettings& settings) {

@@ -7,6 +7,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/parallel_for.hpp"
+#include "tiles/store/map_description.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
@@ -62,16 +63,12 @@ void FusionQueue::fuse(std::span<const Tile> tiles) {
 }
 
 FusionQueue::Tile FusionQueue::pending_tile(const Statement& row) const {
-  const std::int64_t zoom = row.integer(0);
-  if (zoom >= kCoarsestZoom && zoom <= tiles_.finest_zoom()) {
-    const int level = static_cast<int>(zoom);
-    const std::int64_t index = row.integer(1) - matrix_height(level);
-    const TileIndex tile{static_cast<int>(row.integer(2)), static_cast<int>(index)};
-    if (tile.col == row.integer(2) && tile.row == index && on_lattice(tile, level)) return {level, tile};
+  if (!in_pyramid(row.integer(0), row.integer(1), row.integer(2), tiles_.finest_zoom())) {
+    throw CorruptData("map-corrupt", fmt::format("{}: roadfix_pending names a tile outside the lattice. {}",
+                                                 map_.path().string(), kRepair));
   }
-  throw CorruptData("map-corrupt", fmt::format("{}: roadfix_pending names a tile outside the lattice. Restore the map "
-                                               "from a copy",
-                                               map_.path().string()));
+  const int zoom = static_cast<int>(row.integer(0));
+  return {zoom, {static_cast<int>(row.integer(2)), index_row(static_cast<int>(row.integer(1)), zoom)}};
 }
 
 /// Fuses the next tiles of the finest level that waits, as overviews follow from the tiles of the level before, in one

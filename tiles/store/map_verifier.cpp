@@ -38,7 +38,7 @@ class Verifier {
     check_database();
     if (!verdict_.problems.empty()) return std::move(verdict_);  // tables of a damaged database say nothing reliable
     std::ranges::move(problems_of_description(map_, settings_), std::back_inserter(verdict_.problems));
-    verdict_.tiles_to_fuse = count_pending(map_);
+    check_pending();
     check_ledger();
     check_evidence();
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
@@ -76,6 +76,20 @@ class Verifier {
           report("database-damaged", fmt::format("{}: {}. Restore the map from a copy", pragma + 7, check.text(0)));
         }
       }
+    }
+  }
+
+  void report_outside(const char* what, std::int64_t zoom, std::int64_t col, std::int64_t row) {
+    report("tile-outside-lattice",
+           fmt::format("{} zoom {} column {} row {} lies outside the lattice. {}", what, zoom, col, row, kRepair));
+  }
+
+  void check_pending() {
+    verdict_.tiles_to_fuse = count_pending(map_);
+    Statement waiting(map_, "SELECT zoom_level, tile_column, tile_row FROM roadfix_pending");
+    while (waiting.step()) {
+      if (in_pyramid(waiting.integer(0), waiting.integer(2), waiting.integer(1), table_.finest_zoom())) continue;
+      report_outside("waiting tile", waiting.integer(0), waiting.integer(1), waiting.integer(2));
     }
   }
 
@@ -132,11 +146,10 @@ class Verifier {
     while (select.step()) {
       const std::int64_t row = select.integer(0);
       const std::int64_t col = select.integer(1);
-      if (row >= 0 && row < matrix_height(zoom) && col >= 0 && col < matrix_width(zoom)) {
+      if (in_pyramid(zoom, row, col, table_.finest_zoom())) {
         tiles.push_back({static_cast<int>(col), index_row(static_cast<int>(row), zoom)});
       } else {
-        report("tile-outside-lattice",
-               fmt::format("tile zoom {} column {} row {} lies outside the lattice. {}", zoom, col, row, kRepair));
+        report_outside("tile", zoom, col, row);
       }
     }
     return tiles;

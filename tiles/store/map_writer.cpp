@@ -280,7 +280,9 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   std::vector<std::string> lost = s.evidence.drop_damaged();
   for (const char* sql :
-       {"DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
+  // What waits follows from the evidence in force, all of which is fused anew.
+       {"DELETE FROM roadfix_pending",
+        "DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
         "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
     s.map.execute(sql);
   }

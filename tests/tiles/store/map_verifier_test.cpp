@@ -148,6 +148,16 @@ TEST_F(MapVerifier, FindsTilesOutsideTheLattice) {
               Contains("tile-outside-lattice"));
 }
 
+TEST_F(MapVerifier, FindsWaitingTilesThatNoWriterMadeAndRepairGoesOnWithoutThem) {
+  const auto before = testing::tile_bytes(path);
+  EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (40, 1, 1), (11, -1, 1), (11, 1, 4294967297)"),
+              ElementsAre("tile-outside-lattice", "tile-outside-lattice", "tile-outside-lattice"));
+  EXPECT_THAT(MapWriter(path, settings_37n()).repair(), IsEmpty());
+  EXPECT_THAT(verify_map(path).problems, IsEmpty());
+  EXPECT_EQ(verify_map(path).tiles_to_fuse, 0);
+  EXPECT_EQ(testing::tile_bytes(path), before);
+}
+
 TEST_F(MapVerifier, CountsWhatAnInterruptedFusionLeftAndCallsItNoDamage) {
   EXPECT_THAT(codes_after("INSERT INTO roadfix_pending VALUES (11, 12315, 848); UPDATE gpkg_contents SET min_x = NULL, "
                           "min_y = NULL, max_x = NULL, max_y = NULL"),

@@ -70,21 +70,21 @@ std::string lacks(const DronePicture& picture, const std::optional<double>& agl_
 }
 
 bool fits_a_cell(std::string_view text) {
-  return text.find_first_of(",\r\n") == std::string_view::npos && trimmed(text) == text;
+  return text.find_first_of(",\"\r\n") == std::string_view::npos && trimmed(text) == text;
 }
 
 /// Why the table cannot name it or its flight; empty where it can.
 std::string unnameable(const std::string& name, const std::string& sequence) {
   if (!fits_a_cell(name)) {
     return fmt::format(
-        "no CSV can hold the commas, line breaks or outer blanks of '{}': rename it, or write the table "
-        "into its folder",
+        "no table of frames can hold the commas, quotes, line breaks or outer blanks of '{}': rename it, or write "
+        "the table into its folder",
         name);
   }
   if (!fits_a_cell(sequence)) {
     return fmt::format(
-        "no CSV can hold the commas, line breaks or outer blanks of its folder's name, '{}': name the "
-        "flight with --sequence",
+        "no table of frames can hold the commas, quotes, line breaks or outer blanks of its folder's name, '{}': "
+        "name the flight with --sequence",
         sequence);
   }
   return "";
@@ -176,7 +176,7 @@ void add_frames_command(CLI::App& app) {
   command->add_option("--csv", options->csv, "File to write, from which the pictures are named; default: print");
   command->add_option("--sequence", options->sequence, "Name of the flight; default: that of the folder")
       ->check([](const std::string& name) {
-        return fits_a_cell(name) ? "" : "no CSV can hold commas, line breaks or outer blanks";
+        return fits_a_cell(name) ? "" : "no table of frames can hold commas, quotes, line breaks or outer blanks";
       });
   command->add_option("--takeoff-agl", options->takeoff_agl_m,
                       "How many metres the take-off lay above the ground in the pictures; default: 0");

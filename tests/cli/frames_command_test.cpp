@@ -74,13 +74,15 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
   picture("bare.jpg", "");
   picture("ground.jpg", tags(-1.0));
   picture("a,b.jpg", tags(120.0));
+  picture("a\"b.jpg", tags(120.0));
   const ProgramResult result = frames("'" + (folder / "flight 1").string() + "'");
   EXPECT_EQ(result.code, 0);
   EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("bare.jpg is left out: its file does not tell its place"),
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
-                                HasSubstr("a,b.jpg is left out: no CSV can hold the commas"),
-                                HasSubstr("1 of 4 pictures"), HasSubstr("--takeoff-agl")));
+                                HasSubstr("a,b.jpg is left out: no table of frames can hold the commas"),
+                                HasSubstr("a\"b.jpg is left out: no table of frames"), HasSubstr("1 of 5 pictures"),
+                                HasSubstr("--takeoff-agl")));
 }
 
 TEST_F(FramesCommand, LeavesOutDamagedAndMissingFilesAndTellsByItsExitCode) {

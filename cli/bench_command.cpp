@@ -117,7 +117,6 @@ void write_json(const nlohmann::json& document, const std::string& file) {
 }
 
 void draw(const std::vector<bench::SetResult>& results, const bench::Honesty& honesty, const std::string& folder) {
-  std::filesystem::create_directories(folder);
   write_file(folder + "/reliability.svg", bench::reliability_svg(honesty));
   write_file(folder + "/answered.svg", bench::answered_svg(results));
   for (const bench::QualityProperty& property : bench::kQualityProperties) {
@@ -156,6 +155,8 @@ void run_bench(BenchArguments& arguments) {
                                                                 arguments.calibrate_headings_file};
   require_apart(outputs, {arguments.manifest});
   require_writable(outputs);
+  require_folder(arguments.curves);
+  require_folder(arguments.options.pictures);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const Detectors detectors(arguments.detector);
   const std::shared_ptr<const RoadDetector> map_detector = detector_of_maps(arguments, detectors);

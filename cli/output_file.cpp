@@ -101,6 +101,14 @@ std::FILE* printed_beside(std::initializer_list<fs::path> outputs) {
   return std::any_of(outputs.begin(), outputs.end(), is_standard_output) ? stderr : stdout;
 }
 
+void require_folder(const fs::path& folder) {
+  if (folder.empty()) return;
+  require_name(folder);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) unwritable(folder, error.value());
+}
+
 void require_writable(std::initializer_list<fs::path> files) {
   for (const fs::path& file : files) {
     if (file.empty()) continue;

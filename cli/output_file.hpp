@@ -36,4 +36,7 @@ std::FILE* printed_beside(std::initializer_list<std::filesystem::path> outputs);
 /// are files that nobody wants.
 void require_writable(std::initializer_list<std::filesystem::path> files);
 
+/// The same of a folder to write into, which it makes where there is none. An empty path is one that nobody wants.
+void require_folder(const std::filesystem::path& folder);
+
 }  // namespace roadfix::cli

@@ -27,6 +27,10 @@ TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
               HasSubstr("target-is-source"));
   EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --calibrate-headings nowhere.json").err,
               HasSubstr("calibration-missing"));
+  for (const char* option : {" --curves ", " --pictures "}) {
+    EXPECT_THAT(run_program(folder.path(), "bench " + manifest + option + manifest).err,
+                HasSubstr("[result-unwritable]"));
+  }
   const std::string file = (folder / "out.json").string();
   const ProgramResult bench =
       run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +

@@ -170,7 +170,8 @@ void run_bench(BenchArguments& arguments) {
       options.jobs,
       arguments.cache.empty() ? default_cache() : std::filesystem::path(arguments.cache),
       [&](const std::string& name, std::int64_t done, std::int64_t total) { building.update(name, done, total); },
-      stop_on_signals()};
+      stop_on_signals(),
+      ROADFIX_VERSION};
   options.detectors = &detectors;
   options.fix.search.deadline = Deadline(options.maps.stop);
   if (!arguments.calibration_file.empty()) options.fix.calibration = read_calibration(arguments.calibration_file);

@@ -22,10 +22,8 @@
 namespace roadfix::bench {
 namespace {
 
-/// The roads of an invented town, written to the cache once.
+/// The roads of an invented town, written anew each time: another version of the program may invent others.
 std::filesystem::path invented_roads(const ManifestSource& source, const std::filesystem::path& cache) {
-  std::filesystem::path file = cache / fmt::format("invented-{}-{:g}.geojson", source.seed, source.side_m);
-  if (std::filesystem::exists(file)) return file;
   world::WorldSettings settings;
   settings.seed = source.seed;
   settings.width_m = settings.height_m = source.side_m;
@@ -33,6 +31,7 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
   plan.width_m = plan.height_m = source.side_m;
   world::Random random(source.seed, 0);
   world::invent_streets(plan, random);
+  std::filesystem::path file = cache / fmt::format("invented-{}-{:g}.geojson", source.seed, source.side_m);
   FileBeside roads(file);
   world::write_road_truth(roads.unfinished().string(), plan.streets, world::place(settings, world::kDefaultCentre));
   roads.finish();
@@ -66,7 +65,7 @@ OpenedSource open(const SourceRequest& request, int number, const MapSettings& s
 /// Tells content and settings of all sources apart: two manifests may call different maps the same.
 std::filesystem::path file_of(const ManifestMap& map, const MapSettings& settings,
                               std::span<const OpenedSource> sources, const MapBuilding& building) {
-  std::string identity = fmt::format("{} {}", settings.zone.epsg(), settings.cell_m);
+  std::string identity = fmt::format("{} {} {}", building.version, settings.zone.epsg(), settings.cell_m);
   for (const OpenedSource& source : sources) identity += "\n" + source.record.name + " " + source.record.fingerprint;
   std::string name = map.name;
   std::ranges::replace_if(

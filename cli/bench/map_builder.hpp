@@ -23,10 +23,11 @@ struct MapBuilding {
   /// Called with the source's name before its blocks, then with (name, done, total).
   std::function<void(const std::string& source, std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;
+  std::string version;  ///< of the program: another one may make other maps of the same sources
 };
 
-/// The file's name tells sources, their content, the detector and its settings, cell size and seed apart (not versions
-/// of this program). Throws what sources, pipeline and store throw.
+/// The file's name tells sources, their content, the detector and its settings, cell size, seed and version of the
+/// program apart. Throws what sources, pipeline and store throw.
 MapView build_map(const ManifestMap& map, const MapBuilding& building);
 
 /// The rasters of the map's imagery sources.

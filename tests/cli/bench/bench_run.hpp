@@ -71,7 +71,7 @@ class BenchRun : public ::testing::Test {
     options.jobs = 2;
     options.detectors = &detectors;
     options.maps = {
-        detector.get(), 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}};
+        detector.get(), 2.0, 1, 2, folder.path(), [](const std::string&, std::int64_t, std::int64_t) {}, {}, "1"};
     options.progress = [](const std::string&, std::int64_t, std::int64_t) {};
   }
 

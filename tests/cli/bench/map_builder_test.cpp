@@ -30,6 +30,23 @@ TEST_F(MapBuilder, KeepsMapsOfTheSameNameApart) {
   EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", "imagery"}}}, building).version);
 }
 
+TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
+  const ManifestMap map{"town", {{{}, "invented", 3, 800.0}}};
+  MapBuilding building = options.maps;
+  building.version = "1";
+  const std::string version = build_map(map, building).version;
+  const auto towns = [&] {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(building.cache)) {
+      if (entry.path().extension() == ".geojson") files.push_back(entry.path());
+    }
+    return files;
+  };
+  ASSERT_EQ(towns().size(), 1U);
+  std::ofstream(towns().front()) << R"({"type": "FeatureCollection", "features": []})";
+  EXPECT_EQ(build_map(map, building).version, version);
+}
+
 TEST_F(MapBuilder, MapsBothSidesOfTheEquator) {
   std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n349.5\n";
   const MapView map = build_map({"town", {{folder / "town.png", "imagery"}}}, options.maps);

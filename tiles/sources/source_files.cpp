@@ -65,17 +65,17 @@ bool is_geopackage_of_pixels(const std::string& path) {
   return DatasetPtr(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY)) != nullptr;
 }
 
-/// A description of layers, not of images.
-bool is_vector_vrt(const std::string& path) {
-  return ending_of(path) == ".vrt" && GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
+/// By its first bytes: to open a GeoJSON takes as long as to read all of it.
+bool seems_to_hold_vectors(const std::string& path) {
+  const GdalMessages messages;
+  return GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) != nullptr;
 }
 
+/// A description of layers, not of images.
+bool is_vector_vrt(const std::string& path) { return ending_of(path) == ".vrt" && seems_to_hold_vectors(path); }
+
 /// What programs leave beside roads: settings, descriptions, answers of Overpass.
-bool is_other_json(const std::string& path) {
-  if (ending_of(path) != ".json") return false;
-  const GdalMessages messages;
-  return GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr) == nullptr;
-}
+bool is_other_json(const std::string& path) { return ending_of(path) == ".json" && !seems_to_hold_vectors(path); }
 
 struct FileKind {
   SourceKind kind = SourceKind::kRoadVectors;
@@ -221,7 +221,7 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning, cons
     result.kind = kind.kind;
     result.is_map = kind.is_map;
     if (result.kind == SourceKind::kRoadVectors) {
-      open_dataset(argument, GDAL_OF_VECTOR);
+      if (!seems_to_hold_vectors(argument)) open_dataset(argument, GDAL_OF_VECTOR);  // says why not
     } else {
       result.left_out = layers_of(argument);
       if (meaning == SourceMeaning::kRoads) result.kind = SourceKind::kRoadRaster;

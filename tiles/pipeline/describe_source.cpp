@@ -26,7 +26,7 @@ void tell(Provenance& provenance, const UserProvenance& told) {
   for (const Text& each : kTexts) {
     if (const auto& said = told.*each.told) provenance.*each.text = *said;
   }
-  if (told.registration_sigma_m > 0.0) provenance.registration_sigma_m = told.registration_sigma_m;
+  if (told.registration_sigma_m) provenance.registration_sigma_m = *told.registration_sigma_m;
 }
 
 std::string shown(const std::string& text) { return text.empty() ? "none" : "'" + text + "'"; }
@@ -40,7 +40,7 @@ std::optional<std::string> note_on_own(const std::string& location, const Proven
     facts.push_back(fmt::format("{} {}", name, shown(own.*text)));
     options.emplace_back(option);
   }
-  if (own.registration_sigma_m > 0.0 && told.registration_sigma_m == 0.0) {
+  if (own.registration_sigma_m > 0.0 && !told.registration_sigma_m) {
     facts.push_back(fmt::format("position within {:.3g} m (1 sigma)", own.registration_sigma_m));
     options.emplace_back("--registration-sigma");
   }
@@ -67,7 +67,7 @@ std::vector<Change> changes_of(const Provenance& before, const Provenance& now, 
     changes.push_back({"--registration-sigma",
                        fmt::format("position within {:.3g} m instead of {:.3g} m (1 sigma)", now.registration_sigma_m,
                                    before.registration_sigma_m),
-                       told.registration_sigma_m > 0.0});
+                       told.registration_sigma_m.has_value()});
   }
   return changes;
 }

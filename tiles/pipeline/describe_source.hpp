@@ -17,7 +17,7 @@ struct UserProvenance {
   std::optional<std::string> date = {};
   std::optional<std::string> licence = {};
   std::optional<std::string> attribution = {};
-  double registration_sigma_m = 0.0;  ///< 0: not said
+  std::optional<double> registration_sigma_m = {};
 };
 
 /// Completes `record`, which has the registration error of the source, and may state it otherwise. `own` is what the

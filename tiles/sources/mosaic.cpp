@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/detect/blank_ground.hpp"
@@ -241,9 +242,9 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
 
 std::shared_ptr<RasterFile> Mosaic::open(const Image& image, double gsd_m) const {
   auto file = std::make_shared<RasterFile>(image.content.path, options_);
-  const int overview = file->overview_for(gsd_m / image.gsd_m);
+  const std::optional<int> overview = file->overview_for(gsd_m / image.gsd_m);
   // The collar was judged on the pixels of the full image, and its windows are in them.
-  if (overview >= 0 && !image.collar) file = std::make_shared<RasterFile>(image.content.path, options_, overview);
+  if (overview && !image.collar) file = std::make_shared<RasterFile>(image.content.path, options_, overview);
   file->set_full_opacity(image.full_opacity);
   return file;
 }

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kOpaque = 128;
 
-DatasetPtr open_raster(const std::string& path, int overview) {
+DatasetPtr open_raster(const std::string& path, std::optional<int> overview) {
   CPLStringList options;
-  if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", fmt::format("{}", overview).c_str());
+  if (overview) options.SetNameValue("OVERVIEW_LEVEL", fmt::format("{}", *overview).c_str());
   return open_dataset(path, GDAL_OF_RASTER, options.List());
 }
 
@@ -74,7 +74,7 @@ ValueRange extremes(const cv::Mat& values, const cv::Mat& valid) {
 
 }  // namespace
 
-RasterFile::RasterFile(std::string path, const RasterOptions& options, int overview)
+RasterFile::RasterFile(std::string path, const RasterOptions& options, std::optional<int> overview)
     : path_(std::move(path)), dataset_(open_raster(path_, overview)) {
   if (size().width <= 0 || size().height <= 0 || dataset_->GetRasterCount() == 0) {
     throw InvalidInput("image-without-bands",
@@ -161,10 +161,10 @@ bool RasterFile::holds_integers() const {
   return GDALDataTypeIsInteger(dataset_->GetRasterBand(colour_bands_.front())->GetRasterDataType()) != 0;
 }
 
-int RasterFile::overview_for(double reduction) const {
+std::optional<int> RasterFile::overview_for(double reduction) const {
+  if (signed_bytes_) return std::nullopt;  // overviews do not tell that theirs are
   GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
-  int best = -1;
-  if (signed_bytes_) return best;  // overviews do not tell that theirs are
+  std::optional<int> best;
   double best_factor = 1.0;
   for (int i = 0; i < band.GetOverviewCount(); ++i) {
     GDALRasterBand* overview = band.GetOverview(i);
@@ -249,8 +249,8 @@ cv::Mat RasterFile::read_alpha(cv::Rect window) {
 }
 
 double RasterFile::full_opacity() {
-  if (full_opacity_ == 0.0) full_opacity_ = alpha_band_ > 0 ? sample_full_opacity() : 1.0;
-  return full_opacity_;
+  if (!full_opacity_) full_opacity_ = alpha_band_ > 0 ? sample_full_opacity() : 1.0;
+  return *full_opacity_;
 }
 
 double RasterFile::sample_full_opacity() {

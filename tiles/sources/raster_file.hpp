@@ -46,8 +46,8 @@ struct RasterPixels {
 class RasterFile {
  public:
   /// Throws NotFound, InvalidInput ("source-unreadable", "image-without-bands", "image-without-georeference").
-  /// `overview` >= 0 opens that reduced copy instead of the full image.
-  RasterFile(std::string path, const RasterOptions& options, int overview = -1);
+  /// `overview` is the index of a reduced copy to open instead of the full image.
+  RasterFile(std::string path, const RasterOptions& options, std::optional<int> overview = {});
 
   const std::string& path() const { return path_; }
   const OGRSpatialReference& crs() const { return crs_; }
@@ -62,8 +62,8 @@ class RasterFile {
   /// Number of the band that says what is transparent, 0 without.
   int alpha_band() const { return alpha_band_; }
   /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image, and which
-  /// knows what of it holds nothing; -1 for none.
-  int overview_for(double reduction) const;
+  /// knows what of it holds nothing.
+  std::optional<int> overview_for(double reduction) const;
 
   /// Whether rows are unpacked after all those above them (JPEG, PNG, GIF), unless they are in GDAL's cache, which each
   /// handle of the file fills anew. Other formats unpack any of their blocks by itself.
@@ -105,7 +105,7 @@ class RasterFile {
   std::vector<std::optional<double>> nodata_;         ///< of each of them
   std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
   int alpha_band_ = 0;                                ///< 0 without
-  double full_opacity_ = 0.0;                         ///< 0 = not known yet
+  std::optional<double> full_opacity_;                ///< as far as it is known
   std::optional<std::vector<cv::Rect>> filled_;       ///< parts of a VRT in which its images lie
   bool signed_bytes_ = false;                         ///< in the type of unsigned ones
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band

@@ -171,7 +171,7 @@ TEST_F(RasterFileTest, OverviewsWithoutTheMaskOfTheirImageAreNotRead) {
   EXPECT_EQ(RasterFile(with_mask, {}).overview_for(2.0), 0);
   const std::string without = write_raster(folder / "b.tif", spec, band_number, right_half);
   add_overview(without, GA_ReadOnly);
-  EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), -1);
+  EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), std::nullopt);
 }
 
 /// As gdalbuildvrt makes it, in the finest of their pixels.
@@ -232,11 +232,11 @@ TEST_F(RasterFileTest, GapsWithinTheVrtsOfAVrtHoldNothing) {
   const std::string fine = mosaic_of(folder / "fine.vrt", {image("c.tif", 320, 1), image("d.tif", 416, 1)});
   const std::string region = mosaic_of(folder / "region.vrt", {coarse, fine});
   for (const std::string& path : {region, mosaic_of(folder / "country.vrt", {region})}) {
-    for (const int overview : {-1, 0}) {
-      if (overview == 0) add_overview(path, GA_ReadOnly);
+    for (const std::optional<int> overview : {std::optional<int>(), std::optional(0)}) {
+      if (overview) add_overview(path, GA_ReadOnly);
       RasterFile file(path, {}, overview);
       const cv::Mat valid = file.read({{0, 0}, file.size()}, {}).valid;
-      const int pixel_m = overview == 0 ? 2 : 1;
+      const int pixel_m = overview ? 2 : 1;
       ASSERT_EQ(file.size(), cv::Size(480 / pixel_m, 128 / pixel_m));
       for (int row = 0; row < valid.rows; ++row) {
         for (int col = 0; col < valid.cols; ++col) {
@@ -275,7 +275,7 @@ TEST_F(RasterFileTest, OverviewsFromBeforeAValueMeantNodataAreNotRead) {
   GDALDatasetUniquePtr(GDALDataset::FromHandle(GDALOpen(path.c_str(), GA_Update)))
       ->GetRasterBand(1)
       ->SetNoDataValue(10.0);
-  EXPECT_EQ(RasterFile(path, {}).overview_for(2.0), -1);
+  EXPECT_EQ(RasterFile(path, {}).overview_for(2.0), std::nullopt);
 }
 
 TEST_F(RasterFileTest, FilesThatAreNoImagesAreRefusedByName) {

@@ -22,6 +22,7 @@
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
+#include "core/geodesy/latlon.hpp"
 #include "core/locate/fix.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
@@ -35,9 +36,8 @@ struct FixArguments {
   std::string map;
   std::vector<std::string> pictures;
   FeatureInputOptions input;
-  double lat = 0.0;
-  double lon = 0.0;
-  double radius_m = 0.0;
+  LatLon centre;
+  std::optional<double> radius_m;
   std::optional<GeoBox> bbox;
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
@@ -53,7 +53,7 @@ constexpr std::chrono::seconds kUnsaved{10};  // of answers, at most, where the 
 
 Prior prior_of(const FixArguments& options) {
   Prior prior;
-  if (options.radius_m > 0.0) prior.circle = GeoCircle{{options.lat, options.lon}, options.radius_m};
+  if (options.radius_m) prior.circle = GeoCircle{options.centre, *options.radius_m};
   prior.box = options.bbox;
   if (options.heading_deg) {
     prior.heading = HeadingRange{Angle::degrees(*options.heading_deg), Angle::degrees(options.heading_range_deg)};
@@ -163,8 +163,8 @@ void add_fix_command(CLI::App& app) {
       ->add_option("input", o->pictures, std::string(kInputMeaning) + "; several of them, and folders of PNG and JPEG")
       ->required();
   add_feature_input_options(*command, o->input);
-  auto* lat = command->add_option("--lat", o->lat, "Prior: latitude of the centre, degrees");
-  auto* lon = command->add_option("--lon", o->lon, "Prior: longitude of the centre, degrees");
+  auto* lat = command->add_option("--lat", o->centre.lat_deg, "Prior: latitude of the centre, degrees");
+  auto* lon = command->add_option("--lon", o->centre.lon_deg, "Prior: longitude of the centre, degrees");
   auto* radius = command->add_option("--radius,--radius-m", o->radius_m, "Prior: radius in metres");
   radius->check(positive())->needs(lat)->needs(lon);
   lat->needs(lon)->needs(radius);

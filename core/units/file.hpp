@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,9 @@ std::string read_named_file(const std::filesystem::path& file, const char* code)
 
 /// What a link leads to, though it may not be there.
 std::filesystem::path behind_links(std::filesystem::path path);
+
+/// As free_bytes_beside() tells it.
+using FreeBytes = std::function<std::optional<std::int64_t>(const std::filesystem::path& file)>;
 
 /// What the disk of a file's folder has free for this process; nullopt where it does not tell.
 std::optional<std::int64_t> free_bytes_beside(const std::filesystem::path& file);

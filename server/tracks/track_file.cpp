@@ -53,7 +53,7 @@ IoFailure full(const std::filesystem::path& path, std::int64_t max_bytes, std::o
 
 /// What a refusal of SQLite means for this store, which may have `max_bytes` on a disk with so much room.
 std::exception_ptr store_error(const std::filesystem::path& path, sqlite::Failure failure, const std::string& detail,
-                               std::int64_t max_bytes, const TrackFile::FreeBytes& free_bytes) {
+                               std::int64_t max_bytes, const FreeBytes& free_bytes) {
   using sqlite::Failure;
   using std::make_exception_ptr;
   const std::string file = path.string();

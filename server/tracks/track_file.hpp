@@ -5,12 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "tiles/store/file_identity.hpp"
 #include "tiles/store/sqlite.hpp"
 
@@ -21,9 +21,6 @@ inline constexpr const char* kTrackStoreFull = "track-store-full";
 
 class TrackFile {
  public:
-  /// Of the disk of the file.
-  using FreeBytes = std::function<std::optional<std::int64_t>(const std::filesystem::path& file)>;
-
   /// Creates the file and its tables where there are none.
   TrackFile(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes);
   TrackFile(const TrackFile&) = delete;

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,8 +44,6 @@ class TrackFile;
 
 class TrackStore {
  public:
-  using FreeBytes = std::function<std::optional<std::int64_t>(const std::filesystem::path& file)>;
-
   /// Creates the file where there is none. Beyond `max_bytes`, or what its disk has free, it is full: flights that are
   /// over, of which steps are kept, give way then.
   TrackStore(const std::filesystem::path& path, std::int64_t max_bytes, FreeBytes free_bytes = free_bytes_beside);

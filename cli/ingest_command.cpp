@@ -99,8 +99,10 @@ IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSumm
   Progress reading(record.name, lines ? "features" : "MP",
                    lines ? lines_per_block : kTileCells * kTileCells * cell_mp(summary, writer.settings()));
   Progress fusing("fusing", "tiles");
+  Progress comparing("comparing", "sources");
   options.on_blocks = reading.updates();
   options.on_fusing = fusing.updates();
+  options.on_shifts = comparing.updates();
   return ingest(*planned.cells, record, writer, options);
 }
 

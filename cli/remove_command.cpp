@@ -5,7 +5,7 @@
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
-#include "tiles/pipeline/source_shift.hpp"
+#include "tiles/pipeline/remove_source.hpp"
 #include "tiles/store/map_writer.hpp"
 
 namespace roadfix::cli {
@@ -16,19 +16,18 @@ struct RemoveArguments {
   std::string source;
 };
 
-void remove_source(const RemoveArguments& options) {
-  const std::stop_token stop = stop_on_signals();
+RemoveReport remove_with_progress(MapWriter& writer, const std::string& source) {
+  Progress fusing("fusing", "tiles");
+  Progress comparing("comparing", "sources");
+  return remove_source(writer, source, fusing.updates(), comparing.updates(), stop_on_signals());
+}
+
+void run_remove(const RemoveArguments& options) {
   MapWriter writer = MapWriter::existing(options.map);
-  bool was_there = false;
-  {
-    Progress progress("fusing", "tiles");
-    was_there = writer.remove_source(options.source, progress.updates(), stop);
-  }
-  // It may have been what others lay beside.
-  const ShiftReport shifts = measure_shifts(writer, writer.sources_in_force());
+  const RemoveReport report = remove_with_progress(writer, options.source);
   fmt::print("{}: source '{}' {}\n", options.map, options.source,
-             was_there ? "is removed" : "was not there any more; what was left to fuse is fused");
-  for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);
+             report.was_there ? "is removed" : "was not there any more; what was left to do is done");
+  for (const std::string& note : report.shifts.notes) fmt::print(stderr, "note: {}\n", note);
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ void add_remove_command(CLI::App& app) {
   const auto options = std::make_shared<RemoveArguments>();
   command->add_option("map", options->map, "Map file (GeoPackage)")->required();
   command->add_option("source", options->source, "Name of the source")->required();
-  command->callback([options] { remove_source(*options); });
+  command->callback([options] { run_remove(*options); });
 }
 
 }  // namespace roadfix::cli

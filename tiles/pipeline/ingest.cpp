@@ -91,7 +91,7 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
   writer.finish_source(record.name, options.on_fusing, options.stop);
   report.fusing_s = seconds_since(fusing);
   touched.merge(names_beside(writer, record.name));
-  report.shifts = measure_shifts(writer, touched);
+  report.shifts = measure_shifts(writer, touched, options.on_shifts, options.stop);
   return report;
 }
 

@@ -24,6 +24,7 @@ struct IngestOptions {
   bool replace = false;  ///< a source of that name with another fingerprint
   OnProgress on_blocks{};
   OnProgress on_fusing{};
+  OnProgress on_shifts{};
   std::stop_token stop{};
 };
 
@@ -45,8 +46,8 @@ std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
 
 /// Carries the source into the map or goes on where an earlier call was stopped, and measures which sources of its
 /// ground lie beside the others (source_shift.hpp). `record.fingerprint` must tell everything that changes the cells.
-/// Throws Interrupted "ingest-stopped" when asked to stop, and whatever source and writer throw; what was finished
-/// until then stays.
+/// Throws Interrupted ("ingest-stopped", "fusion-stopped") when asked to stop, and whatever source and writer throw;
+/// what was finished until then stays.
 IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWriter& writer,
                     const IngestOptions& options);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 
 #include "core/grid/cell.hpp"
@@ -149,13 +150,25 @@ std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, doubl
   return sure && elsewhere ? std::optional(shift) : std::nullopt;
 }
 
-ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources) {
+ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources, const OnProgress& progress,
+                           const std::stop_token& stop) {
   constexpr std::int64_t kTiles = 64;
+  const std::int64_t total = std::ssize(sources);
+  std::int64_t done = 0;
+  const auto tell = [&] {
+    if (progress && total > 1) progress(done, total);
+  };
   std::map<std::string, std::optional<SourceShift>> measured;
   std::map<std::string, std::vector<std::string>> not_measured;  // by what is in the way
   ShiftReport result;
   Witnesses witnesses(writer);
+  tell();
   for (const std::string& source : sources) {
+    if (stop.stop_requested()) {
+      throw Interrupted("fusion-stopped", fmt::format("stopped with {} of {} sources compared with the others. Repeat "
+                                                      "the command to go on",
+                                                      done, total));
+    }
     try {
       const auto [copies, others] = witnesses.around(source);
       const auto shift = shift_of(writer.shared_evidence(source, others, kTiles), writer.settings().cell_m);
@@ -165,6 +178,8 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
     } catch (const CorruptData& damage) {
       not_measured[damage.what()].push_back(source);
     }
+    ++done;
+    tell();
   }
   writer.put_shifts(measured);
   for (const auto& [damage, names] : not_measured) {

@@ -175,6 +175,7 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
   if (same) {
     if (unfinished) s.sources.remove(unfinished->id);
     s.sources.describe(in_force->id, record);
+    if (in_force->registration_sigma_m != record.provenance.registration_sigma_m) call_shifts_outdated(s.map);
   } else {
     const std::int64_t id = unfinished ? unfinished->id : s.sources.insert(record);
     s.sources.describe(id, record);
@@ -268,7 +269,7 @@ bool MapWriter::remove_source(const std::string& source, const OnProgress& progr
       s.sources.remove(found->id);
       any = true;
     }
-    if (!any && s.fusion.size() == 0) throw s.no_source(source);
+    if (!any && s.fusion.size() == 0 && !shifts_outdated()) throw s.no_source(source);
     transaction.commit();
   }
   s.fusion.drain(progress, stop);
@@ -279,8 +280,8 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   std::vector<std::string> lost = s.evidence.drop_damaged();
-  for (const char* sql :
   // What waits follows from the evidence in force, all of which is fused anew.
+  for (const char* sql :
        {"DELETE FROM roadfix_pending",
         "DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
         "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
@@ -291,6 +292,7 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
     sources.push_back(all.integer(0));
   }
   for (const std::int64_t id : sources) s.fusion.add_source(id);
+  if (!lost.empty()) call_shifts_outdated(s.map);
   s.fusion.update_extent();
   transaction.commit();
   s.fusion.drain(progress, stop);

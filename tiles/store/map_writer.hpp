@@ -80,7 +80,8 @@ class MapWriter {
   std::set<std::string> sources_in_force();
 
   /// Whether sources came, went or were replaced since put_shifts(), so that any of those in force may lie beside the
-  /// others or not by now: finish_source() or remove_source() was stopped, or what should follow it.
+  /// others or not by now: finish_source() or remove_source() was stopped, or what should follow it. So they may where
+  /// begin_source() states another registration error, or repair() drops evidence.
   bool shifts_outdated();
   /// Tells the map which of these sources in force lie beside the others; nullopt for one that does not.
   void put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts);
@@ -90,7 +91,8 @@ class MapWriter {
   void remove_if_new_and_empty();
 
   /// Takes a source out of the map, complete or not, and fuses what it touched. Can be interrupted and repeated: then
-  /// it only goes on fusing, and returns false. Throws NotFound ("source-not-found") where nothing is left to fuse.
+  /// it only goes on fusing, and returns false. Throws NotFound ("source-not-found") where nothing is left to fuse, nor
+  /// shifts_outdated().
   bool remove_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
   /// Fuses every tile anew from the evidence. Evidence that cannot be decoded is dropped first; returns the names of

@@ -13,9 +13,11 @@ using sqlite::Statement;
 SourceTable::SourceTable(sqlite::Connection& map, int finest_zoom) : map_(map), zoom_(finest_zoom) {}
 
 std::optional<SourceTable::Entry> SourceTable::find(const std::string& name, bool in_force) {
-  Statement select(map_, "SELECT id, fingerprint, kind, method FROM roadfix_sources WHERE name = ?1 AND in_force = ?2");
+  Statement select(map_,
+                   "SELECT id, fingerprint, kind, method, registration_sigma_m FROM roadfix_sources WHERE name = ?1 "
+                   "AND in_force = ?2");
   if (!select.with(name, in_force).step()) return std::nullopt;
-  return Entry{select.integer(0), select.text(1), select.text(2), select.text(3)};
+  return Entry{select.integer(0), select.text(1), select.text(2), select.text(3), select.real(4)};
 }
 
 std::int64_t SourceTable::insert(const SourceRecord& record) {

@@ -21,6 +21,7 @@ class SourceTable {
     std::string fingerprint;
     std::string kind;
     std::string method;
+    double registration_sigma_m = 0.0;
   };
   /// At most one source of a name is in force, and at most one is on its way to be.
   std::optional<Entry> find(const std::string& name, bool in_force);

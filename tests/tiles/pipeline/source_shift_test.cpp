@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/grid/resample.hpp"
+#include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/put_block.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tiles/pipeline/ingest.hpp"
+#include "tiles/pipeline/remove_source.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
@@ -248,6 +251,34 @@ TEST_F(MeasuredShifts, OfThreeOnlyTheOneThatTwoContradictDoes) {
   const ShiftReport report = measure_shifts(writer, {"a", "b", "c"});
   EXPECT_THAT(report.beside, ElementsAre(Pair("b", _)));
   EXPECT_THAT(report.copies, IsEmpty()) << "4 m apart";
+}
+
+TEST_F(MeasuredShifts, AreToldTheMapOnlyWhenAllAreMeasuredAndOutdatedUntilThen) {
+  put("a", 0);
+  put("b", 10);
+  std::stop_source stop;
+  const auto stop_after_one = [&](std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(total, 2);
+    if (done == 1) stop.request_stop();
+  };
+  EXPECT_THROW(measure_shifts(writer, {"a", "b"}, stop_after_one, stop.get_token()), Interrupted);
+  EXPECT_TRUE(writer.shifts_outdated());
+  EXPECT_EQ(sources()[0].shift, std::nullopt);
+}
+
+TEST_F(MeasuredShifts, AreMeasuredAnewWhereASourceIsRemovedAlsoBySeveralTries) {
+  put("a", 0);
+  put("b", 10);
+  ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
+  std::stop_source stop;
+  const auto stop_at_once = [&](std::int64_t done, std::int64_t total) {
+    if (done == total) stop.request_stop();
+  };
+  EXPECT_THROW(remove_source(writer, "b", stop_at_once, {}, stop.get_token()), Interrupted);
+  EXPECT_EQ(sources()[0].registration_sigma_m(), 10.0);
+  EXPECT_FALSE(remove_source(writer, "b", {}, {}, {}).was_there);
+  EXPECT_EQ(sources()[0].registration_sigma_m(), 2.5);
+  EXPECT_THROW(remove_source(writer, "b", {}, {}, {}), NotFound);
 }
 
 TEST_F(MeasuredShifts, OfAWrongSourceItsCopyAndARightOneAllThreeCountAsUncertain) {

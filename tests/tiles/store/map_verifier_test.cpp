@@ -197,7 +197,9 @@ TEST_F(MapVerifier, RepairNamesTheSourceThatLostEvidenceAndIngestingItAgainHeals
   testing::open_sqlite(path).execute(
       "UPDATE roadfix_evidence SET tile_data = x'00' WHERE id = (SELECT max(id) FROM roadfix_evidence)");
   MapWriter writer(path, settings_37n());
+  writer.put_shifts({});
   EXPECT_THAT(writer.repair(), ElementsAre("b"));
+  EXPECT_TRUE(writer.shifts_outdated());
   EXPECT_THAT(verify_map(path).problems, ElementsAre(::testing::Field(&MapProblem::code, "ledger-broken")));
   const testing::TestSource lost{"b", 2, some_blocks(1)};
   EXPECT_THROW(writer.begin_source(lost.record(), lost.blocks, false), InvalidInput);

@@ -73,8 +73,14 @@ TEST_F(ShiftTable, IsOutdatedFromAChangeOfTheSourcesInForceUntilTheyAreMeasured)
   EXPECT_TRUE(writer->shifts_outdated());
   writer->put_shifts({});
   EXPECT_FALSE(writer->shifts_outdated());
+  SourceRecord stated = testing::TestSource{"b", 3, {}}.record();
+  stated.provenance.registration_sigma_m = 10.0;
+  writer->begin_source(stated, some_blocks(1, 1), false);
+  EXPECT_TRUE(writer->shifts_outdated());
+  writer->put_shifts({});
   writer->remove_source("b");
   EXPECT_TRUE(writer->shifts_outdated());
+  EXPECT_FALSE(writer->remove_source("b")) << "what should follow is still to be done";
   EXPECT_EQ(writer->sources_in_force(), std::set<std::string>{"a"});
 }
 

@@ -1,0 +1,23 @@
+// A source out of a map, and what that changes of the others.
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include "core/units/progress.hpp"
+#include "tiles/pipeline/source_shift.hpp"
+#include "tiles/store/map_writer.hpp"
+
+namespace roadfix {
+
+struct RemoveReport {
+  bool was_there = false;  ///< else an earlier call was stopped, and this one went on
+  ShiftReport shifts;      ///< of the sources that are left
+};
+
+/// Takes the source out as MapWriter::remove_source() does, which says what it throws, and measures the others anew: it
+/// may have been what they lay beside. Throws Interrupted "fusion-stopped"; can be repeated then.
+RemoveReport remove_source(MapWriter& writer, const std::string& source, const OnProgress& on_fusing,
+                           const OnProgress& on_shifts, const std::stop_token& stop);
+
+}  // namespace roadfix

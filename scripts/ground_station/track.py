@@ -160,13 +160,15 @@ class Track:
         """Whether there is a step without an answer that was taken after all. The next movement is then that since it,
         else since the step before it."""
         asked = self._state.get("asked")
-        if not asked:
-            return False
+        answer = self._answer_to(asked) if asked else None
+        if answer:
+            self._moved_on(asked, answer)
+        return answer is not None
+
+    def _answer_to(self, asked):
+        """To the step that the service took last. None where that is another one."""
         last = self._ask_about_track().get("last", {})
-        taken = all(last.get(name) == asked[name] for name in ("sequence", "time_us"))
-        if taken:
-            self._moved_on(asked, last)
-        return taken
+        return last if all(last.get(name) == asked[name] for name in ("sequence", "time_us")) else None
 
     def _begin(self, origin, request, why=None):
         track = begin_track(self._service, request)
@@ -218,13 +220,17 @@ class Track:
         asked_before, self._asked_places = self._asked_places, len(self._travel)
         taken = False
         try:
-            if packet_format:  # first, since the vehicle waits for it; a step that is sent again is not taken twice
+            if packet_format:  # first, since the vehicle waits for it
                 packet = self._service.ask(*self._request_of({**numbered, "format": packet_format}, image),
                                            "application/x-")
                 taken = True
                 if packet is not None and send:
                     send(packet)
-            answer = self._service.ask_object(STEP, *self._request_of({**numbered, "format": "json"}, image))
+                answer = self._answer_to(asked)  # so that the picture is sent once
+                if not answer:
+                    raise Refused(409, {"code": "step-differs", "detail": "another client flies this track, too"})
+            else:
+                answer = self._service.ask_object(STEP, *self._request_of({**numbered, "format": "json"}, image))
         except Refused as refusal:
             if not taken and refusal.leaves_the_track:
                 self._asked_places = asked_before

@@ -15,6 +15,9 @@ sys.path.insert(0, str(PROGRAM))
 
 CONVERGED = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
 
+#: What something in between answers.
+BETWEEN = {"pay": (200, b"<html>Please pay</html>", "text/html"), "hello": (200, b'{"status": "ok"}')}
+
 
 def step_of(path, body):
     """The fields of a step, however it was sent."""
@@ -33,15 +36,16 @@ class FakeService:
     """Answers with what `script` says, a step at a time: a status, "hang up" before or "lose" after the request was
     taken, "pay" or "hello" where something in between answers, "still at it" where it takes the one before that it had
     not told of; then 200. A step takes `delay_s` when it comes first, and messages say that it took `told_s`. A track
-    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem, or `never_begun` with one.
-    `readiness` None: no answer."""
+    may be silent for an hour, and has been for `silent_s`; it is `gone` with a problem, or `never_begun` with one. What
+    is asked about it is answered with what `script_about` says before that. `readiness` None: no answer."""
 
     TIME_OF_SILENCE_S = 3600.0
 
     def __init__(self, script=(), delay_s=0.0, told_s=None):
         self.script = list(script)
+        self.script_about = []
         self.requests = []
-        self.last = {}    # step that was taken
+        self.last = {}    # answer to the step that was taken
         self.before = {}  # step that came
         self.ended = []   # tracks
         self.came = set()
@@ -83,8 +87,12 @@ class FakeService:
                         return
                     self.answer(200, json.dumps(fake.readiness).encode())
                     return
-                if fake.gone:
-                    self.answer(fake.gone[0], json.dumps(fake.gone[1]).encode())
+                said = fake.script_about.pop(0) if fake.script_about else fake.gone
+                if isinstance(said, str) and said in BETWEEN:
+                    self.answer(*BETWEEN[said])
+                    return
+                if said:
+                    self.answer(said[0], json.dumps(said[1]).encode())
                     return
                 last = {"last": {"status": "searching", **fake.last}} if fake.last else {}
                 self.answer(200, json.dumps({**fake.track(fake.silent_s), **last}).encode())
@@ -118,19 +126,17 @@ class FakeService:
                     said = (409, {"code": "step-differs"})
                 status, answer = said if isinstance(said, tuple) else (said, {"code": "busy", "detail": "later"})
                 if status in (200, "lose"):
-                    fake.last = fake.before
+                    told = answer if isinstance(said, tuple) else {"status": "searching"}
+                    fake.last = {**told, **fake.before}
                 if status == "lose":
                     self.close_connection = True
-                elif said == 200 and step.get("format", "json") != "json":
+                elif status == 200 and step.get("format", "json") != "json":
                     self.answer(200, packet_of(step["format"], delay_s if told_s is None else told_s),
                                 "application/x-" + step["format"])
-                elif said == "pay":
-                    self.answer(200, b"<html>Please pay</html>", "text/html")
-                elif said == "hello":
-                    self.answer(200, b'{"status": "ok"}')
+                elif isinstance(said, str) and said in BETWEEN:
+                    self.answer(*BETWEEN[said])
                 elif status == 200:
-                    told = {"status": "searching"} if said == 200 else answer
-                    self.answer(200, json.dumps({**told, "sequence": fake.before["sequence"]}).encode())
+                    self.answer(200, json.dumps(fake.last).encode())
                 else:
                     self.answer(status, json.dumps(answer).encode())
 

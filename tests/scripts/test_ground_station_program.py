@@ -150,7 +150,8 @@ class Positions(unittest.TestCase):
             stderr=stderr, text=True, timeout=60)
 
     def sent(self, packet_format, script=(), captured_s_ago=0.0, delay_s=0.0, told_s=None, options=()):
-        steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": (time.time() - captured_s_ago) * 1e6})
+        captured_us = round(1e6 * (time.time() - captured_s_ago))
+        steps = json.dumps({"north_m": 0, "east_m": 0, "yaw_deg": 0, "time_us": captured_us})
         with FakeService(script, delay_s, told_s) as fake:
             program = self.run_program(fake, packet_format, steps + "\n", *options)
         self.assertEqual(program.returncode, 0, program.stderr)

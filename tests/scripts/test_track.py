@@ -64,8 +64,9 @@ class Steps(Followed):
 
     def test_whose_position_was_told_are_taken_whatever_comes_of_the_rest_of_the_answer(self):
         for answer in ((500, {}), (404, {}), (403, {"code": "logged-out"}), "pay", "hello"):
-            with FakeService([CONVERGED, 200, answer]) as fake:
+            with FakeService([CONVERGED]) as fake:
                 track, _ = self.fly(fake, 1)
+                fake.script_about = [answer]
                 sent = []
                 with self.assertRaises(Refused):
                     track.step((10.0, 0.0, 0.0), {"time_us": 2}, packet_format="gps_input", send=sent.append)
@@ -73,6 +74,26 @@ class Steps(Followed):
                 track.step((25.0, 0.0, 0.0), {"time_us": 3})
                 self.assertEqual((fake.steps()[-1]["sequence"], len(fake.begun())), (3, 1))
                 self.assertAlmostEqual(fake.steps()[-1]["forward_m"], 15.0)
+
+    def test_send_a_picture_once_for_the_autopilot_and_the_answer(self):
+        with FakeService([CONVERGED, CONVERGED]) as fake:
+            track, _ = self.fly(fake, 1)
+            sent = []
+            answer = track.step((10.0, 0.0, 0.0), {"time_us": 2}, b"\xff\xd8", packet_format="gps_input",
+                                send=sent.append)
+            self.assertEqual([step.get("format") for step in fake.steps()], ["json", "gps_input"])
+            self.assertEqual(sent, [b"a position"])
+            self.assertEqual(answer, {**CONVERGED[1], "sequence": 2, "time_us": 2})
+
+    def test_begin_a_new_track_where_another_client_flies_this_one(self):
+        with FakeService([CONVERGED]) as fake:
+            track, _ = self.fly(fake, 1)
+            of_another = (200, {"id": "T", "last": {"status": "converged", "sequence": 3, "time_us": 7}})
+            fake.script_about = [of_another, of_another]
+            track.step((10.0, 0.0, 0.0), {"time_us": 2}, packet_format="nmea", send=lambda _: None)
+            self.assertEqual([step["sequence"] for step in fake.steps()], [1, 2, 1])
+            self.assertEqual((fake.begun()[-1]["lat"], fake.begun()[-1]["lon"]), (7.0, 8.0))
+        self.assertIn("another client flies this track, too", self.words.getvalue())
 
     def test_that_something_in_between_refused_may_have_been_taken(self):
         with FakeService([CONVERGED, (500, {})]) as fake:

@@ -5,7 +5,8 @@ import sys
 
 from boot_clock import BootClock
 from camera import in_gimbal
-from vehicle import KEPT, Unknown, around, between
+from history import KEPT, around, between
+from vehicle import Unknown
 
 STATUS = "GIMBAL_DEVICE_ATTITUDE_STATUS"
 YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64

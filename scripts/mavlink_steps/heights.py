@@ -1,29 +1,34 @@
 """How high a vehicle is above the ground, and above the sea."""
+import collections
 import math
 import sys
+
+from history import KEPT, around
 
 KEPT_S = 2.5  # of messages that come once a second one may be lost
 MSL_M = (-1000.0, 50_000.0)  # what the service takes
 
 
 class Told:
-    """A height that was told last, for as long as it counts."""
+    """A height as it was told, for as long as it counts."""
 
     def __init__(self):
-        self._height_m, self._came = math.nan, -math.inf
+        self._told = collections.deque(maxlen=KEPT)  # when it came, height
 
     def tell(self, height_m, came):
         """NaN: it is not known any more."""
-        self._height_m, self._came = height_m, came
+        self._told.append((came, height_m))
 
-    def at(self, now):
-        """None where it is not known."""
-        return self._height_m if now - self._came <= KEPT_S and math.isfinite(self._height_m) else None
+    def at(self, when):
+        """As it was told nearest to that time. None where it is not known."""
+        told = [entry for entry in around(self._told, when) if entry is not None]
+        came, height_m = min(told, key=lambda entry: abs(entry[0] - when), default=(-math.inf, math.nan))
+        return height_m if abs(when - came) <= KEPT_S and math.isfinite(height_m) else None
 
 
 class Heights:
-    """From what the autopilot told last: above the ground, or else above the take-off; and above the sea. Times are
-    those at which messages came."""
+    """From what the autopilot told: above the ground, or else above the take-off; and above the sea. Times are those at
+    which messages came: a picture may have been taken long before the last."""
 
     def __init__(self, takeoff_agl_m):
         self._takeoff_agl_m = takeoff_agl_m
@@ -55,19 +60,19 @@ class Heights:
         """As one of two messages has it. What no vehicle can be at is not known."""
         self._above_sea[message].tell(height_m if MSL_M[0] <= height_m <= MSL_M[1] else math.nan, came)
 
-    def agl_m(self, now):
+    def agl_m(self, when):
         """None where nothing is known."""
-        above_ground_m = self._above_ground.at(now)
+        above_ground_m = self._above_ground.at(when)
         self._say(above_ground_m is not None)
         if above_ground_m is not None:
             return above_ground_m
-        above_origin_m = self._above_origin.at(now)
-        above_takeoff_m = self._above_takeoff.at(now) if above_origin_m is None else above_origin_m - self._takeoff_m
+        above_origin_m = self._above_origin.at(when)
+        above_takeoff_m = self._above_takeoff.at(when) if above_origin_m is None else above_origin_m - self._takeoff_m
         return None if above_takeoff_m is None else above_takeoff_m + self._takeoff_agl_m
 
-    def alt_m(self, now):
+    def alt_m(self, when):
         """None where nothing is known."""
-        return next((height_m for height_m in (told.at(now) for told in self._above_sea.values())
+        return next((height_m for height_m in (told.at(when) for told in self._above_sea.values())
                      if height_m is not None), None)
 
     def _say(self, knows_ground):

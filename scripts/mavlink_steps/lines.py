@@ -65,7 +65,7 @@ class Lines:
         place, attitude = self._vehicle.seen_at(captured)
         roll, pitch, yaw = self._camera_at(captured, attitude)
         camera_yaw = math.remainder(yaw - attitude[2], math.tau)
-        agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(), 2)
+        agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(captured), 2)
         if agl_m <= 0.0:
             raise Unknown(f"it was taken {agl_m:.1f} m above ground")
         time_us = self._clock.date_us(captured)
@@ -79,7 +79,7 @@ class Lines:
         if place is not None:
             step.update(north_m=round(place[0], 3), east_m=round(place[1], 3),
                         yaw_deg=round(math.degrees(yaw) % 360.0, 3))
-        alt_m = self._vehicle.alt_m()
+        alt_m = self._vehicle.alt_m(captured)
         return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}
 
     def _say_what_is_not_known(self, step):

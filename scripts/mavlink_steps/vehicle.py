@@ -5,8 +5,8 @@ import math
 from airspeed import true_airspeed
 from boot_clock import BootClock
 from heights import Heights
+from history import KEPT, around, between
 
-KEPT = 3000            # some minutes of telemetry
 LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
 CARRIED_ON_S = 1.0     # by the last velocity
 ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
@@ -18,22 +18,6 @@ class Unknown(Exception):
 
 def _finite(*values):
     return all(map(math.isfinite, values))
-
-
-def around(history, when):
-    """The last entry before a time, or of it, and the first one after it. None where there is none."""
-    at = next((i for i in range(len(history) - 1, -1, -1) if history[i][0] <= when), -1)
-    return history[at] if at >= 0 else None, history[at + 1] if at + 1 < len(history) else None
-
-
-def between(before, after, when, longest_s):
-    """Values at a time on the straight line between two entries. None where they lie farther apart than that."""
-    if before is None or (before[0] < when and (after is None or after[0] - before[0] > longest_s)):
-        return None
-    if before[0] == when:
-        return before[1:]
-    (t0, *values), (t1, *then) = before, after
-    return tuple(a + (when - t0) / (t1 - t0) * (b - a) for a, b in zip(values, then))
 
 
 class Vehicle:
@@ -99,17 +83,17 @@ class Vehicle:
         known."""
         return sum(ended <= when for ended in self._holes)
 
-    def agl_m(self):
-        """As of the last message. Throws Unknown."""
-        height_m = self._heights.agl_m(self.heard)
+    def agl_m(self, when):
+        """Throws Unknown."""
+        height_m = self._heights.agl_m(when)
         if height_m is None:
             raise Unknown("no height (ALTITUDE, TERRAIN_REPORT, LOCAL_POSITION_NED or GLOBAL_POSITION_INT): give --agl, "
                           "or ask the autopilot for one of them (SET_MESSAGE_INTERVAL)")
         return height_m
 
-    def alt_m(self):
-        """Above mean sea level, as of the last message. None where it is not known."""
-        return self._heights.alt_m(self.heard)
+    def alt_m(self, when):
+        """Above mean sea level. None where it is not known."""
+        return self._heights.alt_m(when)
 
     def knows(self, when):
         """Whether messages of that time and later ones have come. Velocities that have ended are not waited for."""

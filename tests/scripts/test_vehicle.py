@@ -51,7 +51,7 @@ class Flights(unittest.TestCase):
             self.assertAlmostEqual(east, radius_m * (1.0 - math.cos(rate * t)), delta=0.15)
             self.assertAlmostEqual(math.remainder(yaw - rate * t, math.tau), 0.0, delta=0.002)
             self.assertAlmostEqual(roll, 0.1)
-        self.assertEqual(vehicle.agl_m(), 80.0)
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 80.0)
 
     def test_by_air_go_where_the_nose_points(self):
         vehicle = Vehicle(by_air=True)
@@ -66,15 +66,15 @@ class Flights(unittest.TestCase):
     def test_are_high_above_ground_where_the_autopilot_knows_it_and_else_above_the_take_off(self):
         vehicle = Vehicle(takeoff_agl_m=12.0)
         with self.assertRaises(Unknown):
-            vehicle.agl_m()
+            vehicle.agl_m(vehicle.heard)
         vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 0, "z": -80.0, "vx": 0.0, "vy": 0.0}, 1.0)
-        self.assertEqual(vehicle.agl_m(), 92.0)
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 92.0)
         vehicle.hear("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 1.0)
         vehicle.hear("ALTITUDE", altitude(math.nan), 1.0)
-        self.assertEqual(vehicle.agl_m(), 92.0, "neither knows the ground")
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 92.0, "neither knows the ground")
         vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
         with said() as words:
-            self.assertEqual(vehicle.agl_m(), 70.0)
+            self.assertEqual(vehicle.agl_m(vehicle.heard), 70.0)
         self.assertEqual(words.getvalue(), "the height above ground is known now\n")
 
     def test_are_as_high_as_above_the_take_off_which_need_not_be_where_the_estimator_began(self):
@@ -83,15 +83,15 @@ class Flights(unittest.TestCase):
             if home_z is not None:
                 vehicle.hear("HOME_POSITION", {"z": home_z}, 1.0)
             move(vehicle, 1.0, height_m=80.0)
-            self.assertEqual(vehicle.agl_m(), height_m, home_z)
+            self.assertEqual(vehicle.agl_m(vehicle.heard), height_m, home_z)
 
     def test_are_as_high_above_the_take_off_as_is_told_where_the_estimator_has_no_origin(self):
         vehicle = Vehicle(takeoff_agl_m=3.0)
         for came, relative_alt in ((1.0, 40_500), (2.0, 41_500)):
             vehicle.hear("GLOBAL_POSITION_INT", {"time_boot_ms": 1e3 * came, "relative_alt": relative_alt}, came)
-            self.assertEqual(vehicle.agl_m(), 1e-3 * relative_alt + 3.0)
+            self.assertEqual(vehicle.agl_m(vehicle.heard), 1e-3 * relative_alt + 3.0)
         move(vehicle, 2.0, height_m=80.0)
-        self.assertEqual(vehicle.agl_m(), 83.0)
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 83.0)
 
     def test_are_no_longer_as_high_above_ground_as_was_told_seconds_ago(self):
         vehicle = Vehicle(takeoff_agl_m=12.0)
@@ -99,10 +99,10 @@ class Flights(unittest.TestCase):
             vehicle.hear("ALTITUDE", altitude(35.0), 1.0)
             for came in (1.5, 2.0, 3.0, 4.0, 5.0):
                 move(vehicle, came, height_m=50.0 * came)
-                self.assertEqual(vehicle.agl_m(), 35.0 if came < 3.5 else 50.0 * came + 12.0)
+                self.assertEqual(vehicle.agl_m(vehicle.heard), 35.0 if came < 3.5 else 50.0 * came + 12.0)
             self.assertEqual(words.getvalue().count("not known any more"), 1)
             vehicle.hear("ALTITUDE", altitude(36.0), 5.0)
-            self.assertEqual((vehicle.agl_m(), vehicle.agl_m()), (36.0, 36.0))
+            self.assertEqual((vehicle.agl_m(vehicle.heard), vehicle.agl_m(vehicle.heard)), (36.0, 36.0))
             self.assertEqual(words.getvalue().count("known now"), 1)
 
     def test_are_no_longer_above_ground_that_the_autopilot_lost(self):
@@ -116,23 +116,23 @@ class Flights(unittest.TestCase):
             move(vehicle, 1.0)
             vehicle.hear("TERRAIN_REPORT", {"spacing": 100, "current_height": 70.0}, 1.0)
             vehicle.hear(name, fields, 1.1)
-            self.assertEqual(vehicle.agl_m(), height_m, (name, fields))
+            self.assertEqual(vehicle.agl_m(vehicle.heard), height_m, (name, fields))
 
     def test_by_air_have_a_height_where_the_velocity_over_ground_is_unknown(self):
         vehicle = Vehicle(by_air=True)
         vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 0, "z": -80.0, "vx": math.nan, "vy": math.nan}, 1.0)
-        self.assertEqual(vehicle.agl_m(), 80.0)
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 80.0)
 
     def test_have_no_height_that_was_heard_long_ago(self):
         vehicle = Vehicle(by_air=True)
         move(vehicle, 1.0)
         vehicle.hear("VFR_HUD", hud(20.0), 9.0)
         with self.assertRaisesRegex(Unknown, "no height"):
-            vehicle.agl_m()
+            vehicle.agl_m(vehicle.heard)
 
     def test_are_as_high_above_the_sea_as_the_better_message_told_last(self):
         vehicle = Vehicle()
-        self.assertIsNone(vehicle.alt_m())
+        self.assertIsNone(vehicle.alt_m(vehicle.heard))
         for came, name, fields, alt_m in (
                 (1.0, "VFR_HUD", hud(20.0, 512.0), 512.0),
                 (1.5, "ALTITUDE", altitude(80.0, 519.0), 519.0),
@@ -141,9 +141,9 @@ class Flights(unittest.TestCase):
                 (4.0, "VFR_HUD", hud(20.0, 1e9), None),
                 (5.0, "VFR_HUD", hud(20.0, 540.0), 540.0)):
             vehicle.hear(name, fields, came)
-            self.assertEqual(vehicle.alt_m(), alt_m, (name, fields))
+            self.assertEqual(vehicle.alt_m(vehicle.heard), alt_m, (name, fields))
         move(vehicle, 8.0)
-        self.assertIsNone(vehicle.alt_m(), "heard long ago")
+        self.assertIsNone(vehicle.alt_m(vehicle.heard), "heard long ago")
 
     def test_have_moved_nobody_knows_where_while_nothing_was_heard(self):
         vehicle = Vehicle()
@@ -217,7 +217,16 @@ class Flights(unittest.TestCase):
         vehicle = Vehicle()
         for came, boot_s in ((10.0, 10.0), (12.0, 12.0), (12.1, 10.0)):
             vehicle.hear("LOCAL_POSITION_NED", {"time_boot_ms": 1e3 * boot_s, "z": -10 * boot_s, "vx": 0, "vy": 0}, came)
-        self.assertEqual(vehicle.agl_m(), 120.0)
+        self.assertEqual(vehicle.agl_m(vehicle.heard), 120.0)
+
+    def test_are_as_high_as_they_were_at_the_time_that_is_asked_for(self):
+        vehicle = Vehicle()
+        for second in range(11):  # a climb at 5 m/s
+            move(vehicle, 10.0 + second, height_m=190.0 + 5.0 * second)
+            vehicle.hear("ALTITUDE", altitude(200.0 + 5.0 * second, 600.0 + 5.0 * second), 10.0 + second)
+        for when, climbed_m in ((10.0, 0.0), (18.0, 40.0), (18.4, 40.0), (18.6, 45.0), (20.0, 50.0), (9.0, 0.0)):
+            self.assertEqual((vehicle.agl_m(when), vehicle.alt_m(when)), (200.0 + climbed_m, 600.0 + climbed_m), when)
+        self.assertIsNone(vehicle.alt_m(7.0), "it was told too long after")
 
     def test_do_not_take_what_is_no_number(self):
         for nothing in (math.nan, math.inf, -math.inf):

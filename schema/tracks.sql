@@ -10,6 +10,7 @@ CREATE TABLE IF NOT EXISTS tracks (
   created_us  INTEGER NOT NULL,
   touched_us  INTEGER NOT NULL,        -- created, or the last step
   ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
+  end_number  INTEGER,                 -- counts the ends, since dates may go back; NULL while it flies
   state       BLOB                     -- core/locate/tracker_bytes; NULL before the first step and after the end
 ) WITHOUT ROWID;
 

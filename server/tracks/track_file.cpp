@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kPageBytes = 4096;
 constexpr std::int64_t kMiB = 1 << 20;
 constexpr std::int64_t kLogBytes = 4 * kMiB;  // SQLite moves a thousand pages of its log into the file
-constexpr int kVersion = 4;                   // of what a state holds, too
+constexpr int kVersion = 5;                   // of what a state holds, too
 
 IoFailure not_writable(const std::filesystem::path& path) {
   return {"track-store-read-only",

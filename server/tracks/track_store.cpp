@@ -13,11 +13,9 @@
 namespace roadfix::server {
 namespace {
 
-constexpr int kEndedKept = 100;
+constexpr int kEndedKept = 100;          // of each kind: those that tried something out push no flight out
 constexpr int kStepsHandedOut = 10'000;  // of a track that ends: some 15 MB
 constexpr const char* kTrackColumns = "id, client, request, map, map_version, created_us, touched_us, ended";
-
-const char* end_column(std::optional<TrackEnd> end) { return end ? to_string(*end) : ""; }
 
 std::optional<TrackEnd> end_of(std::string_view column) {
   if (column.empty()) return std::nullopt;
@@ -37,7 +35,7 @@ void delete_steps(sqlite::Connection& connection, const std::string& id) {
 bool delete_oldest_history(sqlite::Connection& connection) {
   sqlite::Statement oldest(connection,
                            "SELECT id FROM tracks WHERE ended <> '' AND EXISTS (SELECT 1 FROM steps WHERE track = id) "
-                           "ORDER BY touched_us, id LIMIT 1");
+                           "ORDER BY end_number LIMIT 1");
   if (!oldest.step()) return false;
   const std::string id = oldest.text(0);
   oldest.reset();
@@ -67,13 +65,13 @@ auto with_room(sqlite::Connection& connection, Work work) -> decltype(work()) {
   }
 }
 
-/// All but the last kEndedKept.
-void forget_ended(sqlite::Connection& connection) {
+/// All that ended like this but the last kEndedKept.
+void forget_ended(sqlite::Connection& connection, TrackEnd how) {
   sqlite::Statement forgotten(connection,
-                              "DELETE FROM tracks WHERE ended <> '' AND id NOT IN (SELECT id FROM tracks WHERE ended "
-                              "<> '' ORDER BY touched_us DESC, id LIMIT ?1) RETURNING id");
+                              "DELETE FROM tracks WHERE ended = ?1 AND id NOT IN (SELECT id FROM tracks WHERE ended = "
+                              "?1 ORDER BY end_number DESC LIMIT ?2) RETURNING id");
   std::vector<std::string> ids;
-  forgotten.with(kEndedKept);
+  forgotten.with(to_string(how), kEndedKept);
   while (forgotten.step()) ids.push_back(forgotten.text(0));
   for (const std::string& id : ids) delete_steps(connection, id);
 }
@@ -111,8 +109,8 @@ void TrackStore::add(const StoredTrack& t) {
       sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
       make_room(*file_);
       sqlite::Statement(connection,
-                        fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", kTrackColumns))
-          .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us, end_column(t.ended))
+                        fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, '')", kTrackColumns))
+          .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us)
           .run();
       transaction.commit();
     });
@@ -204,11 +202,13 @@ std::vector<StoredStep> TrackStore::end(const std::string& id, TrackEnd how, std
       sqlite::Transaction transaction(connection, sqlite::Transaction::Kind::kWrite);
       std::vector<StoredStep> steps;
       if (sequence) steps = last_steps(connection, id, *sequence);
-      sqlite::Statement(connection, "UPDATE tracks SET ended = ?2, state = NULL WHERE id = ?1 AND ended = ''")
-          .with(id, end_column(how))
+      sqlite::Statement(connection,
+                        "UPDATE tracks SET ended = ?2, state = NULL, end_number = (SELECT "
+                        "coalesce(max(end_number), 0) + 1 FROM tracks) WHERE id = ?1 AND ended = ''")
+          .with(id, to_string(how))
           .run();
       if (how == TrackEnd::kFinished) delete_steps(connection, id);
-      forget_ended(connection);
+      forget_ended(connection, how);
       make_room(*file_);
       transaction.commit();
       return steps;

@@ -55,6 +55,7 @@ class TrackStore {
   /// nullopt where nothing did.
   std::optional<std::string> problem() const;
 
+  /// As one that flies.
   void add(const StoredTrack& track);
   std::optional<StoredTrack> find(const std::string& id) const;
   /// After the last step (core/locate/tracker_bytes); empty before the first one.
@@ -72,9 +73,9 @@ class TrackStore {
   std::vector<StoredStep> steps_after(const std::string& id, std::int64_t sequence, int count) const;
 
   /// Takes the state away, and of a track that is finished the steps; keeps that there was such a track and how it
-  /// ended first for as long as it is among the last 100 that ended. The steps of one that expired stay as long, unless
-  /// the file is half full and they are the oldest. Returns the steps above the sequence number, in order: the last
-  /// 10,000 of them at most, none without one.
+  /// ended first for as long as it is among the last 100 that ended like this. The steps of one that expired stay as
+  /// long, unless the file is half full and they are of the first that ended. Dates count for nothing. Returns the
+  /// steps above the sequence number, in order: the last 10,000 of them at most, none without one.
   std::vector<StoredStep> end(const std::string& id, TrackEnd how, std::optional<std::int64_t> sequence = {});
 
  private:

@@ -94,22 +94,22 @@ TEST(TrackStore, KeepsTheStepsOfATrackThatExpiredUntilItIsForgotten) {
   EXPECT_EQ(store.steps_after("flown", -1, 10).size(), 1U);
   EXPECT_TRUE(store.state("flown").empty());
   for (int i = 0; i < 100; ++i) {
-    StoredTrack later = track("t" + std::to_string(i));
-    later.touched_us = 3 + i;
-    store.add(later);
-    store.end(later.id, TrackEnd::kFinished);
+    const std::string later = "t" + std::to_string(i);
+    EXPECT_TRUE(store.find("flown")) << i;
+    store.add(track(later));
+    store.end(later, TrackEnd::kExpired);
   }
   EXPECT_FALSE(store.find("flown"));
   EXPECT_TRUE(store.steps_after("flown", -1, 10).empty());
 }
 
-TEST(TrackStore, GivesTheRoomOfTheOldestFlightsToThoseThatCome) {
+TEST(TrackStore, GivesTheRoomOfTheFirstFlightsToThoseThatComeWhateverTheirDates) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", 1 << 20);
   for (int i = 0; i < 20; ++i) {
     const std::string id = "t" + std::to_string(i);
     store.add(track(id));
-    ASSERT_TRUE(store.add_step(id, 2 + i, state(100), {0, 0, std::string(100'000, 'a')}));
+    ASSERT_TRUE(store.add_step(id, 1000 - i, state(100), {0, 0, std::string(100'000, 'a')}));
     store.end(id, TrackEnd::kExpired);
   }
   EXPECT_FALSE(store.last_step("t0"));
@@ -154,21 +154,40 @@ TEST(TrackStore, GivesTheRoomOfFlightsThatAreOverToOneThatGoesOn) {
       << "all of it is of the one that flies";
 }
 
-TEST(TrackStore, ForgetsTheOldestOfTheTracksThatEnded) {
+TEST(TrackStore, ForgetsTheFirstOfTheTracksThatEndedWhateverTheirDates) {
   const testing::TemporaryFolder folder;
   TrackStore store(folder / "tracks.sqlite", kPlenty);
-  for (int i = 0; i <= 100; ++i) {
-    StoredTrack ended = track("t" + std::to_string(i));
-    ended.touched_us = i;
-    ended.ended = TrackEnd::kExpired;
-    store.add(ended);
-  }
   store.add(track("flying"));
-  store.end("t100", TrackEnd::kFinished);
+  for (int i = 0; i <= 100; ++i) {
+    const std::string id = "t" + std::to_string(i);
+    store.add(track(id));
+    ASSERT_TRUE(store.add_step(id, 1000 - i, state(100), {0, 0, "answer"}));  // a clock that goes back
+    store.end(id, TrackEnd::kExpired);
+  }
   EXPECT_FALSE(store.find("t0"));
-  ASSERT_TRUE(store.find("t1"));
-  EXPECT_EQ(store.find("t1")->ended, TrackEnd::kExpired);
+  EXPECT_FALSE(store.last_step("t0"));
+  for (const char* id : {"t1", "t100"}) {
+    ASSERT_TRUE(store.find(id));
+    EXPECT_EQ(store.find(id)->ended, TrackEnd::kExpired);
+    EXPECT_TRUE(store.last_step(id));
+  }
   EXPECT_TRUE(store.find("flying"));
+}
+
+TEST(TrackStore, KeepsFlightsThatExpiredHoweverManyTracksAreFinished) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty);
+  store.add(track("flown"));
+  ASSERT_TRUE(store.add_step("flown", 2, state(100), {0, 0, "answer"}));
+  store.end("flown", TrackEnd::kExpired);
+  for (int i = 0; i <= 100; ++i) {
+    const std::string id = "t" + std::to_string(i);
+    store.add(track(id));
+    store.end(id, TrackEnd::kFinished);
+  }
+  EXPECT_TRUE(store.last_step("flown"));
+  EXPECT_FALSE(store.find("t0"));
+  EXPECT_TRUE(store.find("t1"));
 }
 
 TEST(TrackStore, IsAsBeforeWhenItIsFullAndGoesOnWhenThereIsRoom) {

@@ -119,8 +119,10 @@ def _place(step):
 
 def place_and_covariance(line, frame_fields):
     """Of a line that is not sent, each None where it does not tell."""
+    if line.step is None:
+        return None, None
     try:
-        return _place(line.step or {}), {**frame_fields, **line.step}.get("covariance")
+        return _place(line.step), {**frame_fields, **line.step}.get("covariance")
     except ValueError:
         return None, None
 

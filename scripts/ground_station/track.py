@@ -42,6 +42,13 @@ def begin_track(service, request):
         raise
 
 
+def end_track(service, track_id):
+    try:
+        service.ask("DELETE", f"/v1/tracks/{track_id}")
+    except (Refused, Silent):  # it has ended by itself, or will
+        pass
+
+
 class Track:
     """A flight that the service follows. `request`: the members of POST /v1/tracks. With `state_file` a client that
     was restarted goes on with the track that it had, unless that was long ago. `begun` is called with the id of each
@@ -180,13 +187,7 @@ class Track:
             print(f"a new track begins: {why}", file=sys.stderr)
         self._begun(track["id"])
         for track_id in former[:-KEPT_TRACKS]:
-            self._end(track_id)
-
-    def _end(self, track_id):
-        try:
-            self._service.ask("DELETE", f"/v1/tracks/{track_id}")
-        except (Refused, Silent):  # it has ended by itself, or will
-            pass
+            end_track(self._service, track_id)
 
     def _begin_near_the_last_place(self, origin, why, moved_m=0.0):
         """Around the place that was known last, as far as the vehicle may have flown since, however far that is: what

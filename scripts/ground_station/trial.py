@@ -4,7 +4,7 @@ import sys
 
 from service import Refused
 from steps import CAMERA_FIELDS, with_kind
-from track import as_query, begin_track
+from track import as_query, begin_track, end_track
 
 #: A PNG of one black pixel. The service looks at what describes a picture only where there is one.
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg==")
@@ -19,7 +19,7 @@ def try_out(service, request, frame_fields):
     try:
         _try_step(service, track_id, frame_fields)
     finally:
-        service.ask("DELETE", f"/v1/tracks/{track_id}")
+        end_track(service, track_id)
 
 
 def _try_step(service, track_id, frame_fields):

@@ -99,6 +99,9 @@ class FakeService:
 
             def do_DELETE(self):
                 fake.ended.append(self.path)
+                if fake.gone:
+                    self.answer(fake.gone[0], json.dumps(fake.gone[1]).encode())
+                    return
                 self.answer(204, b"")
 
             def do_POST(self):

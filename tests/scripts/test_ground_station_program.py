@@ -106,6 +106,15 @@ class BeforeTheFlight(unittest.TestCase):
             self.assertEqual(status, 1)
             self.assertIn("ground_station: no answer of 127.0.0.1 within 0.5 s", words)
 
+    def test_what_is_wrong_is_told_by_a_check_also_where_its_track_cannot_be_removed(self):
+        wrong = (400, {"code": "bad-parameter", "field": "fov_deg", "detail": "'fov_deg' must be a number"})
+        for refusal, expected, words in ((wrong, 1, "ground_station: --frame: 400 bad-parameter"), (200, 0, "version")):
+            with FakeService([refusal]) as fake:
+                fake.gone = (410, {"code": "track-ended"})
+                status, told = self.checked(fake, "--frame", "fov_deg=seventy", "--check")
+                self.assertEqual(status, expected)
+                self.assertIn(words, told)
+
     def test_a_service_that_is_away_is_told_and_no_error(self):
         with FakeService() as fake:
             pass

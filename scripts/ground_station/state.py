@@ -5,10 +5,21 @@ import pathlib
 import sys
 
 HEAD = '{"map"'
+MOMENT = ("taken_s", "boot", "since_boot_s")
+FLIGHT = ("id", "sequence", "origin", "known", *MOMENT)
+ASKED = ("sequence", "time_us", "place", "known", *MOMENT)  # of a step without an answer
 
 
 def _refused(constant):
     raise ValueError(f"{constant} is no place")
+
+
+def _is_whole(state):
+    """Whether it has all members that a flight has, if there was one."""
+    if "id" not in state:
+        return True
+    asked = state.get("asked", dict.fromkeys(ASKED))
+    return all(name in state for name in FLIGHT) and isinstance(asked, dict) and all(name in asked for name in ASKED)
 
 
 class StateFile:
@@ -34,7 +45,7 @@ class StateFile:
             state = {"map": self._map} if HEAD.startswith(text.strip("\0")[:len(HEAD)]) else None
         except (ValueError, RecursionError):
             state = None
-        if not isinstance(state, dict) or state.get("map", self._map) != self._map:
+        if not isinstance(state, dict) or state.get("map", self._map) != self._map or not _is_whole(state):
             raise ValueError(f"{self._path} is not of a track over the map '{self._map}': remove it, or name another "
                              "file")
         return state

@@ -282,6 +282,23 @@ class Steps(Followed):
                 with self.assertRaisesRegex(ValueError, "not of a track over the map 'm'"):
                     Track(Service(fake.url), {"map": "m"}, state)
 
+    def test_refuse_a_state_that_lacks_what_a_flight_has(self):
+        with FakeService([200] + ["hang up"] * 100) as fake, tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "state.json")
+            track, _ = self.fly(fake, 1, patience_s=0.2, state_file=path)
+            with self.assertRaises(Silent):
+                track.step((10.0, 0.0, 0.0), {"time_us": 2})
+            whole = json.loads(path.read_text())
+            self.assertEqual(Track(track._service, {"map": "m"}, path).id, "T")
+            optional = ("map", "id", "asked", "time_of_silence_s", "former", "time_us", "place")
+            damaged = [{n: value for n, value in whole.items() if n != name} for name in whole if name not in optional]
+            damaged += [{**whole, "asked": {n: value for n, value in whole["asked"].items() if n != name}}
+                        for name in whole["asked"]]
+            for state in [*damaged, {"map": "m", "id": "T"}, {**whole, "asked": 5}]:
+                path.write_text(json.dumps(state))
+                with self.assertRaisesRegex(ValueError, "not of a track over the map 'm': remove it"):
+                    Track(track._service, {"map": "m"}, path)
+
     def test_are_not_begun_with_a_state_that_cannot_be_written(self):
         with FakeService() as fake, self.assertRaises(OSError):
             Track(Service(fake.url), {"map": "m"}, "/nowhere/state.json")

@@ -33,8 +33,7 @@ void check_shape(std::string_view text, std::size_t max_values) {
       throw InvalidField("json-too-deep", "body", fmt::format("the JSON is nested more than {} deep", kJsonDepth), i);
     }
     if ((opens || c == ',') && ++values > max_values) {
-      throw LimitExceeded("too-many-poses",
-                          fmt::format("the JSON has more than {} values; send fewer poses", max_values));
+      throw LimitExceeded("json-too-long", fmt::format("the JSON has more than {} values: send fewer", max_values));
     }
   }
 }

@@ -10,8 +10,7 @@ namespace roadfix::api {
 inline constexpr int kJsonDepth = 16;
 
 /// `max_values` counts numbers, strings, objects and arrays together. Throws InvalidField ("bad-json" with the byte,
-/// "json-too-deep", "duplicate-parameter" with the name) or LimitExceeded ("too-many-poses"), the only thing that makes
-/// a request's JSON that long.
+/// "json-too-deep", "duplicate-parameter" with the name) or LimitExceeded ("json-too-long").
 nlohmann::json parse_json(std::string_view text, std::size_t max_values = 1'000'000);
 
 }  // namespace roadfix::api

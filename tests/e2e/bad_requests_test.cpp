@@ -181,7 +181,7 @@ TEST_F(BadRequests, WithTooManyPosesAreRefused) {
   EXPECT_EQ(refusal(client_.Post(match_, body + "]}", "application/json")), "413 too-many-poses");
   std::string many = R"({"poses":[0)";
   for (int i = 0; i < 300'000; ++i) many += ",0";
-  EXPECT_EQ(refusal(client_.Post(match_, many + "]}", "application/json")), "413 too-many-poses");
+  EXPECT_EQ(refusal(client_.Post(match_, many + "]}", "application/json")), "413 json-too-long");
 }
 
 TEST_F(BadRequests, WithBodiesBeyondTheLimitAreRefusedHoweverTheyCome) {

@@ -131,10 +131,10 @@ MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
 
 MapRegistry::Entry MapRegistry::seen(const Entry& known, const fs::path& path, const Stamp& stamp) const {
   try {
-    return is_current(known, path, stamp) ? Entry{stamp, known.map, {}} : opened(path, stamp);
+    return is_current(known, path, stamp) ? Entry{stamp, known.map, std::nullopt} : opened(path, stamp);
   } catch (const InUse& busy) {
     if (known.map != nullptr) return known;  // and its stamp, so that the next look goes on
-    return {stamp, nullptr, {path.stem(), busy.code(), busy.what()}};
+    return {stamp, nullptr, UnreadableMap{path.stem(), busy.code(), busy.what()}};
   }
 }
 
@@ -147,11 +147,11 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
     const std::string missing = missing_of(reader->info());
     if (!missing.empty()) spdlog::warn("map {} lacks what an ingest has not brought yet ({})", name, missing);
     if (on_serving_) on_serving_(*map);
-    return {stamp, std::move(map), {}};
+    return {stamp, std::move(map), std::nullopt};
   } catch (const InUse&) {
     throw;
   } catch (const Error& error) {
-    return {stamp, nullptr, {name, error.code(), error.what()}};
+    return {stamp, nullptr, UnreadableMap{name, error.code(), error.what()}};
   }
 }
 
@@ -212,8 +212,8 @@ void MapRegistry::look() {
       if (found != entries_.end()) known = found->second;
     }
     Entry current = seen(known, path, stamp);
-    if (current.map == nullptr && current.problem.reason != known.problem.reason) {
-      spdlog::warn("map {} cannot be served: {} [{}]", name, current.problem.reason, current.problem.code);
+    if (current.problem && !(known.problem && known.problem->reason == current.problem->reason)) {
+      spdlog::warn("map {} cannot be served: {} [{}]", name, current.problem->reason, current.problem->code);
     }
     const std::lock_guard lock(mutex_);
     entries_[name] = std::move(current);
@@ -239,7 +239,7 @@ std::vector<UnreadableMap> MapRegistry::unreadable() const {
   const std::lock_guard lock(mutex_);
   std::vector<UnreadableMap> result;
   for (const auto& [name, entry] : entries_) {
-    if (entry.map == nullptr) result.push_back(entry.problem);
+    if (entry.problem) result.push_back(*entry.problem);
   }
   return result;
 }
@@ -251,9 +251,9 @@ std::shared_ptr<const ServedMap> MapRegistry::find(const std::string& name) cons
     throw NotFound("map-not-found", fmt::format("no map is called '{}'; GET /v1/maps lists them", name.substr(0, 80)));
   }
   const auto& [stamp, map, problem] = found->second;
-  if (map != nullptr) return map;
-  if (problem.code == kBusy) throw InUse(kBusy, problem.reason);
-  throw IoFailure("map-unreadable", fmt::format("the map '{}' cannot be read: {}", name, problem.reason));
+  if (!problem) return map;
+  if (problem->code == kBusy) throw InUse(kBusy, problem->reason);
+  throw IoFailure("map-unreadable", fmt::format("the map '{}' cannot be read: {}", name, problem->reason));
 }
 
 std::size_t MapRegistry::cached_bytes() const {

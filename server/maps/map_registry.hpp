@@ -87,7 +87,7 @@ class MapRegistry {
   struct Entry {
     Stamp stamp;
     std::shared_ptr<const ServedMap> map;  ///< null if unreadable
-    UnreadableMap problem;
+    std::optional<UnreadableMap> problem;  ///< why it is
   };
   static Stamp stamp_of(const std::filesystem::path& path);
   Entry seen(const Entry& known, const std::filesystem::path& path, const Stamp& stamp) const;

@@ -26,7 +26,7 @@ class Routes {
   void add(const char* method, const char* path, std::vector<std::string> parameters, Handler<http::Response> handler,
            http::Load load = http::Load::kLight);
   /// See http::Route::prepare.
-  using Prepare = std::function<std::function<http::Response()>(const Service&, http::Request&)>;
+  using Prepare = std::function<http::Prepared(const Service&, http::Request&)>;
   void add_prepared(const char* method, const char* path, std::vector<std::string> parameters, Prepare prepare);
   const Service& service() const { return service_; }
 

@@ -93,6 +93,7 @@ struct PostedStep {
   api::Content content;
   api::PositionFormat format;
   StepInput input;
+  std::int64_t digest = 0;
 };
 
 http::Response formatted(const Service& service, const PostedStep& step, StepAnswer answer) {
@@ -120,14 +121,14 @@ PostedStep read_step(const Service& service, const http::Request& request) {
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   if (!api::shows_ground(content)) api::require_nothing_seen(content.fields);
   StepInput input = api::parse_step(content.fields);
-  return {std::move(track), std::move(content), format, std::move(input)};
+  const std::int64_t digest = digest_of(content);
+  return {std::move(track), std::move(content), format, std::move(input), digest};
 }
 
 http::Response take_step(const Service& service, const http::Request& request, PostedStep& step) {
   const StoredTrack& track = step.track;
   StepInput& input = step.input;
-  const std::int64_t digest = digest_of(step.content);
-  if (auto answer = service.steps.answered(track.id, input, digest)) {
+  if (auto answer = service.steps.answered(track.id, input, step.digest)) {  // while it waited for its turn
     return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);
@@ -146,15 +147,19 @@ http::Response take_step(const Service& service, const http::Request& request, P
   constexpr double kSearchShare = 0.9;
   limits.deadline = api::search_end(request.deadline, limit.token(), kSearchShare);
   return step_response(service, step,
-                       service.steps.take(track.id, input, digest, limits, request.received, detector_used));
+                       service.steps.take(track.id, input, step.digest, limits, request.received, detector_used));
 }
 
-/// Reads the step and gives those that it overtook the time to be taken first, while its picture is held once.
-std::function<http::Response()> post_step(const Service& service, http::Request& request) {
+/// Reads the step and gives those that it overtook the time to be taken first, while its picture is held once. One that
+/// was taken before is answered without a turn.
+http::Prepared post_step(const Service& service, http::Request& request) {
   PostedStep step = read_step(service, request);
   const bool in_body = step.content.has_picture && !step.content.decoded;
   if (!in_body) std::string().swap(request.body);
   service.steps.await_predecessor(step.track.id, step.input.sequence);
+  if (auto answer = service.steps.answered(step.track.id, step.input, step.digest)) {
+    return step_response(service, step, *std::move(answer));
+  }
   return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };
 }
 

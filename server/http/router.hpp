@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "server/http/message.hpp"
@@ -17,6 +18,9 @@ enum class Load {
   kHeavyAnswer,  ///< heavy, and for the sake of its answer alone: given up when the client hangs up
 };
 
+/// An answer that needs no turn, or what gives it in one.
+using Prepared = std::variant<Response, std::function<Response()>>;
+
 struct Route {
   std::string method;                   ///< GET (which answers HEAD too), POST or DELETE
   std::string path;                     ///< "/v1/maps/{map}/tiles/{z}/{x}/{y}.png"
@@ -24,9 +28,9 @@ struct Route {
   Load load = Load::kLight;
   std::function<Response(const Request&)> handler;
   /// Instead of a handler, where a heavy request depends on others: reads the request and waits for those before it
-  /// takes a turn, which they may need. What it returns is called once in that turn; the request lives until then, and
-  /// its body need not.
-  std::function<std::function<Response()>(Request&)> prepare = {};
+  /// takes a turn, which they may need, or answers it. A function that it returns is called once in that turn; the
+  /// request lives until then, and its body need not.
+  std::function<Prepared(Request&)> prepare = {};
 };
 
 struct RouteMatch {

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
@@ -177,12 +178,14 @@ Response Server::Impl::answered(Exchange& exchange) {
     request.deadline = whole + settings_.request_time;
     request.abandoned = [&connection = *exchange.connection] { return connection.peer_has_left(); };
     if (route.load == Load::kLight || route.load == Load::kLong) return route.handler(request);
-    const auto prepared = route.prepare ? route.prepare(request) : nullptr;
+    Prepared prepared = [&] { return route.handler(request); };
+    if (route.prepare) prepared = route.prepare(request);
+    if (auto* response = std::get_if<Response>(&prepared)) return std::move(*response);
     const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
     const Admission::Ticket ticket =
         admission_.enter(request.client, whole + settings_.turn_time, given_up, held_threads_.too_many());
     request.deadline = Clock::now() + settings_.request_time;
-    return prepared ? prepared() : route.handler(request);
+    return std::get<std::function<Response()>>(prepared)();
   } catch (const Interrupted&) {
     const bool gone = exchange.request.abandoned();
     return failed(exchange, gone ? std::make_exception_ptr(ClientGone()) : std::current_exception());

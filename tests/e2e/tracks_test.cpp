@@ -6,6 +6,7 @@
 
 #include "tests/e2e/tracks_fixture.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/raw_http.hpp"
 
 namespace roadfix {
 namespace {
@@ -50,6 +51,25 @@ TEST_F(Tracks, FollowAFlightAndTellItsHistory) {
     const auto negotiated = client.Get(("/v1/tracks/" + id + "/history").c_str(), {{"Accept", type}});
     EXPECT_EQ(negotiated->body, file->body);
   }
+}
+
+TEST_F(Tracks, AnswerARepeatedStepThoughNoSearchHasATurn) {
+  const auto running = service({"--searches", "1", "--turn-time", "0.1"});
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  const std::vector<Request> steps = flight(2);
+  const auto first = send(client, id, steps[0]);
+  const std::string body = town_.seen_from(town_.pose, 60);
+  testing::RawConnection search(running->port());
+  search.send(
+      "POST /v1/maps/town/fix?cell_m=2&scale_range=0.3&proof_s=600 HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
+      "image/png\r\nContent-Length: " +
+      std::to_string(body.size()) + "\r\n\r\n" + body);
+  EXPECT_TRUE(
+      eventually([&] { return client.Get("/metrics")->body.find("roadfix_heavy_running 1\n") != std::string::npos; }));
+  EXPECT_EQ(send(client, id, steps[0])->body, first->body);
+  EXPECT_EQ(testing::refusal(send(client, id, {steps[0].query, steps[1].picture})), "409 step-differs");
+  EXPECT_EQ(testing::refusal(send(client, id, steps[1])), "503 server-busy");
 }
 
 TEST_F(Tracks, AnswerARepeatedStepAgainAndRefuseOthers) {

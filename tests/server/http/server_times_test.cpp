@@ -266,6 +266,19 @@ TEST_F(HttpServerTimes, LetsARequestWaitForOthersWithoutATurnThatTheyMayNeed) {
   go_ = true;
 }
 
+TEST_F(HttpServerTimes, LetsNoRequestWaitForATurnThatIsAnsweredWithoutOne) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  router_.add({"POST", "/known", {}, Load::kHeavy, {}, [](const Request&) -> Prepared {
+                 return Response{200, "text/plain", "known"};
+               }});
+  const auto server = started();
+  const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
+  EXPECT_EQ(client().Post("/known", "", "text/plain")->body, "known");
+  go_ = true;
+}
+
 constexpr const char* kEmptyPost = " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n";
 
 TEST_F(HttpServerTimes, GivesUpAnswersWhoseClientsHungUpWhetherTheyRunOrWait) {

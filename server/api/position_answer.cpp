@@ -11,6 +11,7 @@
 namespace roadfix::api {
 namespace {
 
+/// In the order of PositionEncoding.
 constexpr std::array<Media, 6> kFormats{{{"json", "application/json"},
                                          {"global_position_sensor", "application/x-mavlink-global-position-sensor"},
                                          {"command_int", "application/x-mavlink-command-int"},
@@ -39,11 +40,21 @@ void read_id(const Fields& fields, const std::string& name, std::uint8_t& id) {
 
 /// nullopt where there is nothing to be said.
 std::optional<std::string> encoded(const autopilot::PositionReport& report, const PositionFormat& format) {
-  if (format.name == "global_position_sensor") return autopilot::global_position_sensor(report, format.sender);
-  if (format.name == "command_int") return autopilot::external_position_estimate(report, format.sender);
-  if (format.name == "nmea") return autopilot::nmea_sentences(report, format.satellites);
-  const autopilot::GpsInput input = autopilot::gps_input(report, format.satellites);
-  return format.name == "mavproxy" ? autopilot::to_json(input).dump() : autopilot::to_packet(input, format.sender);
+  switch (format.encoding) {
+    case PositionEncoding::kJson:
+      break;
+    case PositionEncoding::kGlobalPositionSensor:
+      return autopilot::global_position_sensor(report, format.sender);
+    case PositionEncoding::kCommandInt:
+      return autopilot::external_position_estimate(report, format.sender);
+    case PositionEncoding::kGpsInput:
+      return autopilot::to_packet(autopilot::gps_input(report, format.satellites), format.sender);
+    case PositionEncoding::kMavproxy:
+      return autopilot::to_json(autopilot::gps_input(report, format.satellites)).dump();
+    case PositionEncoding::kNmea:
+      return autopilot::nmea_sentences(report, format.satellites);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -57,7 +68,7 @@ const std::vector<std::string>& position_fields() {
 PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
   const Media& media = media_asked_for(request, fields, kFormats);
   PositionFormat format;
-  format.name = media.name;
+  format.encoding = static_cast<PositionEncoding>(&media - kFormats.data());
   format.type = media.type;
   format.altitude_msl_m = fields.optional_number("alt_m", {-1000.0, 50'000.0});
   format.camera_yaw = fields.optional_angle("camera_yaw_deg", kDegrees).value_or(Angle());

@@ -19,15 +19,17 @@ namespace roadfix::api {
 /// Names that say how an answer is given; they change nothing of what is found.
 const std::vector<std::string>& position_fields();
 
+enum class PositionEncoding { kJson, kGlobalPositionSensor, kCommandInt, kGpsInput, kMavproxy, kNmea };
+
 struct PositionFormat {
-  std::string_view name;  ///< as in format=
+  PositionEncoding encoding = PositionEncoding::kJson;
   std::string_view type;  ///< "application/json", ...
   std::optional<double> altitude_msl_m;
   Angle camera_yaw;  ///< where the frame's upper edge points, clockwise from the vehicle's nose
   int satellites = 0;
   autopilot::MavlinkSender sender;
 
-  bool is_json() const { return name == "json"; }
+  bool is_json() const { return encoding == PositionEncoding::kJson; }
 };
 
 /// By "format", else by Accept. Throws InvalidField, InvalidInput ("not-acceptable").

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cstdint>
+#include <string>
 
 #include "server/autopilot/mavlink_frame.hpp"
 #include "tests/server/api/request_fixture.hpp"
@@ -39,7 +41,7 @@ json mavproxy(const json& answer, json request = {}, const PositionTime& time = 
 
 TEST(PositionFormat, IsJsonUnlessTheFieldOrElseTheHeaderSaysOtherwise) {
   EXPECT_TRUE(format_of(json::object()).is_json());
-  EXPECT_EQ(format_of(json::object(), "application/x-nmea-0183").name, "nmea");
+  EXPECT_EQ(format_of(json::object(), "application/x-nmea-0183").encoding, PositionEncoding::kNmea);
   EXPECT_EQ(format_of({{"format", "gps_input"}}, "application/x-nmea-0183").type, "application/x-mavlink-gps-input");
   EXPECT_EQ(refused_format({{"format", "morse"}}), "bad-parameter format");
   EXPECT_EQ(testing::code_of([] { format_of(json::object(), "text/html"); }), "not-acceptable");
@@ -100,16 +102,29 @@ TEST(PositionAnswer, TurnsTheHeadingOfTheFrameIntoThatOfTheVehicle) {
   EXPECT_EQ(mavproxy(kKnown, {{"camera_yaw_deg", -270}})["yaw"], 4'140);
 }
 
+/// Of a MAVLink 2 packet; of other messages 0.
+int message_of(const std::string& packet) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(packet.at(i)); };
+  return byte(0) == 0xfd ? byte(7) | byte(8) << 8 | byte(9) << 16 : 0;
+}
+
 TEST(PositionAnswer, IsInTheFormatAskedForWithItsStatusBeside) {
-  for (const auto& [name, begin] : {std::pair("global_position_sensor", "\xfd"),
-                                    {"command_int", "\xfd"},
-                                    {"gps_input", "\xfd"},
-                                    {"mavproxy", "{"},
-                                    {"nmea", "$GPGGA,"}}) {
-    const PositionFormat format = format_of({{"format", name}});
-    const http::Response response = position_response(kKnown, format, kTime);
+  struct Case {
+    const char* name;
+    const char* type;
+    int message;
+    const char* begin;
+  };
+  for (const auto& [name, type, message, begin] :
+       {Case{"global_position_sensor", "application/x-mavlink-global-position-sensor", 296, "\xfd"},
+        {"command_int", "application/x-mavlink-command-int", 75, "\xfd"},
+        {"gps_input", "application/x-mavlink-gps-input", 232, "\xfd"},
+        {"mavproxy", "application/x-mavproxy-gps-input+json", 0, "{"},
+        {"nmea", "application/x-nmea-0183", 0, "$GPGGA,"}}) {
+    const http::Response response = position_response(kKnown, format_of({{"format", name}}), kTime);
     EXPECT_EQ(response.status, 200) << name;
-    EXPECT_EQ(response.content_type, format.type);
+    EXPECT_EQ(response.content_type, type);
+    EXPECT_EQ(message_of(response.body), message) << name;
     EXPECT_THAT(response.body, StartsWith(begin)) << name;
     EXPECT_THAT(response.headers, Contains(Pair("Roadfix-Status", "fix"))) << name;
     EXPECT_THAT(response.headers, Contains(Pair("Vary", "Accept"))) << "caches must tell the formats apart";

@@ -50,8 +50,16 @@ struct Application::Parts {
         tracks(configuration.tracks.empty() ? configuration.maps / "tracks.sqlite" : configuration.tracks,
                configuration.track_limits, maps, configuration.limits, configuration.calibration),
         search_threads(configuration.search_threads),
-        service{maps,   detectors, configuration.limits, configuration.http,       metrics, pictures,
-                tracks, steps,     search_threads,       configuration.calibration},
+        service{.maps = maps,
+                .detectors = detectors,
+                .limits = configuration.limits,
+                .http = configuration.http,
+                .metrics = metrics,
+                .pictures = pictures,
+                .tracks = tracks,
+                .steps = steps,
+                .search_threads = search_threads,
+                .calibration = configuration.calibration},
         server(configuration.http, make_router(service), error_response(), metrics) {
     metrics.describe(kAnswers, "Fixes and steps of tracks by their status.");
     metrics.gauge("process_start_time_seconds", "When the service started, in seconds since 1970.",

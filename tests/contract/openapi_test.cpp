@@ -45,8 +45,15 @@ class OpenApi : public ::testing::Test {
   server::TrackRegistry tracks_{folder_ / "tracks.sqlite", {}, maps_, limits_};
   server::TrackSteps steps_{tracks_};
   server::SearchThreads search_threads_{1};
-  const server::Service service_{maps_,     detectors_, limits_, http_,          metrics_,
-                                 pictures_, tracks_,    steps_,  search_threads_};
+  const server::Service service_{.maps = maps_,
+                                 .detectors = detectors_,
+                                 .limits = limits_,
+                                 .http = http_,
+                                 .metrics = metrics_,
+                                 .pictures = pictures_,
+                                 .tracks = tracks_,
+                                 .steps = steps_,
+                                 .search_threads = search_threads_};
   const http::Router router_ = server::make_router(service_);
 
   const json& resolved(const json& node) const { return testing::resolved(document_, node); }

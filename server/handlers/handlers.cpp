@@ -4,6 +4,10 @@
 
 namespace roadfix::server {
 
+std::shared_ptr<http::Admission> turns_of(const Service& service) {
+  return std::make_shared<http::Admission>(service.http.heavy_running, service.http.threads / kThreadsPerWaiting);
+}
+
 void Routes::add(const char* method, const char* path, std::vector<std::string> parameters,
                  Handler<http::Response> handler, http::Load load) {
   router_.add({method, path, std::move(parameters), load,

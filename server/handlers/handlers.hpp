@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "server/http/admission.hpp"
 #include "server/http/router.hpp"
 #include "server/service.hpp"
 
@@ -13,6 +15,9 @@ namespace roadfix::server {
 /// In a queue that is not the one of heavy requests at most one request waits per so many threads: most of the
 /// service's connections are left to others.
 inline constexpr int kThreadsPerWaiting = 4;
+
+/// Such a queue, of requests that take much memory: as many run as of the heavy ones, whose turns are longer.
+std::shared_ptr<http::Admission> turns_of(const Service& service);
 
 /// Where a resource adds its routes: what answers them is called with the service.
 class Routes {

@@ -21,6 +21,7 @@
 #include "server/api/track_request.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
+#include "server/http/admission.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::server {
@@ -191,11 +192,12 @@ http::Response history(const api::FlownTrack& track, const std::vector<std::stri
   return response;
 }
 
-http::Response get_history(const Service& service, const http::Request& request) {
+http::Response get_history(const Service& service, const http::Request& request, http::Admission& turns) {
   const api::Fields fields(request.query);
   const api::Media& media = api::media_asked_for(request, fields, kHistoryFormats);
   const std::int64_t after = fields.optional_large_integer("after", -1).value_or(-1);
   const int limit = fields.optional_integer("limit", 1, kMaxHistory).value_or(kMaxHistory);
+  const http::Admission::Ticket turn = turns.enter(request.client, request.deadline, request.abandoned);
   const StoredTrack track = service.tracks.recorded(id_of(request));
   std::vector<std::string> answers;
   for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
@@ -244,7 +246,13 @@ void add_track_routes(Routes& routes) {
   routes.add("GET", "/v1/tracks/{id}", {"particles"}, get_track);
   routes.add("DELETE", "/v1/tracks/{id}", {}, delete_track);
   routes.add_prepared("POST", "/v1/tracks/{id}/steps", step_query(), post_step);
-  routes.add("GET", "/v1/tracks/{id}/history", {"after", "limit", "format"}, get_history);
+  // A long one takes tens of megabytes.
+  routes.add(
+      "GET", "/v1/tracks/{id}/history", {"after", "limit", "format"},
+      [turns = turns_of(routes.service())](const Service& service, const http::Request& request) {
+        return get_history(service, request, *turns);
+      },
+      http::Load::kLong);
   routes.add("GET", "/v1/tracks/{id}/events", {}, get_events, http::Load::kLong);
 }
 

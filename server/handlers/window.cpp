@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <memory>
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/png/png_text.hpp"
@@ -53,13 +52,12 @@ http::Response get_window(const Service& service, const http::Request& request, 
 }  // namespace
 
 void add_window_route(Routes& routes) {
-  // The map around a long window on a slant takes hundreds of megabytes. Not among the heavy requests, whose turns are
-  // longer.
-  const http::ServerSettings& http = routes.service().http;
-  const auto turns = std::make_shared<http::Admission>(http.heavy_running, http.threads / kThreadsPerWaiting);
+  // The map around a long window on a slant takes hundreds of megabytes.
   routes.add(
       "GET", "/v1/maps/{map}/window", api::window_fields(),
-      [turns](const Service& service, const http::Request& request) { return get_window(service, request, *turns); },
+      [turns = turns_of(routes.service())](const Service& service, const http::Request& request) {
+        return get_window(service, request, *turns);
+      },
       http::Load::kLong);
 }
 

@@ -12,7 +12,7 @@
 #include "cli/threads_option.hpp"
 #include "core/locate/map_survey.hpp"
 #include "core/units/json_text.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 
 namespace roadfix::cli {
 namespace {

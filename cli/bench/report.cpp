@@ -12,6 +12,7 @@
 #include "cli/evaluation/statistics.hpp"
 #include "core/locate/calibration.hpp"
 #include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 
 namespace roadfix::bench {
 namespace {

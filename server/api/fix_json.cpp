@@ -1,6 +1,7 @@
 #include "server/api/fix_json.hpp"
 
 #include "server/api/frame_scale.hpp"
+#include "server/api/json_parts.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -31,28 +32,6 @@ const char* to_string(FixStatus status) {
       break;
   }
   return "no_fix";
-}
-
-json pose_json(const GeoPose& pose) {
-  return {
-      {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
-}
-
-json map_json(const std::string& name, const std::string& version) { return {{"name", name}, {"version", version}}; }
-
-json made_by(const std::string& detector) {
-  json made{{"roadfix", ROADFIX_VERSION}};
-  if (!detector.empty()) made["detector"] = detector;
-  return made;
-}
-
-json bbox_json(const GeoBox& box) {
-  return {box.south_west.lon_deg, box.south_west.lat_deg, box.north_east.lon_deg, box.north_east.lat_deg};
-}
-
-json placed_json(const GeoPose& pose) {
-  const LatLon at = pose.position;
-  return {{"pose", pose_json(pose)}, {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}}};
 }
 
 json to_json(const Fix& fix) {

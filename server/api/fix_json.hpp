@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 #include <span>
-#include <string>
 
 #include "core/locate/fix.hpp"
 #include "core/locate/localizability.hpp"
@@ -17,19 +16,6 @@ namespace roadfix::api {
 
 /// "fix", "ambiguous" or "no_fix".
 const char* to_string(FixStatus status);
-
-/// lat, lon and heading_deg.
-nlohmann::json pose_json(const GeoPose& pose);
-/// An object of `pose` and `geometry`, for more to be added.
-nlohmann::json placed_json(const GeoPose& pose);
-
-/// Which map an answer is about.
-nlohmann::json map_json(const std::string& name, const std::string& version);
-/// What made an answer: the version of the program, and the detector of frames, if any.
-nlohmann::json made_by(const std::string& detector = {});
-
-/// West, south, east and north, as GeoJSON has a bbox.
-nlohmann::json bbox_json(const GeoBox& box);
 
 nlohmann::json to_json(const Fix& fix);
 /// With what the features that it was found by tell of a frame: its detector and how long that took, and its camera.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/geodesy/geo_box.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/source_json.hpp"
 
 namespace roadfix::api {

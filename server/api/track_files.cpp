@@ -65,7 +65,7 @@ std::vector<ClaimedStretch> stretches_of(std::span<const std::string> answers) {
 /// GPX knows no longitude of 180 degrees.
 std::string gpx_point(const Claim& claim) {
   std::string lon = fmt::format("{:.7f}", claim.at.lon_deg);
-  if (lon == "180.0000000") lon.insert(0, "-");
+  if (lon == "180.0000000") lon.insert(lon.begin(), '-');
   return fmt::format("<trkpt lat=\"{:.7f}\" lon=\"{}\">{}<cmt>{}</cmt></trkpt>\n", claim.at.lat_deg, lon,
                      dated("<time>", claim.time_us, "</time>"), told_of(claim));
 }

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/api/fix_json.hpp"
 #include "server/api/geojson.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/track_claims.hpp"
 #include "server/api/track_json.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 
 namespace roadfix::api {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
-#include "server/api/base64.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/feature_json.hpp"
 #include "server/api/geojson.hpp"
+#include "server/api/json_parts.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -134,17 +134,6 @@ std::array<double, 6> geotransform(const Window& window) {
   const GridPoint p = window.grid_pose.position;
   // Columns run right of the heading: (c, -s) east and north; rows run back: (-s, -c).
   return {p.east_m - half_cols * c + half_rows * s, c, 0.0 - s, p.north_m + half_cols * s + half_rows * c, 0.0 - s, -c};
-}
-
-json to_json(const FeatureMap& features) {
-  return {{"cols", features.cells.cols()},
-          {"rows", features.cells.rows()},
-          {"cell_m", features.cell_m},
-          {"nadir_col", features.nadir.col},
-          {"nadir_row", features.nadir.row},
-          {"nadir_sigma_m", features.nadir_sigma_m},
-          {"nadir_heading_sigma_deg", features.nadir_heading_sigma.degrees()},
-          {"cells", base64_encoded(features.cells.cells())}};
 }
 
 json to_json(const Window& window) {

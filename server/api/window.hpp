@@ -39,8 +39,6 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
 
 /// Cells as base64, pose, map, footprint as GeoJSON. POST .../fix and .../match take it as it is.
 nlohmann::json to_json(const Window& window);
-/// The cells of a feature map: cols, rows, cell_m, nadir, base64.
-nlohmann::json to_json(const FeatureMap& features);
 
 /// GDAL's six coefficients from (column, row) to the zone's east and north, rotated with the window.
 std::array<double, 6> geotransform(const Window& window);

@@ -4,10 +4,10 @@
 #include <array>
 
 #include "core/detect/feature_map_codec.hpp"
+#include "server/api/feature_json.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/media.hpp"
 #include "server/api/time_limit.hpp"
-#include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
 

@@ -11,6 +11,7 @@
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/localizability_picture.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/geodesy/geo_box.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/handlers/answers.hpp"
 
 namespace roadfix::server {

@@ -10,9 +10,9 @@
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
 #include "server/api/feature_request.hpp"
-#include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/media.hpp"
 #include "server/api/position_answer.hpp"
 #include "server/api/time_limit.hpp"
@@ -51,7 +51,7 @@ std::int64_t digest_of(const api::Content& content) {
   return static_cast<std::int64_t>(hash.value());
 }
 
-json track_json(const Service& service, const StoredTrack& track) {
+json status_json(const Service& service, const StoredTrack& track) {
   const double silent_s = std::chrono::duration<double>(service.tracks.times().silent(track)).count();
   const auto left =
       std::max(service.tracks.limits().idle - service.tracks.times().idle(track.id), std::chrono::milliseconds(0));
@@ -82,7 +82,7 @@ http::Response post_track(const Service& service, const http::Request& request) 
   }
   const json asked = without_nulls(api::parse_json(request.body, 1000));
   const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
-  http::Response response = json_response(track_json(service, track));
+  http::Response response = json_response(status_json(service, track));
   response.status = 201;
   response.headers.emplace_back("Location", "/v1/tracks/" + track.id);
   return response;
@@ -166,14 +166,14 @@ http::Prepared post_step(const Service& service, http::Request& request) {
 
 http::Response list_tracks(const Service& service, const http::Request& request) {
   json list = json::array();
-  for (const StoredTrack& track : service.tracks.of_client(request.client)) list.push_back(track_json(service, track));
+  for (const StoredTrack& track : service.tracks.of_client(request.client)) list.push_back(status_json(service, track));
   return json_response({{"tracks", std::move(list)}});
 }
 
 http::Response get_track(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   const StoredTrack track = service.tracks.find(id_of(request));
-  json answer = track_json(service, track);
+  json answer = status_json(service, track);
   const auto last = service.tracks.last_step(track.id);
   if (last) answer["last"] = api::stored_json(last->answer);
   if (const auto count = fields.optional_integer("particles", 1, kMaxParticlesShown)) {

@@ -4,7 +4,7 @@
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/png/png_text.hpp"
-#include "server/api/fix_json.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/media.hpp"
 #include "server/api/window.hpp"
 #include "server/handlers/answers.hpp"

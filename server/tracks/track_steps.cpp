@@ -7,8 +7,8 @@
 
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
-#include "server/api/fix_json.hpp"
 #include "server/api/json_body.hpp"
+#include "server/api/json_parts.hpp"
 #include "server/api/track_json.hpp"
 #include "server/http/errors.hpp"
 #include "server/http/metrics.hpp"

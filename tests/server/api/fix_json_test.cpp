@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/api/json_parts.hpp"
 #include "tests/support/map_view.hpp"
 
 namespace roadfix::api {

@@ -1,0 +1,25 @@
+// Parts that several answers have. Degrees and metres.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/geodesy/geo_box.hpp"
+#include "core/geodesy/geo_pose.hpp"
+
+namespace roadfix::api {
+
+/// lat, lon and heading_deg.
+nlohmann::json pose_json(const GeoPose& pose);
+/// An object of `pose` and `geometry`, the same position as GeoJSON, for more to be added.
+nlohmann::json placed_json(const GeoPose& pose);
+
+/// West, south, east and north, as GeoJSON has a bbox.
+nlohmann::json bbox_json(const GeoBox& box);
+
+/// Which map an answer is about.
+nlohmann::json map_json(const std::string& name, const std::string& version);
+/// What made an answer: the version of the program, and the detector of frames, if any.
+nlohmann::json made_by(const std::string& detector = {});
+
+}  // namespace roadfix::api

@@ -81,8 +81,6 @@ TrackSettings filter_named(const std::string& name, int particles) {
   if (name == "search") return settings;
   settings.filter.adapts_count = true;
   if (name == "default") return settings;
-  settings.measurement_model.kind = LikelihoodKind::kDetectionRates;
-  if (name == "rates") return settings;
   throw InvalidInput("filter-unknown", fmt::format("'{}' is not a filter: choose from {}", name, kFilterNames));
 }
 

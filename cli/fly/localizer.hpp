@@ -31,9 +31,8 @@ struct FilterPlan {
   VehicleNoise vehicle = {};
 };
 
-/// From the paper's filter to the default, one improvement after the other, and the default that weighs cells one by
-/// one (LikelihoodKind::kDetectionRates).
-inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default, rates";
+/// From the paper's filter to the default, one improvement after the other.
+inline constexpr const char* kFilterNames = "paper, likelihood, injection, search, default";
 
 /// Throws InvalidInput "filter-unknown". At most `particles` of them.
 TrackSettings filter_named(const std::string& name, int particles);

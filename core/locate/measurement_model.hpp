@@ -12,10 +12,6 @@ enum class LikelihoodKind {
   /// How much likelier the correlation (Pearson's, over the means of m and l apart) is at the true pose than by chance,
   /// both taken as normal with the spread that independent samples of the ground leave.
   kCorrelation,
-  /// Each cell by its own: P(l = 1) = m a + (1 - m) b, where a road of the map is seen with a = 0.6 and road is seen
-  /// where the map has none with b = 0.1, against a chance of l as often as it is on average. Between no road and road,
-  /// log P is taken as linear in m, so that three sums are enough.
-  kDetectionRates,
   /// Equation (7) as it is.
   kEquation7,
 };

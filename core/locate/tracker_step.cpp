@@ -116,7 +116,7 @@ bool Tracker::Step::is_over_bare_ground() const {
          share_with_roads(filter_.particles(), matches(map_, *features_)) < kMinShareWithRoads;
 }
 
-/// The correlation is that of what a search compares; the other models speak of probabilities.
+/// The correlation is that of what a search compares; equation (7) speaks of probabilities.
 std::optional<std::vector<double>> Tracker::Step::log_likelihoods() const {
   if (is_over_bare_ground()) return std::nullopt;
   const MeasurementModel& model = settings_.measurement_model;

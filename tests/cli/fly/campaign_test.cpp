@@ -140,8 +140,7 @@ TEST(FilterNames, RunFromThePapersFilterToTheDefaultAndOthersAreRefused) {
   EXPECT_EQ(filter_named("search", 700).filter.adapts_count, false);
   EXPECT_EQ(filter_named("default", 700).filter.max_particles, 700);
   EXPECT_EQ(filter_named("default", 700).measurement_model.kind, LikelihoodKind::kCorrelation);
-  EXPECT_EQ(filter_named("rates", 700).measurement_model.kind, LikelihoodKind::kDetectionRates);
-  EXPECT_EQ(filter_named("rates", 700).filter.adapts_count, true);
+  EXPECT_EQ(filter_named("default", 700).filter.adapts_count, true);
   EXPECT_EQ(code_of([] { filter_named("papr", 700); }), "filter-unknown");
 }
 

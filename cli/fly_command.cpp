@@ -17,6 +17,7 @@
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/geodesy/geo_box.hpp"
+#include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 
 namespace roadfix::cli {
@@ -74,6 +75,9 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
   if (plan.base.empty()) {
     for (const std::string& filter : options.campaign.filters) fly::filter_named(filter, plan.filter.particles);
     return fly::library_localizers(map, plan.filter, stop);
+  }
+  if (options.campaign.filters != fly::Campaign().filters) {
+    throw InvalidInput("option-without-effect", "a service has a filter of its own: leave out --filter or --server");
   }
   if (plan.map.empty()) plan.map = std::filesystem::path(options.map).stem().string();
   // The whole map is served: what lies around the square is not hidden from the track, but its start.

@@ -6,8 +6,8 @@
 
 namespace roadfix::fly {
 
-/// Filters of the service: "default" and "paper". Throws, when used, InvalidInput ("filter-unknown", "service-refused"
-/// with its reason), IoFailure ("service-silent") and Interrupted ("flight-stopped").
+/// By the service's own filter, whatever the name. Throws, when used, InvalidInput ("service-refused" with its reason,
+/// "service-answer-unreadable"), IoFailure ("service-silent") and Interrupted ("flight-stopped").
 LocalizerFactory service_localizers(const ServicePlan& plan);
 
 }  // namespace roadfix::fly

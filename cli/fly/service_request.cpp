@@ -8,7 +8,6 @@
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
-#include "core/units/error.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -76,14 +75,9 @@ std::string as_query(const json& fields) {
 
 }  // namespace
 
-json track_request(const ServicePlan& plan, const std::string& filter, std::uint64_t seed) {
-  if (filter != "default" && filter != "paper") {
-    throw InvalidInput("filter-unknown",
-                       fmt::format("a service has no filter '{}': take default or paper, or fly without it", filter));
-  }
+json track_request(const ServicePlan& plan, std::uint64_t seed) {
   const VehicleNoise& vehicle = plan.filter.vehicle;
   json request{{"map", plan.map},
-               {"filter", filter == "paper" ? "paper" : "adaptive"},
                {"particles", plan.filter.particles},
                {"seed", seed},
                {"odometry_share", vehicle.odometry_share},

@@ -10,8 +10,8 @@
 
 namespace roadfix::fly {
 
-/// The body of POST /v1/tracks. Throws InvalidInput ("filter-unknown").
-nlohmann::json track_request(const ServicePlan& plan, const std::string& filter, std::uint64_t seed);
+/// The body of POST /v1/tracks.
+nlohmann::json track_request(const ServicePlan& plan, std::uint64_t seed);
 
 /// JSON where nothing was seen, else a picture, described in the query.
 struct StepRequest {

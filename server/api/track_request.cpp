@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "core/units/error.hpp"
@@ -15,9 +14,6 @@ namespace roadfix::api {
 namespace {
 
 using http::InvalidField;
-
-constexpr std::array<std::string_view, 2> kFilters{"adaptive", "paper"};
-constexpr std::array<std::string_view, 2> kStarts{"search", "uniform"};
 
 VehicleNoise parse_vehicle(const Fields& fields) {
   VehicleNoise noise;
@@ -54,7 +50,7 @@ const std::vector<std::string>& track_members() {
   static const std::vector<std::string> kMembers =
       joined({{"map"},
               prior_fields(),
-              {"filter", "start", "particles", "seed"},
+              {"particles", "seed"},
               {"speed_m_s", "speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s", "odometry_share"},
               {"wind_sigma_m_s", "wind_walk", "scale_range", "nadir_sigma_m"}});
   return kMembers;
@@ -65,15 +61,8 @@ TrackRequest parse_track(const Fields& fields, const Limits& limits) {
   TrackSettings& settings = request.settings;
   const int particles =
       fields.optional_integer("particles", 100, limits.particles).value_or(std::min(10'000, limits.particles));
-  if (fields.word("filter", kFilters) == "paper") {
-    settings = TrackSettings::paper(particles);
-  } else {
-    settings.filter.max_particles = particles;
-    settings.filter.min_particles = std::min(settings.filter.min_particles, particles);
-  }
-  if (fields.has("start")) {
-    settings.start = fields.word("start", kStarts) == "search" ? TrackStart::kSearch : TrackStart::kUniform;
-  }
+  settings.filter.max_particles = particles;
+  settings.filter.min_particles = std::min(settings.filter.min_particles, particles);
   settings.prior = parse_prior(fields);
   settings.vehicle = parse_vehicle(fields);
   settings.seed =

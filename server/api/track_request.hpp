@@ -10,7 +10,7 @@
 
 namespace roadfix::api {
 
-/// Members of the JSON that begins a track: "map" and what is known of place, vehicle and filter.
+/// Members of the JSON that begins a track: "map" and what is known of place and vehicle.
 const std::vector<std::string>& track_members();
 
 struct TrackRequest {

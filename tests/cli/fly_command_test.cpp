@@ -147,6 +147,8 @@ TEST_F(FlyCommand, RefusesOptionsThatWouldDoNothing) {
   }
   EXPECT_THAT(roadfix(flight + "--picture-steps 1").err, HasSubstr("requires --pictures"));
   EXPECT_THAT(roadfix(flight + "--film-rate 5").err, HasSubstr("requires --film"));
+  EXPECT_THAT(roadfix(flight + "--server http://127.0.0.1:1 --filter default,paper").err,
+              HasSubstr("option-without-effect"));
 }
 
 TEST_F(FlyCommand, SendsFramesOnlyWhereItHasSomeAndAServiceDetectsTheirRoads) {

@@ -110,7 +110,7 @@ TEST(ServeCommand, WritesWhatAFixAndAStepWereAnswered) {
   const testing::ServiceProcess service(folder.path(), {"--access-log", log});
   httplib::Client client = testing::client_of(service);
   client.Post("/v1/maps/town/fix?cell_m=2", town.seen(), "image/png");
-  const json track{{"map", "town"}, {"start", "uniform"}, {"particles", 200}};
+  const json track{{"map", "town"}, {"particles", 200}};
   const std::string id = testing::json_of(client.Post("/v1/tracks", track.dump(), "application/json"))["id"];
   client.Post("/v1/tracks/" + id + "/steps", R"({"sequence": 0, "time_us": 1})", "application/json");
   std::vector<json> entries;

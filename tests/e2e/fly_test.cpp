@@ -136,10 +136,6 @@ TEST_F(Vehicles, SayWhyTheyCannotBeFollowed) {
   auto running = service("tracks.sqlite");
   flight_plan_.steps = 1;
   const auto code = [&] { return testing::code_of([&] { flown(running->port()); }); };
-  campaign_.filters = {"search"};
-  EXPECT_EQ(code(), "filter-unknown");
-  campaign_.filters = {"paper"};
-  EXPECT_EQ(code(), "no error");
   plan_.map = "nowhere";
   EXPECT_EQ(code(), "service-refused");
   plan_.patience = 0s;

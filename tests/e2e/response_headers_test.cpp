@@ -72,7 +72,7 @@ TEST_F(ResponseHeaders, AreDescribedWhereTheyAreSent) {
   expect_described("findFix", 200, client_->Post(fix + "&format=gps_input", town_.seen(), "image/png"));
   expect_described("findFix", 204, client_->Post(fix + "&format=command_int", nothing(), "image/png"));
 
-  const json track{{"map", "town"}, {"start", "uniform"}, {"particles", 200}};
+  const json track{{"map", "town"}, {"particles", 200}};
   const auto begun = client_->Post("/v1/tracks", track.dump(), "application/json");
   expect_described("beginTrack", 201, begun);
   expect_described("beginTrack", 429, client_->Post("/v1/tracks", track.dump(), "application/json"));

@@ -29,9 +29,9 @@ FrameCamera camera() {
 
 TEST(TrackRequest, HasTheAreaAsThePriorWhereThereIsOne) {
   ServicePlan plan;
-  EXPECT_FALSE(track_request(plan, "default", 1).contains("bbox"));
+  EXPECT_FALSE(track_request(plan, 1).contains("bbox"));
   plan.area = GeoBox{{-17.0, 179.5}, {-16.5, 180.5}};
-  EXPECT_EQ(track_request(plan, "default", 1).at("bbox"), (nlohmann::json{179.5, -17.0, 180.5, -16.5}));
+  EXPECT_EQ(track_request(plan, 1).at("bbox"), (nlohmann::json{179.5, -17.0, 180.5, -16.5}));
 }
 
 TEST(StepRequest, OfAFrameTellsWhatWasToldOfItsAttitudeAndNoMore) {

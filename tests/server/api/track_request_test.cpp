@@ -40,22 +40,9 @@ TEST(TrackRequest, NeedsAMapAndNothingElse) {
   EXPECT_FALSE(settings.vehicle.nadir_sigma_m);
 }
 
-TEST(TrackRequest, TakesThePapersFilterOrAnotherStartWhereItIsAskedTo) {
-  const TrackSettings paper = settings_of({{"filter", "paper"}, {"particles", 500}});
-  EXPECT_EQ(paper.start, TrackStart::kUniform);
-  EXPECT_FALSE(paper.recovers);
-  EXPECT_EQ(paper.measurement_model.kind, LikelihoodKind::kEquation7);
-  EXPECT_EQ(paper.filter.min_particles, 500) << "it always uses this many";
-  EXPECT_EQ(paper.filter.max_particles, 500);
-  EXPECT_FALSE(paper.filter.adapts_count);
-  EXPECT_EQ(settings_of({{"filter", "paper"}, {"start", "search"}}).start, TrackStart::kSearch);
-
-  const TrackSettings uniform = settings_of({{"filter", "adaptive"}, {"start", "uniform"}});
-  EXPECT_EQ(uniform.start, TrackStart::kUniform);
-  EXPECT_TRUE(uniform.recovers);
-  EXPECT_TRUE(uniform.filter.adapts_count);
-  EXPECT_EQ(refused_track({{"filter", "best"}}), "bad-parameter filter");
-  EXPECT_EQ(refused_track({{"start", "here"}}), "bad-parameter start");
+TEST(TrackRequest, HasNoChoiceOfFilterOrStart) {
+  EXPECT_EQ(refused_track({{"filter", "paper"}}), "unknown-field filter");
+  EXPECT_EQ(refused_track({{"start", "uniform"}}), "unknown-field start");
 }
 
 TEST(TrackRequest, HasAtMostAsManyParticlesAsItAsksForAndTheLimitAllows) {

@@ -35,7 +35,7 @@ class TrackRegistryTest : public ::testing::Test {
     return std::make_unique<TrackRegistry>(folder_ / file, limits, maps_, limits_);
   }
   static std::string begin(TrackRegistry& tracks, const std::string& client = "::1") {
-    return tracks.create(client, R"({"map": "town", "particles": 500, "start": "uniform", "seed": 9})").id;
+    return tracks.create(client, R"({"map": "town", "particles": 500, "seed": 9})").id;
   }
   /// The answer without the name of the track.
   static std::string take(TrackRegistry& tracks, const std::string& id, std::int64_t sequence) {

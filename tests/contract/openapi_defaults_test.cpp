@@ -13,6 +13,7 @@
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/track_request.hpp"
+#include "tests/support/json_schema.hpp"
 
 namespace roadfix {
 namespace {
@@ -27,8 +28,9 @@ class OpenApiDefaults : public ::testing::Test {
   /// The defaults of a request's members, of those in `names`.
   json defaults(const char* schema, const std::vector<std::string>& names) const {
     json given = json::object();
-    for (const auto& [name, member] : document_.at("components").at("schemas").at(schema).at("properties").items()) {
+    for (const auto& [name, named] : document_.at("components").at("schemas").at(schema).at("properties").items()) {
       const bool wanted = std::ranges::find(names, name) != names.end();
+      const json& member = testing::resolved(document_, named);
       if (wanted && member.contains("default")) given[name] = member["default"];
     }
     return given;

@@ -30,6 +30,7 @@ namespace roadfix {
 namespace {
 
 using nlohmann::json;
+using ::testing::EndsWith;
 using ::testing::IsEmpty;
 
 class OpenApi : public ::testing::Test {
@@ -158,8 +159,9 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   EXPECT_EQ(members("StepRequest"), step);
 }
 
-/// Gives every number of `schema` in turn its bounds and what lies just beyond, beside the members of `base`.
-void expect_ranges(const json& schema, const json& base, const std::function<void(const json&)>& parse) {
+/// Gives every number of a request in turn its bounds and what lies just beyond, beside the members of `base`.
+void expect_ranges(const json& document, const char* request, const json& base,
+                   const std::function<void(const json&)>& parse) {
   const auto taken = [&](json body, const std::string& name, const json& value) {
     body[name] = value;
     try {
@@ -169,9 +171,10 @@ void expect_ranges(const json& schema, const json& base, const std::function<voi
       return false;
     }
   };
+  const json& schema = document.at("components").at("schemas").at(request);
   for (const auto& property : schema.at("properties").items()) {
     const std::string& name = property.key();
-    const json& member = property.value();
+    const json& member = testing::resolved(document, property.value());
     const std::string type = member.value("type", "");
     if (!base.contains(name) || (type != "number" && type != "integer")) continue;
     const auto beyond = [&](const char* bound, int sign) -> json {
@@ -194,13 +197,12 @@ void expect_ranges(const json& schema, const json& base, const std::function<voi
 }
 
 TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
-  const json& schemas = document_.at("components").at("schemas");
   const json prior{{"lat", 1},          {"lon", 2}, {"radius_m", 300}, {"heading_deg", 4}, {"heading_range_deg", 5},
                    {"scale_range", 0.1}};
   json fix{{"confidence", 0.9}, {"max_modes", 1},     {"proof_s", 0},
            {"time_limit_s", 1}, {"nadir_sigma_m", 3}, {"nadir_heading_sigma_deg", 1}};
   fix.update(prior);
-  expect_ranges(schemas.at("FixRequest"), fix, [&](const json& body) {
+  expect_ranges(document_, "FixRequest", fix, [&](const json& body) {
     api::Fields fields;
     fields.add(
         body,
@@ -223,7 +225,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
              {"wind_sigma_m_s", 1},
              {"wind_walk", 1}};
   track.update(prior);
-  expect_ranges(schemas.at("TrackRequest"), track, [&](const json& body) {
+  expect_ranges(document_, "TrackRequest", track, [&](const json& body) {
     api::Fields fields;
     fields.add(body, api::track_members());
     api::parse_track(fields, limits_);
@@ -235,7 +237,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
                   {"turn_deg", 0},
                   {"nadir_sigma_m", 0},
                   {"nadir_heading_sigma_deg", 0}};
-  expect_ranges(schemas.at("StepRequest"), step, [&](const json& body) {
+  expect_ranges(document_, "StepRequest", step, [&](const json& body) {
     api::Fields fields;
     fields.add(body, api::joined({api::step_fields(), {"nadir_sigma_m", "nadir_heading_sigma_deg"}}));
     api::parse_step(fields);
@@ -243,7 +245,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     api::told_nadir_heading_sigma(fields);
   });
   const std::vector<std::uint8_t> frame = encode_feature_map(CellArray(32, 32, 100));
-  expect_ranges(schemas.at("DetectRequest"), {{"cell_m", 2}, {"seed", 1}}, [&](const json& body) {
+  expect_ranges(document_, "DetectRequest", {{"cell_m", 2}, {"seed", 1}}, [&](const json& body) {
     api::Content content{{}, frame, true};
     content.fields.add(body, api::frame_fields());
     content.fields.add_text("gsd_m", "0.5");
@@ -261,14 +263,36 @@ TEST_F(OpenApi, SaysTheSameOfAParameterAndOfTheMemberOfThatName) {
         const json& parameter = resolved(named);
         const std::string name = parameter.at("name");
         if (!body.at("properties").contains(name)) continue;
-        json member = body["properties"][name];
-        member.erase("description");
+        const json& member = body["properties"][name];
         EXPECT_EQ(parameter.at("schema"), member) << method << " " << path << ": " << name;
+        // Twice, since some programs show only the text of a parameter, others only that of its schema.
+        const json& schema = resolved(member);
+        if (schema.contains("description")) {
+          EXPECT_EQ(parameter.at("description"), schema["description"]) << name;
+        }
         ++both;
       }
     }
   }
   EXPECT_GT(both, 60);
+}
+
+TEST_F(OpenApi, NamesEveryFormatOfAPositionAndNoOther) {
+  const auto asked_for = [](const std::string& name) {
+    api::Fields fields;
+    fields.add({{"format", name}}, api::position_fields());
+    return api::parse_position_format({}, fields);
+  };
+  std::string names;
+  for (const std::string name : document_.at("components").at("schemas").at("PositionFormat").at("enum")) {
+    names += (names.empty() ? "" : ", ") + name;
+    const std::string type(asked_for(name).type);
+    for (const char* path : {"/v1/maps/{map}/fix", "/v1/tracks/{id}/steps"}) {
+      EXPECT_TRUE(document_.at("paths").at(path).at("post").at("responses").at("200").at("content").contains(type))
+          << path << " answers " << type;
+    }
+  }
+  EXPECT_THAT(testing::message_of([&] { asked_for("best"); }), EndsWith("one of: " + names));
 }
 
 TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {
